@@ -1,0 +1,37 @@
+// From the dot's pixel to the gap: the laser's line, the local surface and the camera, inverted.
+#pragma once
+
+#include "machine/description.h"
+#include "vision/dot.h"
+
+namespace understudy::control {
+
+/// The surface near the tool axis, in T with the tip at gap 0 on it:
+///   z = slope . (x, y) + 1/2 (x, y) curvature (x, y)^T      (z along the tool axis, away from the part)
+struct LocalSurface {
+  Vec2 slope{0, 0};
+  Eigen::Matrix2d curvature = Eigen::Matrix2d::Zero();  ///< [1/m], negative where the part bulges to the tool
+};
+
+/// Quadratic fit of the nominal part around the point under the tool, within `radius` [m]. The part is in
+/// the frame of X_WT. Throws InputError when the axis does not meet the part within 20 mm of the tip.
+LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT, double radius);
+
+struct GapReading {
+  double gap = 0;            ///< [m], along the tool axis, positive outside the part
+  double sigma = 0;          ///< [m], from the dot's covariance
+  double residual_px = 0;    ///< [px], distance of the dot from the line on which it must move
+};
+
+/// Where the dot must appear for a gap. False when the beam misses the modelled surface or the camera.
+bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap, Vec2& pixel);
+
+/// Inverts predict_dot by Newton; false when there is no gap in [-1 mm, 8 mm] that explains the dot.
+bool read_gap(const machine::MachineDescription& machine, const LocalSurface& surface,
+              const vision::DotMeasurement& dot, GapReading& reading);
+
+/// Part of the sensor in which the dot of gaps in [gap - below, gap + above] lies, with margin; clipped.
+Region region_for_gap(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                      double below, double above, int margin_px);
+
+}  // namespace understudy::control

@@ -1,0 +1,65 @@
+// The print loop: one for the twin and for the machine (docs/life-of-one-move.md).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "control/gap_controller.h"
+#include "control/motion_planner.h"
+#include "toolpath/program.h"
+
+namespace understudy::control {
+
+enum class GapControl { off, start };
+
+struct PrintOptions {
+  GapControl gap_control = GapControl::start;
+  GapControllerOptions gap;
+  /// The nominal part in the program's frame, for the dot's geometry; without it the surface is taken as
+  /// flat and perpendicular to the tool at S.
+  const geometry::Mesh* part = nullptr;
+};
+
+/// From `time` on, every programmed pose is shifted by `offset_W`.
+struct OffsetChange {
+  double time = 0;
+  int line = 0;
+  Vec3 offset_W{0, 0, 0};
+};
+
+struct GapApproach {
+  int line = 0;          ///< of the move that ends at S
+  double done_at = 0;    ///< [s]
+  GapOutcome outcome;
+};
+
+struct PrintResult {
+  bool completed = false;
+  std::string stop_reason;                 ///< one line; empty when completed
+  int stop_line = 0;
+  machine::Status status = machine::Status::ok;
+  machine::Fault fault = machine::Fault::none;
+  double duration = 0;                     ///< [s], port clock
+  int moves = 0;
+  double extruded = 0;                     ///< [m] of filament fed forward
+  double travel = 0;                       ///< [m] of tip path without extrusion
+  std::vector<OffsetChange> offsets;
+  std::vector<GapApproach> approaches;
+};
+
+class PrintObserver {
+ public:
+  virtual ~PrintObserver() = default;
+  /// Called as steps are handed to the port; `done` of `total` steps.
+  virtual void progress(std::size_t done, std::size_t total, double port_time) = 0;
+};
+
+/// An approach is a step of kind `move` of at most 10 mm straight against the tool axis (within 1 degree)
+/// that ends where the next `print` step begins. With GapControl::start each is closed by close_gap and the
+/// offset carried to all later steps until the next approach (Song 2015, eq 5: points are relative).
+/// A GapStop retreats, ends the print and is reported; nothing is printed without a known gap.
+PrintResult print(const toolpath::Program& program, const machine::MachineDescription& machine,
+                  machine::MachinePort& port, const PrintOptions& options, PrintObserver* observer = nullptr);
+
+}  // namespace understudy::control

@@ -1,0 +1,55 @@
+// A port without a machine: axes are where the setpoints say, frames come from a function. For tests of
+// everything that speaks to a MachinePort, and for dry runs.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "machine/port.h"
+
+namespace understudy::machine {
+
+class LoopbackPort : public MachinePort {
+ public:
+  struct Options {
+    int axis_count = 6;
+    std::size_t queue_capacity = 4096;
+    AxisArray start{};
+    double frame_time = 0.02;   ///< [s], exposure plus transfer
+  };
+  /// Fills the image for the axis positions at a time; false: no frame.
+  using FrameSource = std::function<bool(const AxisState&, const Region&, Image&)>;
+
+  explicit LoopbackPort(const Options& options, FrameSource frames = {});
+
+  int axis_count() const override { return options_.axis_count; }
+  double now() const override { return time_; }
+  AxisState state() const override;
+  Status submit(std::span<const Setpoint> setpoints, double deadline) override;
+  Status wait_until(double time) override;
+  Status urgent(UrgentCommand command) override;
+  Status set_outputs(const Outputs& outputs, double deadline) override;
+  Status capture(const Region& region, Frame& frame, double deadline) override;
+
+  void inject_fault(Fault fault) { fault_ = fault; }
+  void repeat_frames(bool on) { repeat_frames_ = on; }     ///< deliver the last frame again: stale
+  const Outputs& outputs() const { return outputs_; }
+  /// Every setpoint that was executed, in order (tests only).
+  const std::vector<Setpoint>& history() const { return history_; }
+
+ private:
+  Options options_;
+  FrameSource frames_;
+  double time_ = 0;
+  AxisArray position_{};
+  std::vector<Setpoint> queue_;
+  std::size_t head_ = 0;
+  std::uint64_t accepted_ = 0, executed_ = 0, frame_number_ = 0;
+  Frame last_frame_;
+  bool repeat_frames_ = false;
+  Fault fault_ = Fault::none;
+  Outputs outputs_;
+  std::vector<Setpoint> history_;
+};
+
+}  // namespace understudy::machine

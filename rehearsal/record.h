@@ -1,0 +1,97 @@
+// Everything a rehearsal found out: the data behind summary.json, trace.csv, the report and scenarios.
+// Drawing is elsewhere (report.h); absent values stay absent.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "control/gap_controller.h"
+#include "machine/port.h"
+#include "core/frames.h"
+#include "renderer/scene_view.h"
+
+namespace understudy::rehearsal {
+
+enum class Severity { error, warning };
+
+/// kind is one of the contract's words. value and limit in `unit`, the unit of reports (mm, deg, um, mm/s).
+struct Finding {
+  std::string kind;
+  Severity severity = Severity::error;
+  int gcode_line = 0;
+  double time_s = 0;
+  double value = 0;
+  double limit = 0;
+  std::string unit;
+  std::string message;
+};
+
+struct PrintFigures { double duration_s = 0; int moves = 0; double extruded_mm = 0, deposited_mm = 0, travel_mm = 0; };
+struct AccuracyFigures {
+  double tip_rms_um = 0, tip_p95_um = 0, tip_max_um = 0, orientation_max_mrad = 0, open_loop_tip_max_um = 0;
+};
+struct GapFigures {
+  double commanded_mm = 0;
+  std::optional<double> open_loop_start_mm;   ///< without gap control
+  double start_mm = 0, path_min_mm = 0, path_mean_mm = 0, path_max_mm = 0, in_band_fraction = 0;
+  int frames = 0;
+};
+struct CollisionFigures { double min_clearance_mm = 0; std::uint64_t checks = 0; int pairs = 0; };
+struct EngineFigures {
+  std::string name, version;
+  double timestep_s = 0;
+  std::uint64_t steps = 0;
+  double real_time_factor = 0;
+  double closure_max_um = 0;
+};
+struct Provenance {
+  std::string version, machine_sha256, program_sha256;
+  std::uint64_t seed = 0;
+  std::string as_built, command;
+};
+
+/// One instant of the run, truth beside command.
+struct TracePoint {
+  double time = 0;                 ///< [s]
+  int line = 0;
+  bool extruding = false;
+  Pose X_WT = Pose::Identity();             ///< true
+  Pose X_WT_programmed = Pose::Identity();  ///< what the program asks for, without the gap controller's offset
+  double tip_error = 0;            ///< [m], true against programmed
+  double orientation_error = 0;    ///< [rad]
+  double gap = 0;                  ///< [m], true, along the tool axis; infinity: nothing below
+  double path = 0;                 ///< [m] of tip path since extrusion began; 0 before
+  machine::AxisArray axes{};       ///< SI, measured
+};
+
+/// A laser frame kept for the report: the controller's look and the truth beside it.
+struct FrameRecord {
+  control::GapLook look;
+  double true_gap = 0;             ///< [m]
+  std::optional<Vec2> true_dot_px;
+};
+
+struct Record {
+  bool go = false;
+  std::vector<Finding> findings;           ///< errors first, then by line
+  std::string title;                       ///< "curved-line.gcode on hexapod"
+  std::string program_name, machine_name, fixture_name, gap_control;
+
+  std::optional<PrintFigures> print;
+  std::optional<AccuracyFigures> accuracy;
+  std::optional<GapFigures> gap;
+  std::optional<CollisionFigures> collision;
+  std::optional<EngineFigures> engine;
+  Provenance provenance;
+
+  double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
+  std::vector<TracePoint> trace;
+  std::vector<TracePoint> trace_without_gap_control;   ///< empty when the run itself had none
+  std::vector<FrameRecord> frames;
+  std::vector<renderer::Picture> pictures;             ///< overview, close-up
+  std::vector<std::string> picture_captions;
+};
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,29 @@
+// Observers read snapshots of the twin and cannot change the run.
+#pragma once
+
+#include "core/frames.h"
+#include "machine/port.h"
+
+namespace understudy::sim {
+
+/// The truth at one instant.
+struct Snapshot {
+  double time = 0;                       ///< [s]
+  Pose X_WT = Pose::Identity();          ///< true tool pose
+  Pose X_WT_commanded = Pose::Identity();///< what the axes command means to the nominal geometry
+  machine::AxisArray axes_commanded{};   ///< SI, controller's geometry
+  machine::AxisArray axes{};             ///< SI, as measured by the drives
+  double filament = 0;                   ///< [m], fed since the start
+  double fan = 0;
+  double nozzle_temperature = 0;         ///< [K]
+  int line = 0;                          ///< G-code line
+  double closure_error = 0;              ///< [m]
+};
+
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void observe(const Snapshot& snapshot) = 0;
+};
+
+}  // namespace understudy::sim

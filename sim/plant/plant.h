@@ -1,0 +1,52 @@
+// A machine's mechanics as an engine integrates them. Three plants stand behind this interface.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "kinematics/mechanism.h"
+#include "machine/description.h"
+#include "sim/as_built/as_built.h"
+
+namespace understudy::sim {
+
+/// What a drive is asked for during one step, at the step's beginning: motor side, as-built zero.
+struct DriveCommand {
+  machine::AxisArray position{};   ///< [m or rad]; hexapod: drive displacement
+  machine::AxisArray velocity{};   ///< [m/s or rad/s], feed-forward
+};
+
+class Plant {
+ public:
+  virtual ~Plant() = default;
+
+  virtual std::string engine() const = 0;    ///< "mujoco 2.2.2"
+  virtual double timestep() const = 0;       ///< [s]
+  virtual double time() const = 0;           ///< [s]
+
+  /// Assembles the machine at rest for these displacements and lets it settle under gravity; time is 0.
+  /// Throws MachineError when the loops cannot be closed.
+  virtual void reset(const machine::AxisArray& displacement) = 0;
+  /// One timestep. Throws MachineError when the integration diverges: a result is never made up.
+  virtual void step(const DriveCommand& command) = 0;
+
+  virtual Pose tool_pose() const = 0;                        ///< X_WT, true
+  virtual machine::AxisArray displacement() const = 0;       ///< motor side, as encoders would see it
+  /// [m], largest distance between the two ends of a closed joint, play not counted.
+  virtual double closure_error() const = 0;
+};
+
+struct MujocoOptions {
+  double timestep = 0.5e-3;    ///< [s]
+  bool gravity = true;
+  bool play = true;
+};
+std::unique_ptr<Plant> make_mujoco_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                                         const MujocoOptions& options = {});
+
+/// The MJCF of the as-built machine, assembled at X_WT; what `understudy export mjcf` writes.
+std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built, const Pose& X_WT,
+                       const MujocoOptions& options = {});
+
+}  // namespace understudy::sim
