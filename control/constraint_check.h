@@ -4,29 +4,36 @@
 #include <vector>
 
 #include "machine/description.h"
+#include "machine/port.h"
 #include "toolpath/program.h"
 
 namespace understudy::control {
 
 struct ConstraintFinding {
   kinematics::LimitViolation violation;
-  int line = 0;        ///< G-code line
-  double time = 0;     ///< [s], planned time
+  int line = 0;             ///< G-code line
+  double time = 0;          ///< [s], planned time
+  double reduced_feed = 0;  ///< of the programmed feed that is left, below 0.5; 0: not this kind of finding
 };
 
 struct ConstraintReport {
   /// One entry per line, kind and part: the worst value met there. Ordered by line.
   std::vector<ConstraintFinding> findings;
-  double duration = 0;             ///< [s], planned time of the program
-  machine::AxisArray axis_min{}, axis_max{};   ///< range used, SI
-  machine::AxisArray velocity_max{};           ///< largest planned axis speed
+  double duration = 0;                        ///< [s], planned time of the program
+  machine::AxisArray axis_min{}, axis_max{};  ///< range used, SI
+  machine::AxisArray velocity_max{};          ///< largest planned axis speed
   machine::AxisArray acceleration_max{};
   double condition_worst = 0;
 };
 
-/// Poses are checked between the programmed points too, at most `step` apart. Axis speeds and accelerations
-/// are those of the planned motion. A path that cannot be reached gives findings, not an exception.
-ConstraintReport check_constraints(const toolpath::Program& program, const machine::MachineDescription& machine,
-                                   double step = 0.5e-3);
+/// Poses are checked between the programmed points too, at most `step` (and one degree) apart, from home on.
+/// Axis speeds and accelerations are those of the planned motion, which never exceeds the limits: it slows
+/// down. So an `axis_velocity` finding is a warning, with `reduced_feed` set: a programmed feed (G1) asks an
+/// axis for more than twice its limit; value is the speed the feed would need. The other findings are errors.
+/// A path that cannot be reached gives findings, not an exception. Where a pose has no axis positions at all
+/// the plan ends: `duration` and later findings' times stop there. Bad figures (no feed, a pose that is not
+/// finite) throw InputError naming the line.
+ConstraintReport check_constraints(const toolpath::Program& program,
+                                   const machine::MachineDescription& machine, double step = 0.5e-3);
 
 }  // namespace understudy::control

@@ -18,13 +18,14 @@ struct LocalSurface {
 LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT, double radius);
 
 struct GapReading {
-  double gap = 0;            ///< [m], along the tool axis, positive outside the part
-  double sigma = 0;          ///< [m], from the dot's covariance
-  double residual_px = 0;    ///< [px], distance of the dot from the line on which it must move
+  double gap = 0;          ///< [m], along the tool axis, positive outside the part
+  double sigma = 0;        ///< [m], from the dot's covariance
+  double residual_px = 0;  ///< [px], distance of the dot from the line on which it must move
 };
 
 /// Where the dot must appear for a gap. False when the beam misses the modelled surface or the camera.
-bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap, Vec2& pixel);
+bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                 Vec2& pixel);
 
 /// Inverts predict_dot by Newton; false when there is no gap in [-1 mm, 8 mm] that explains the dot.
 bool read_gap(const machine::MachineDescription& machine, const LocalSurface& surface,

@@ -17,12 +17,12 @@
 namespace understudy::control {
 
 struct MotionLimits {
-  machine::AxisArray axis_velocity{};        ///< [m/s or rad/s]
-  machine::AxisArray axis_acceleration{};    ///< [m/s^2 or rad/s^2]
-  double tip_acceleration = 0;               ///< [m/s^2]
-  double travel_velocity = 0;                ///< [m/s], G0
-  double orientation_velocity = 0;           ///< [rad/s]
-  double cycle_time = 0;                     ///< [s]
+  machine::AxisArray axis_velocity{};      ///< [m/s or rad/s]
+  machine::AxisArray axis_acceleration{};  ///< [m/s^2 or rad/s^2]
+  double tip_acceleration = 0;             ///< [m/s^2]
+  double travel_velocity = 0;              ///< [m/s], G0
+  double orientation_velocity = 0;         ///< [rad/s]
+  double cycle_time = 0;                   ///< [s]
 };
 MotionLimits motion_limits(const machine::MachineDescription& machine);
 
@@ -30,26 +30,45 @@ MotionLimits motion_limits(const machine::MachineDescription& machine);
 struct PlannedPoint {
   machine::Setpoint setpoint;
   Pose X_WT = Pose::Identity();
+  std::size_t step = 0;  ///< that this serves, counting the pushes from 0
+  double fraction = 0;   ///< of that step's path (of its time, where it does not move), in [0, 1]
 };
 
-/// Streams a program: memory is bounded by the lookahead window, not by the program.
+/// What a pose must satisfy to be planned through.
+enum class PoseCheck {
+  limits,    ///< every limit of the mechanism
+  solvable,  ///< only that there are axis positions for it: to time a program whose findings are known
+};
+
+/// Streams a program: call next() until it is false after each push(), and memory is bounded by the lookahead
+/// window (200 mm of path or some thousand pieces, whichever is shorter), not by the program. The plan can
+/// always stop at the window's end.
+///
+/// Feeds (G94) are speeds of the tip; where the tool turns by more than a radian in 5 mm of tip travel, the
+/// turn is what is timed, at most at `orientation_velocity`. G93: the step's path at constant speed takes
+/// `duration`; speeding up and slowing down come on top. G0 and G28 run at `travel_velocity`. A step that
+/// feeds filament without moving takes |filament| / feed. Steps that neither move nor dwell are ignored.
+/// Acceleration is switched, not ramped: jerk is not limited. At a corner the velocity of each axis changes
+/// within one cycle by at most half of acceleration * cycle_time; the other half is for speeding up and down.
 class MotionPlanner {
  public:
   /// The mechanism and X_WB must outlive the planner. Starts at rest at X_WT_start at `start_time`.
   MotionPlanner(const kinematics::Mechanism& mechanism, const Pose& X_WB, const MotionLimits& limits,
-                const Pose& X_WT_start, double start_time);
+                const Pose& X_WT_start, double start_time, PoseCheck check = PoseCheck::limits);
   ~MotionPlanner();
 
   /// Queues a step that moves or dwells. Throws InputError naming the line and the axis or strut and by how
-  /// much, when a pose on the way cannot be reached.
+  /// much, when a pose on the way cannot be reached; the planner is then as before the call.
   void push(const toolpath::Step& step);
   /// No more steps for now: what is queued ends at rest.
   void finish();
-  /// The next cycle. False: push more, or (after finish) everything was handed out and the tool rests.
+  /// The next cycle: times are start_time + n cycle_time, n = 1, 2, ...; the last one of a stretch is at
+  /// rest, at most one cycle after the motion's end. False: push more, or (after finish) everything was
+  /// handed out and the tool rests.
   bool next(PlannedPoint& point);
 
-  double time() const;          ///< [s] of the last point handed out
-  Pose resting_pose() const;    ///< X_WT at the end of what was queued
+  double time() const;        ///< [s] of the last point handed out
+  Pose resting_pose() const;  ///< X_WT at the end of what was queued
 
  private:
   struct State;

@@ -29,21 +29,21 @@ struct OffsetChange {
 };
 
 struct GapApproach {
-  int line = 0;          ///< of the move that ends at S
-  double done_at = 0;    ///< [s]
+  int line = 0;        ///< of the move that ends at S
+  double done_at = 0;  ///< [s]
   GapOutcome outcome;
 };
 
 struct PrintResult {
   bool completed = false;
-  std::string stop_reason;                 ///< one line; empty when completed
+  std::string stop_reason;  ///< one line; empty when completed
   int stop_line = 0;
   machine::Status status = machine::Status::ok;
   machine::Fault fault = machine::Fault::none;
-  double duration = 0;                     ///< [s], port clock
+  double duration = 0;  ///< [s], port clock
   int moves = 0;
-  double extruded = 0;                     ///< [m] of filament fed forward
-  double travel = 0;                       ///< [m] of tip path without extrusion
+  double extruded = 0;  ///< [m] of filament fed forward
+  double travel = 0;    ///< [m] of tip path without extrusion
   std::vector<OffsetChange> offsets;
   std::vector<GapApproach> approaches;
 };

@@ -33,12 +33,12 @@ struct Image {
 
 /// Pinhole camera with Brown distortion. Pixel (0, 0) is the centre of the top-left pixel; x right, y down.
 struct Camera {
-  int width = 0;           ///< [px]
-  int height = 0;          ///< [px]
-  double focal_px = 0;     ///< [px], square pixels
-  Vec2 centre_px{0, 0};    ///< [px], principal point
-  double k1 = 0, k2 = 0;   ///< radial distortion
-  double p1 = 0, p2 = 0;   ///< tangential distortion
+  int width = 0;          ///< [px]
+  int height = 0;         ///< [px]
+  double focal_px = 0;    ///< [px], square pixels
+  Vec2 centre_px{0, 0};   ///< [px], principal point
+  double k1 = 0, k2 = 0;  ///< radial distortion
+  double p1 = 0, p2 = 0;  ///< tangential distortion
 
   /// Pixel of a point in camera coordinates, or nothing when it lies behind the camera.
   std::optional<Vec2> project(const Vec3& p_C) const;

@@ -62,7 +62,8 @@ OutputFolder::OutputFolder(fs::path target, std::string marker)
   if (target_.empty()) throw InputError("the output folder has no name");
   std::error_code error;
   if (fs::exists(target_, error)) {
-    if (!fs::is_directory(target_, error)) throw InputError("cannot write " + target_.string() + ": it is a file");
+    if (!fs::is_directory(target_, error))
+      throw InputError("cannot write " + target_.string() + ": it is a file");
     if (!fs::is_empty(target_, error) && !fs::exists(target_ / marker_, error))
       throw InputError("will not replace " + target_.string() + ": it is not empty and holds no " + marker_);
   }

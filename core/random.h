@@ -13,9 +13,9 @@ class Random {
   Random(std::uint64_t seed, std::string_view purpose);
 
   std::uint64_t bits();
-  double uniform();                          ///< in [0, 1)
-  double uniform(double low, double high);   ///< in [low, high)
-  double normal();                           ///< mean 0, standard deviation 1
+  double uniform();                         ///< in [0, 1)
+  double uniform(double low, double high);  ///< in [low, high)
+  double normal();                          ///< mean 0, standard deviation 1
 
  private:
   std::uint64_t state_[4];

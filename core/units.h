@@ -5,12 +5,12 @@
 
 namespace understudy {
 
-constexpr double kMillimetre = 1e-3;            // [m]
-constexpr double kMicrometre = 1e-6;            // [m]
+constexpr double kMillimetre = 1e-3;                  // [m]
+constexpr double kMicrometre = 1e-6;                  // [m]
 constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
-constexpr double kInch = 25.4e-3;               // [m]
+constexpr double kInch = 25.4e-3;                     // [m]
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;  // [m/s]
-constexpr double kGravity = 9.80665;            // [m/s^2]
+constexpr double kGravity = 9.80665;                  // [m/s^2]
 
 constexpr double from_mm(double v) { return v * kMillimetre; }
 constexpr double to_mm(double v) { return v * 1e3; }

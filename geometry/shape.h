@@ -12,13 +12,29 @@ namespace understudy::geometry {
 class Mesh;
 
 /// All lengths [m]. Axes along z of the shape's own frame, origin at its centre unless said otherwise.
-struct Sphere { double radius; };
-struct Capsule { double radius; double length; };            ///< length between the cap centres
-struct Cylinder { double radius; double length; };
+struct Sphere {
+  double radius;
+};
+struct Capsule {
+  double radius;
+  double length;
+};  ///< length between the cap centres
+struct Cylinder {
+  double radius;
+  double length;
+};
 /// A truncated cone from z = 0 (radius_bottom) to z = height (radius_top).
-struct Frustum { double radius_bottom; double radius_top; double height; };
-struct Box { Vec3 size; };
-struct MeshShape { std::shared_ptr<const Mesh> mesh; };
+struct Frustum {
+  double radius_bottom;
+  double radius_top;
+  double height;
+};
+struct Box {
+  Vec3 size;
+};
+struct MeshShape {
+  std::shared_ptr<const Mesh> mesh;
+};
 
 struct Shape {
   std::string name;

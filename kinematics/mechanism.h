@@ -13,21 +13,31 @@ namespace understudy::kinematics {
 
 constexpr int kMaxAxes = 8;
 
+/// Condition numbers are not told apart above this.
+constexpr double kSingularCondition = 1e7;
+
 enum class Solve { ok, unreachable, singular, not_converged, bad_input };
 const char* to_string(Solve s);
 
 enum class LimitKind {
-  strut_length, joint_angle, joint_limit, screw_distance, axis_velocity, axis_acceleration, singularity, unreachable
+  strut_length,
+  joint_angle,
+  joint_limit,
+  screw_distance,
+  axis_velocity,
+  axis_acceleration,
+  singularity,
+  unreachable
 };
 const char* to_string(LimitKind kind);
 
 /// One limit that a pose or a motion breaks.
 struct LimitViolation {
   LimitKind kind;
-  std::string part;   ///< "strut 3", "ball joint 2", "struts 1 and 6"
-  double value = 0;   ///< SI
-  double limit = 0;   ///< SI
-  std::string unit;   ///< SI unit of both: "m", "rad", "m/s", "1"
+  std::string part;  ///< "strut 3", "ball joint 2", "struts 1 and 6"
+  double value = 0;  ///< SI
+  double limit = 0;  ///< SI
+  std::string unit;  ///< SI unit of both: "m", "rad", "m/s", "1"
 };
 /// "strut 3 is 241.7 mm, longer than 240.0 mm": in the units of reports.
 std::string to_string(const LimitViolation& violation);
@@ -37,9 +47,9 @@ class Mechanism {
   virtual ~Mechanism() = default;
 
   virtual int axis_count() const = 0;
-  virtual std::string axis_name(int axis) const = 0;   ///< as in CSV headers without unit: "l1", "j1", "x"
+  virtual std::string axis_name(int axis) const = 0;  ///< as in CSV headers without unit: "l1", "j1", "x"
   virtual bool axis_is_angle(int axis) const = 0;
-  virtual Pose home() const = 0;                       ///< X_BT
+  virtual Pose home() const = 0;  ///< X_BT
 
   /// Axis positions for a pose; `previous` picks the branch where there are several.
   virtual Solve inverse(const Pose& X_BT, std::span<const double> previous, std::span<double> axes) const = 0;
@@ -48,6 +58,9 @@ class Mechanism {
   /// d(axes)/d(twist): row per axis; twist = (velocity of the tip, angular velocity), both in B.
   virtual Solve axis_rates(const Pose& X_BT, std::span<const double> axes,
                            Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 6>> rates) const = 0;
+  /// Condition number of axis_rates with its angular columns divided by the tool's own size, so that both
+  /// halves are lengths; kSingularCondition where it is singular or there is no solution.
+  virtual double condition_number(const Pose& X_BT, std::span<const double> axes) const = 0;
   /// Appends every limit that the pose breaks (lengths, joint angles, distances, conditioning).
   virtual void check(const Pose& X_BT, std::vector<LimitViolation>& violations) const = 0;
 };

@@ -2,7 +2,9 @@
 // everything that speaks to a MachinePort, and for dry runs.
 #pragma once
 
+#include <deque>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "machine/port.h"
@@ -15,7 +17,7 @@ class LoopbackPort : public MachinePort {
     int axis_count = 6;
     std::size_t queue_capacity = 4096;
     AxisArray start{};
-    double frame_time = 0.02;   ///< [s], exposure plus transfer
+    double frame_time = 0.02;  ///< [s], exposure plus transfer
   };
   /// Fills the image for the axis positions at a time; false: no frame.
   using FrameSource = std::function<bool(const AxisState&, const Region&, Image&)>;
@@ -31,23 +33,32 @@ class LoopbackPort : public MachinePort {
   Status set_outputs(const Outputs& outputs, double deadline) override;
   Status capture(const Region& region, Frame& frame, double deadline) override;
 
-  void inject_fault(Fault fault) { fault_ = fault; }
-  void repeat_frames(bool on) { repeat_frames_ = on; }     ///< deliver the last frame again: stale
+  /// The fault stands as soon as the clock has reached `time`; axes stop where they are, the queue is lost.
+  void inject_fault(Fault fault, double time = 0);
+  void repeat_frames(bool on) { repeat_frames_ = on; }  ///< deliver the last frame again: stale
   const Outputs& outputs() const { return outputs_; }
   /// Every setpoint that was executed, in order (tests only).
   const std::vector<Setpoint>& history() const { return history_; }
 
  private:
+  AxisArray position_at(double queue_time) const;
+  void rest_at(const AxisArray& position);
+  void execute_until(double time);
+  void raise(Fault fault);
+
   Options options_;
   FrameSource frames_;
   double time_ = 0;
-  AxisArray position_{};
-  std::vector<Setpoint> queue_;
-  std::size_t head_ = 0;
+  Setpoint last_;  ///< executed last; where the axes rest when the queue is empty
+  std::deque<Setpoint> queue_;
+  double queue_lag_ = 0;  ///< [s], port clock minus the queue's; grows while held
+  bool held_ = false;
   std::uint64_t accepted_ = 0, executed_ = 0, frame_number_ = 0;
   Frame last_frame_;
   bool repeat_frames_ = false;
   Fault fault_ = Fault::none;
+  Fault coming_fault_ = Fault::none;
+  double coming_fault_time_ = std::numeric_limits<double>::infinity();
   Outputs outputs_;
   std::vector<Setpoint> history_;
 };

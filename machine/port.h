@@ -22,8 +22,8 @@ enum class Status {
   queue_full,         ///< nothing of the call was queued; wait and call again
   deadline_exceeded,  ///< the port's clock passed the deadline before the call could finish
   faulted,            ///< a sticky fault stands; see AxisState::fault
-  rejected,           ///< the request itself is wrong (time not increasing, not finite, beyond the axis range)
-  no_frame,           ///< the camera delivered nothing
+  rejected,  ///< the request itself is wrong (time not increasing, not finite, beyond the axis range)
+  no_frame,  ///< the camera delivered nothing
 };
 const char* to_string(Status s);
 
@@ -33,25 +33,25 @@ const char* to_string(Fault f);
 
 /// Where the axes shall be at a time. Between setpoints the port interpolates with position and velocity.
 struct Setpoint {
-  double time = 0;          ///< [s], port clock
-  AxisArray position{};     ///< [m or rad]; hexapod: strut lengths by the controller's geometry
-  AxisArray velocity{};     ///< [m/s or rad/s]
-  double filament = 0;      ///< [m], filament fed since the start, absolute
-  int line = 0;             ///< G-code line that this serves
+  double time = 0;       ///< [s], port clock
+  AxisArray position{};  ///< [m or rad]; hexapod: strut lengths by the controller's geometry
+  AxisArray velocity{};  ///< [m/s or rad/s]
+  double filament = 0;   ///< [m], filament fed since the start, absolute
+  int line = 0;          ///< G-code line that this serves
 };
 
 struct AxisState {
-  double time = 0;           ///< [s], port clock now
-  double sampled_at = 0;     ///< [s], when position was measured; age = time - sampled_at
-  AxisArray position{};      ///< measured by the drives, SI
-  std::uint64_t accepted = 0;   ///< setpoints queued since the start
-  std::uint64_t executed = 0;   ///< setpoints whose time has passed
-  std::size_t free_slots = 0;   ///< room in the queue
+  double time = 0;             ///< [s], port clock now
+  double sampled_at = 0;       ///< [s], when position was measured; age = time - sampled_at
+  AxisArray position{};        ///< measured by the drives, SI
+  std::uint64_t accepted = 0;  ///< setpoints queued since the start
+  std::uint64_t executed = 0;  ///< setpoints whose time has passed
+  std::size_t free_slots = 0;  ///< room in the queue
   bool moving = false;
   Fault fault = Fault::none;
 };
 
-enum class UrgentCommand { hold, stop, clear_fault };
+enum class UrgentCommand { hold, resume, stop, clear_fault };
 
 struct Outputs {
   double nozzle_temperature = 0;  ///< [K]; 0 = heater off
@@ -60,9 +60,9 @@ struct Outputs {
 
 struct Frame {
   Image image;
-  double exposed_at = 0;    ///< [s], middle of the exposure, port clock
-  double received_at = 0;   ///< [s]; age = received_at - exposed_at
-  std::uint64_t number = 0; ///< counts exposures; a repeated number is a stale frame
+  double exposed_at = 0;     ///< [s], middle of the exposure, port clock
+  double received_at = 0;    ///< [s]; age = received_at - exposed_at
+  std::uint64_t number = 0;  ///< counts exposures; a repeated number is a stale frame
 };
 
 class MachinePort {
@@ -77,7 +77,8 @@ class MachinePort {
   virtual Status submit(std::span<const Setpoint> setpoints, double deadline) = 0;
   /// Lets time pass until the clock shows `time` (or a fault stops it).
   virtual Status wait_until(double time) = 0;
-  /// Bypasses the queue. hold: decelerate and keep the rest of the queue; stop: drop it; clear_fault.
+  /// Bypasses the queue. hold: decelerate and keep the rest of the queue until resume; stop: decelerate and
+  /// drop it; clear_fault.
   virtual Status urgent(UrgentCommand command) = 0;
   virtual Status set_outputs(const Outputs& outputs, double deadline) = 0;
   /// Exposes one frame of the tool's microscope and waits for it. `region` is clipped to the sensor.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "control/gap_controller.h"
-#include "machine/port.h"
 #include "core/frames.h"
+#include "machine/port.h"
 #include "renderer/scene_view.h"
 
 namespace understudy::rehearsal {
@@ -28,17 +28,25 @@ struct Finding {
   std::string message;
 };
 
-struct PrintFigures { double duration_s = 0; int moves = 0; double extruded_mm = 0, deposited_mm = 0, travel_mm = 0; };
+struct PrintFigures {
+  double duration_s = 0;
+  int moves = 0;
+  double extruded_mm = 0, deposited_mm = 0, travel_mm = 0;
+};
 struct AccuracyFigures {
   double tip_rms_um = 0, tip_p95_um = 0, tip_max_um = 0, orientation_max_mrad = 0, open_loop_tip_max_um = 0;
 };
 struct GapFigures {
   double commanded_mm = 0;
-  std::optional<double> open_loop_start_mm;   ///< without gap control
+  std::optional<double> open_loop_start_mm;  ///< without gap control
   double start_mm = 0, path_min_mm = 0, path_mean_mm = 0, path_max_mm = 0, in_band_fraction = 0;
   int frames = 0;
 };
-struct CollisionFigures { double min_clearance_mm = 0; std::uint64_t checks = 0; int pairs = 0; };
+struct CollisionFigures {
+  double min_clearance_mm = 0;
+  std::uint64_t checks = 0;
+  int pairs = 0;
+};
 struct EngineFigures {
   std::string name, version;
   double timestep_s = 0;
@@ -54,29 +62,36 @@ struct Provenance {
 
 /// One instant of the run, truth beside command.
 struct TracePoint {
-  double time = 0;                 ///< [s]
+  double time = 0;  ///< [s]
   int line = 0;
   bool extruding = false;
-  Pose X_WT = Pose::Identity();             ///< true
-  Pose X_WT_programmed = Pose::Identity();  ///< what the program asks for, without the gap controller's offset
-  double tip_error = 0;            ///< [m], true against programmed
-  double orientation_error = 0;    ///< [rad]
-  double gap = 0;                  ///< [m], true, along the tool axis; infinity: nothing below
-  double path = 0;                 ///< [m] of tip path since extrusion began; 0 before
-  machine::AxisArray axes{};       ///< SI, measured
+  Pose X_WT = Pose::Identity();  ///< true
+  Pose X_WT_programmed =
+      Pose::Identity();          ///< what the program asks for, without the gap controller's offset
+  double tip_error = 0;          ///< [m], true against programmed
+  double orientation_error = 0;  ///< [rad]
+  double gap = 0;                ///< [m], true, along the tool axis; infinity: nothing below
+  double path = 0;               ///< [m] of tip path since extrusion began; 0 before
+  machine::AxisArray axes{};     ///< SI, measured
 };
 
 /// A laser frame kept for the report: the controller's look and the truth beside it.
 struct FrameRecord {
   control::GapLook look;
-  double true_gap = 0;             ///< [m]
+  double true_gap = 0;  ///< [m]
   std::optional<Vec2> true_dot_px;
+};
+
+/// A column of TracePoint::axes as files and charts show it.
+struct AxisColumn {
+  std::string name;                ///< "l1_mm", "j1_deg": the suffix is the unit of files
+  std::optional<double> min, max;  ///< SI; the axis' limits
 };
 
 struct Record {
   bool go = false;
-  std::vector<Finding> findings;           ///< errors first, then by line
-  std::string title;                       ///< "curved-line.gcode on hexapod"
+  std::vector<Finding> findings;  ///< errors first, then by line
+  std::string title;              ///< "curved-line.gcode on hexapod"
   std::string program_name, machine_name, fixture_name, gap_control;
 
   std::optional<PrintFigures> print;
@@ -86,11 +101,12 @@ struct Record {
   std::optional<EngineFigures> engine;
   Provenance provenance;
 
+  std::vector<AxisColumn> axes;  ///< the first entries of TracePoint::axes, in order
   double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
   std::vector<TracePoint> trace;
-  std::vector<TracePoint> trace_without_gap_control;   ///< empty when the run itself had none
+  std::vector<TracePoint> trace_without_gap_control;  ///< empty when the run itself had none
   std::vector<FrameRecord> frames;
-  std::vector<renderer::Picture> pictures;             ///< overview, close-up
+  std::vector<renderer::Picture> pictures;  ///< overview, close-up
   std::vector<std::string> picture_captions;
 };
 

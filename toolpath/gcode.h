@@ -7,22 +7,26 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "toolpath/program.h"
 
 namespace understudy::toolpath {
 
 struct GcodeOptions {
-  Pose X_WT_home = Pose::Identity();
-  double unit_tolerance = 1e-4;   ///< a quaternion or axis farther than this from length 1 is an error
+  Pose X_WT_home = Pose::Identity();  ///< where the tool starts and where G28 takes it
+  double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
 };
 
 /// Throws InputError with file, line and column for an unknown word, a malformed or non-finite number, a
-/// quaternion or axis that is not of unit length, a G1 before any feed, a file without any move.
+/// quaternion or axis that is not of unit length, a G1 before any feed, a file without any move. Extrusion
+/// that does not move the tip has no path to run a feed along: its step carries `duration` = |E| / F instead.
 Program read_gcode(const std::filesystem::path& path, const GcodeOptions& options);
 Program parse_gcode(const std::string& text, const std::string& file, const GcodeOptions& options);
 
-/// Text that read_gcode turns into the same program. `header` lines become comments at the top.
+/// Text that read_gcode turns into the same program: lengths within 0.5e-6 mm, quaternion components within
+/// 0.5e-9, orientation within 2e-9 rad. `header` lines become comments at the top.
+/// Throws InputError for a step that G-code cannot say: a print or move without feed, a value not finite.
 std::string write_gcode(const Program& program, const std::vector<std::string>& header);
 
 }  // namespace understudy::toolpath

@@ -9,14 +9,14 @@
 namespace understudy::toolpath {
 
 enum class StepKind {
-  travel,        ///< G0: as fast as the machine allows, no filament
-  move,          ///< G1 without extrusion (or with retraction)
-  print,         ///< G1 that feeds filament
-  home,          ///< G28: to the machine's home pose
-  dwell,         ///< G4
-  temperature,   ///< M104/M109
-  fan,           ///< M106/M107
-  end,           ///< M30
+  travel,       ///< G0: as fast as the machine allows, no filament
+  move,         ///< G1 without extrusion (or with retraction)
+  print,        ///< G1 that feeds filament
+  home,         ///< G28: to the machine's home pose
+  dwell,        ///< G4
+  temperature,  ///< M104/M109
+  fan,          ///< M106/M107
+  end,          ///< M30
 };
 
 struct Step {
@@ -32,8 +32,8 @@ struct Step {
 };
 
 struct Program {
-  std::string file;       ///< as the user named it
-  std::string sha256;     ///< of its bytes
+  std::string file;    ///< as the user named it
+  std::string sha256;  ///< of its bytes
   std::vector<Step> steps;
 };
 

@@ -1,6 +1,7 @@
 // Prints a curve on any surface with the tool along the local normal (Song 2015, 3.2 and 6.2).
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "geometry/mesh.h"
@@ -9,30 +10,54 @@
 namespace understudy::toolpath {
 
 struct SurfacePlan {
-  double gap = 0;               ///< [m], tip above the surface along the normal
-  double standoff = 0;          ///< [m], S' out along the normal from S
-  double clearance = 0;         ///< [m], where travel ends before S' and after E, along the normal
-  double step = 0;              ///< [m], largest distance of points along the curve
-  double chord_tolerance = 0;   ///< [m], largest deviation of the chords from the surface
-  double feed = 0;              ///< [m/s]
-  double approach_feed = 0;     ///< [m/s], from S' to S
-  double bead_width = 0;        ///< [m]
-  double bead_height = 0;       ///< [m]
-  double filament_diameter = 0; ///< [m]
-  double temperature = 0;       ///< [K]
-  double fan = 0;               ///< 0..1
-  double tilt_max = 0;          ///< [rad], largest tilt from vertical that the machine allows
+  double gap = 0;                ///< [m], tip above the surface along the normal
+  double standoff = 0;           ///< [m], S' out along the normal from S
+  double clearance = 0;          ///< [m], where travel ends before S' and after E, along the normal
+  double step = 0;               ///< [m], largest distance of points along the curve
+  double chord_tolerance = 0;    ///< [m], largest deviation of the chords from the surface
+  double feed = 0;               ///< [m/s]
+  double approach_feed = 0;      ///< [m/s], from S' to S
+  double bead_width = 0;         ///< [m]
+  double bead_height = 0;        ///< [m]
+  double filament_diameter = 0;  ///< [m]
+  double temperature = 0;        ///< [K]
+  double fan = 0;                ///< 0..1
+  double tilt_max = 0;           ///< [rad], largest tilt from vertical that the machine allows
 };
 
-/// `curve` is a polyline near the surface; each point is projected to the nearest surface point, refined by
-/// step and chord, and given the shortest-arc orientation that puts the tool on the surface's normal.
-/// Order of steps: temperature, fan, travel above, S' (travel), S (move: the approach), print moves, retreat.
-/// Throws InputError when the curve leaves the mesh by more than 5 mm, doubles back over a sharp edge
-/// (normals of neighbours more than 20 degrees apart), or tilts the tool beyond tilt_max.
+/// Cross-section of a flattened strand, a rectangle with rounded ends: (width - height) height + pi height^2
+/// / 4 [m^2]. Needs width >= height.
+double bead_area(double width, double height);
+
+/// `curve` is a polyline near the surface. Its smooth stretches are divided into equal steps, each point is
+/// projected to the nearest surface point, steps are halved where the chord leaves the surface or the normal
+/// swings more than 5 degrees, and each point gets the shortest-arc orientation that puts the tool on the
+/// surface's normal. The tip runs `gap` above the surface along the normal. Filament per step is the bead's
+/// area times its length (taken half a bead height above the surface) over the filament's area. Order of
+/// steps: temperature and wait, fan, travel above, S' (travel), S (move: the approach), print moves, retreat
+/// (travel, straight along the tool axis). Throws InputError when a value of the plan is out of range, the
+/// curve has no length, leaves the mesh by more than 5 mm, crosses a sharp edge (normals of neighbours more
+/// than 20 degrees apart however close they are), or tilts the tool beyond tilt_max.
 Program plan_surface(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, const SurfacePlan& plan);
 
 /// The intersection of the mesh with a plane through `point` with unit `normal`: the longest connected
-/// polyline on the side that faces `up` (unit).
-std::vector<Vec3> section_curve(const geometry::Mesh& mesh, const Vec3& point, const Vec3& normal, const Vec3& up);
+/// polyline on the side that faces `up` (unit). It runs with its inside (the material) on the left, seen from
+/// the tip of `normal`. Throws InputError when the plane misses the mesh or nothing faces `up`.
+std::vector<Vec3> section_curve(const geometry::Mesh& mesh, const Vec3& point, const Vec3& normal,
+                                const Vec3& up);
+
+/// Tilt of a surface normal [rad]: the angle about `swing_axis` (unit, level) from vertical to the normal.
+/// Positive about y leans to +x.
+double tilt_about(const Vec3& surface_normal, const Vec3& swing_axis);
+
+/// The longest part of the curve over which the mesh's normal tilts from tilt_min to tilt_max [rad]. Starts
+/// at tilt_min if it reaches it, with ends on the limits to 1e-9 rad where the normal passes them smoothly.
+/// Throws InputError when tilt_min is not below tilt_max or no part of the curve lies between them.
+std::vector<Vec3> clip_by_tilt(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, double tilt_min,
+                               double tilt_max, const Vec3& swing_axis);
+
+/// A polyline from a CSV file with the header x_mm,y_mm,z_mm. Throws InputError with file, line and column
+/// for another header, a row without three finite numbers, or fewer than two points.
+std::vector<Vec3> read_curve_csv(const std::filesystem::path& path);
 
 }  // namespace understudy::toolpath

@@ -18,18 +18,18 @@ std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& m
                                             const kinematics::HexapodGeometry& geometry, const Pose& X_WT);
 
 struct Contact {
-  std::string body;        ///< "nozzle", "heater block", "strut 3"
-  std::string obstacle;    ///< "part", "table", "strut 4"
-  double clearance = 0;    ///< [m]; negative: depth
-  Vec3 place_W{0, 0, 0};   ///< nearest point on the obstacle
-  double time = 0;         ///< [s]
+  std::string body;       ///< "nozzle", "heater block", "strut 3"
+  std::string obstacle;   ///< "part", "table", "strut 4"
+  double clearance = 0;   ///< [m]; negative: depth
+  Vec3 place_W{0, 0, 0};  ///< nearest point on the obstacle
+  double time = 0;        ///< [s]
   int line = 0;
 };
 
 struct CollisionOptions {
-  double margin = 0.02e-3;        ///< [m]: motion between two checks may use up the clearance but for this
-  double near = 0.5e-3;           ///< [m]: below, a body other than the nozzle is a near collision
-  double nozzle_contact = 0;      ///< [m]: the nozzle touches when its clearance is at or below this
+  double margin = 0.02e-3;    ///< [m]: motion between two checks may use up the clearance but for this
+  double near = 0.5e-3;       ///< [m]: below, a body other than the nozzle is a near collision
+  double nozzle_contact = 0;  ///< [m]: the nozzle touches when its clearance is at or below this
 };
 
 /// Watches every snapshot. Between snapshots the motion is bounded by the swept distance of each body, and

@@ -7,23 +7,24 @@
 
 #include "kinematics/mechanism.h"
 #include "machine/description.h"
+#include "machine/port.h"
 #include "sim/as_built/as_built.h"
 
 namespace understudy::sim {
 
 /// What a drive is asked for during one step, at the step's beginning: motor side, as-built zero.
 struct DriveCommand {
-  machine::AxisArray position{};   ///< [m or rad]; hexapod: drive displacement
-  machine::AxisArray velocity{};   ///< [m/s or rad/s], feed-forward
+  machine::AxisArray position{};  ///< [m or rad]; hexapod: drive displacement
+  machine::AxisArray velocity{};  ///< [m/s or rad/s], feed-forward
 };
 
 class Plant {
  public:
   virtual ~Plant() = default;
 
-  virtual std::string engine() const = 0;    ///< "mujoco 2.2.2"
-  virtual double timestep() const = 0;       ///< [s]
-  virtual double time() const = 0;           ///< [s]
+  virtual std::string engine() const = 0;  ///< "mujoco 2.2.2"
+  virtual double timestep() const = 0;     ///< [s]
+  virtual double time() const = 0;         ///< [s]
 
   /// Assembles the machine at rest for these displacements and lets it settle under gravity; time is 0.
   /// Throws MachineError when the loops cannot be closed.
@@ -31,16 +32,24 @@ class Plant {
   /// One timestep. Throws MachineError when the integration diverges: a result is never made up.
   virtual void step(const DriveCommand& command) = 0;
 
-  virtual Pose tool_pose() const = 0;                        ///< X_WT, true
-  virtual machine::AxisArray displacement() const = 0;       ///< motor side, as encoders would see it
-  /// [m], largest distance between the two ends of a closed joint, play not counted.
+  virtual Pose tool_pose() const = 0;                   ///< X_WT, true
+  virtual machine::AxisArray displacement() const = 0;  ///< motor side, as encoders would see it
+  /// [N] or [N m], what each drive carried during the last step; hexapod: along the screw, positive where
+  /// the strut pushes the platform, negative where it pulls.
+  virtual machine::AxisArray drive_force() const = 0;
+  /// [m], largest distance between the two ends of a closed joint, play not counted, at the beginning of the
+  /// last step.
   virtual double closure_error() const = 0;
 };
 
 struct MujocoOptions {
-  double timestep = 0.5e-3;    ///< [s]
+  double timestep = 0.5e-3;  ///< [s]
   bool gravity = true;
-  bool play = true;
+  bool play = true;  ///< false: the clearances are left out
+  /// Ball clearance in all three directions instead of along the strut only. A strut swings freely about its
+  /// universal joint, so the two directions across it do not move the tool; they cost twelve joints.
+  bool play_across_struts = false;
+  double platform_drag = 0;  ///< [N s/m] and [N m s/rad], of cables and filament on the platform
 };
 std::unique_ptr<Plant> make_mujoco_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const MujocoOptions& options = {});

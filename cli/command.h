@@ -1,0 +1,27 @@
+// The sub-commands of `understudy`: each registers itself and sets the action to run and its exit status.
+#pragma once
+
+#include <functional>
+
+#include <CLI/App.hpp>
+
+namespace understudy::cli {
+
+/// Exit status of every command (the contract).
+enum Exit : int { kGood = 0, kNo = 1, kBadInput = 2, kFailed = 3 };
+
+using Action = std::function<int()>;
+
+void add_rehearse(CLI::App& app, Action& action);
+void add_scenario(CLI::App& app, Action& action);
+void add_sweep(CLI::App& app, Action& action);
+void add_plan(CLI::App& app, Action& action);
+void add_kinematics(CLI::App& app, Action& action);  ///< axes, poses
+void add_export(CLI::App& app, Action& action);
+void add_inspection(CLI::App& app, Action& action);  ///< machines, doctor
+
+/// Words of the command line, quoted where a shell needs it: how a user repeats this run.
+void remember_command_line(int argc, char** argv);
+const std::string& command_line();
+
+}  // namespace understudy::cli

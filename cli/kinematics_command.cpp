@@ -1,0 +1,119 @@
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "core/error.h"
+#include "core/number_table.h"
+#include "core/units.h"
+#include "machine/description.h"
+
+namespace understudy::cli {
+namespace {
+
+using kinematics::Mechanism;
+
+const std::vector<std::string> kPoseHeader{"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"};
+constexpr double kUnitTolerance = 1e-4;  // as in G-code
+
+std::vector<std::string> axis_header(const Mechanism& mechanism) {
+  std::vector<std::string> header;
+  for (int i = 0; i < mechanism.axis_count(); ++i)
+    header.push_back(mechanism.axis_name(i) + (mechanism.axis_is_angle(i) ? "_deg" : "_mm"));
+  return header;
+}
+
+double file_unit(const Mechanism& mechanism, int axis) {
+  return mechanism.axis_is_angle(axis) ? kDegree : kMillimetre;
+}
+
+/// A pose of a row, in W; the quaternion must be of unit length.
+Pose pose_of(const NumberRow& row) {
+  const auto& v = row.values;
+  const Quat q(v[3], v[4], v[5], v[6]);
+  if (std::abs(q.norm() - 1) > kUnitTolerance)
+    throw InputError(
+        {"standard input", row.line, 4},
+        fmt::format("the quaternion's length is {:.6f}, not 1 within {:g}", q.norm(), kUnitTolerance));
+  return make_pose(q, from_mm(1) * Vec3(v[0], v[1], v[2]));
+}
+
+/// "ok", or why there is no usable answer: the first limit that the pose breaks.
+std::string status_of(const Mechanism& mechanism, const Pose& X_BT) {
+  std::vector<kinematics::LimitViolation> violations;
+  mechanism.check(X_BT, violations);
+  return violations.empty() ? "ok" : to_string(violations.front());
+}
+
+int print_axes(const std::string& name) {
+  const auto machine = machine::load_machine(name);
+  const auto mechanism = machine.make_mechanism();
+  const auto rows = read_number_table(std::cin, "standard input", kPoseHeader);
+  const auto n = static_cast<std::size_t>(mechanism->axis_count());
+  std::string out = fmt::format("{},status\n", fmt::join(axis_header(*mechanism), ","));
+  for (const auto& row : rows) {
+    const Pose X_BT = machine.X_WB.inverse() * pose_of(row);
+    std::array<double, kinematics::kMaxAxes> axes{};
+    const auto solved = mechanism->inverse(X_BT, {}, std::span(axes).first(n));
+    std::string status = solved == kinematics::Solve::ok ? status_of(*mechanism, X_BT) : to_string(solved);
+    for (std::size_t i = 0; i < n; ++i)
+      out += solved == kinematics::Solve::ok && status == "ok"
+                 ? fmt::format("{:.6f},", axes[i] / file_unit(*mechanism, static_cast<int>(i)))
+                 : "nan,";
+    out += status + "\n";
+  }
+  fmt::print("{}", out);
+  return kGood;
+}
+
+int print_poses(const std::string& name) {
+  const auto machine = machine::load_machine(name);
+  const auto mechanism = machine.make_mechanism();
+  const auto rows = read_number_table(std::cin, "standard input", axis_header(*mechanism));
+  std::string out = fmt::format("{},status\n", fmt::join(kPoseHeader, ","));
+  for (const auto& row : rows) {
+    std::array<double, kinematics::kMaxAxes> axes{};
+    for (std::size_t i = 0; i < row.values.size(); ++i)
+      axes[i] = row.values[i] * file_unit(*mechanism, static_cast<int>(i));
+    Pose X_BT;
+    const auto solved = mechanism->forward(std::span(axes).first(row.values.size()), mechanism->home(), X_BT);
+    if (solved != kinematics::Solve::ok) {
+      out += fmt::format("nan,nan,nan,nan,nan,nan,nan,{}\n", to_string(solved));
+      continue;
+    }
+    const std::string status = status_of(*mechanism, X_BT);
+    if (status != "ok") {
+      out += fmt::format("nan,nan,nan,nan,nan,nan,nan,{}\n", status);
+      continue;
+    }
+    const Pose X_WT = machine.X_WB * X_BT;
+    Quat q(X_WT.linear());
+    if (q.w() < 0) q.coeffs() *= -1;
+    const Vec3 p = X_WT.translation() * 1e3;
+    out += fmt::format("{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},ok\n", p.x(), p.y(), p.z(), q.w(),
+                       q.x(), q.y(), q.z());
+  }
+  fmt::print("{}", out);
+  return kGood;
+}
+
+}  // namespace
+
+void add_kinematics(CLI::App& app, Action& action) {
+  auto machine = std::make_shared<std::string>("hexapod");
+  auto* axes =
+      app.add_subcommand("axes", "Inverse kinematics: poses.csv on standard input, axes on standard output");
+  axes->add_option("--machine", *machine, "name under models/ or a machine.yaml")->capture_default_str();
+  axes->footer(
+      "Header: x_mm,y_mm,z_mm,qw,qx,qy,qz, the nozzle tip in the frame of programs. A row without solution "
+      "prints nan and the reason.");
+  axes->callback([=, &action] { action = [=] { return print_axes(*machine); }; });
+  auto* poses =
+      app.add_subcommand("poses", "Forward kinematics: axes.csv on standard input, poses on standard output");
+  poses->add_option("--machine", *machine, "name under models/ or a machine.yaml")->capture_default_str();
+  poses->footer("Header of the hexapod: l1_mm,l2_mm,l3_mm,l4_mm,l5_mm,l6_mm, strut lengths.");
+  poses->callback([=, &action] { action = [=] { return print_poses(*machine); }; });
+}
+
+}  // namespace understudy::cli

@@ -1,0 +1,64 @@
+// understudy: the command, and the one place where every error becomes a line and an exit status.
+#include <cstdio>
+#include <exception>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include "cli/command.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "rehearsal/version.h"
+
+namespace {
+
+using namespace understudy;
+
+int fail(int status, const std::string& message) {
+  fmt::print(stderr, "understudy: {}\n", message);
+  return status;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Rehearses prints of machines that print in many directions, and says go or no-go.",
+               "understudy");
+  app.set_version_flag("--version", std::string("understudy ") + rehearsal::kVersion);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed.\n"
+      "Start with: understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out");
+  cli::Action action;
+  cli::add_rehearse(app, action);
+  cli::add_scenario(app, action);
+  cli::add_sweep(app, action);
+  cli::add_plan(app, action);
+  cli::add_kinematics(app, action);
+  cli::add_export(app, action);
+  cli::add_inspection(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    return fail(cli::kBadInput, std::string(e.what()) + " (see understudy --help)");
+  }
+  return action ? action() : cli::kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);  // the same bytes whatever the number of cores
+  watch_for_interrupt();
+  cli::remember_command_line(argc, argv);
+  try {
+    return run(argc, argv);
+  } catch (const InputError& e) {
+    return fail(cli::kBadInput, e.what());
+  } catch (const Interrupted&) {
+    return fail(cli::kFailed, "interrupted: nothing was written");
+  } catch (const std::exception& e) {
+    return fail(cli::kFailed, e.what());
+  }
+}

@@ -1,0 +1,99 @@
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/output_file.h"
+#include "rehearsal/run_scenario.h"
+
+namespace understudy::cli {
+namespace {
+namespace fs = std::filesystem;
+
+struct ScenarioRequest {
+  std::vector<std::string> paths;
+  std::string junit, folder;
+  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+};
+
+/// The folder of shipped scenarios, when none is named: here, or beside the models.
+std::vector<fs::path> scenario_files(const std::vector<std::string>& named) {
+  std::vector<fs::path> paths(named.begin(), named.end());
+  if (paths.empty())
+    paths.push_back(fs::is_directory("scenarios") ? fs::path("scenarios")
+                                                  : machine::models_folder().parent_path() / "scenarios");
+  return rehearsal::find_scenarios(paths);
+}
+
+void print_result(const rehearsal::ScenarioResult& result) {
+  fmt::print("{} {}\n", result.passed() ? "pass" : "FAIL", result.name);
+  if (!result.error.empty()) fmt::print("     error: {}\n", result.error);
+  for (const auto& check : result.checks)
+    fmt::print("     {} {}\n", check.ok ? "ok  " : "FAIL", check.ok ? check.name : check.message);
+}
+
+int run(const ScenarioRequest& request) {
+  if (request.threads < 1 || request.threads > 1024)
+    throw InputError(fmt::format("-j {} is outside 1..1024", request.threads));
+  std::vector<rehearsal::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
+  for (const auto& file : scenario_files(request.paths)) scenarios.push_back(rehearsal::load_scenario(file));
+  std::vector<rehearsal::ScenarioResult> results;
+  int failed = 0;
+  for (const auto& scenario : scenarios) {
+    const auto begin = std::chrono::steady_clock::now();
+    rehearsal::ScenarioResult result;
+    {
+      ProgressLine line;
+      const fs::path out =
+          request.folder.empty() ? fs::path() : fs::path(request.folder) / scenario.file.stem();
+      result = rehearsal::run_scenario(
+          scenario, request.threads, out,
+          [&](double share, const std::string& what) { line.show(share, scenario.name + ": " + what); });
+    }
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    print_result(result);
+    failed += !result.passed();
+    results.push_back(std::move(result));
+  }
+  if (!request.junit.empty()) write_file(request.junit, rehearsal::junit_xml(results));
+  fmt::print("{} passed, {} failed\n", results.size() - static_cast<std::size_t>(failed), failed);
+  return failed == 0 ? kGood : kNo;
+}
+
+int list(const ScenarioRequest& request) {
+  for (const auto& file : scenario_files(request.paths)) {
+    const auto scenario = rehearsal::load_scenario(file);
+    fmt::print("{:<32} {} [{}, {} expectations]\n", file.string(), scenario.name, scenario.machine,
+               scenario.expect.size() + (scenario.machines ? scenario.machines->expect.size() : 0));
+  }
+  return kGood;
+}
+
+}  // namespace
+
+void add_scenario(CLI::App& app, Action& action) {
+  auto request = std::make_shared<ScenarioRequest>();
+  auto* command = app.add_subcommand("scenario", "Rehearsals with what is expected of them, for CI");
+  command->require_subcommand(1);
+  auto* run_command = command->add_subcommand(
+      "run", "Run scenarios: status 0 when every expectation holds, 1 when one does not");
+  run_command->add_option("paths", request->paths, "scenario files or folders (default: scenarios/)");
+  run_command
+      ->add_option("-j,--jobs", request->threads,
+                   "threads for series of machines; results do not depend on it")
+      ->capture_default_str();
+  run_command->add_option("--junit", request->junit, "also write JUnit XML to this file");
+  run_command->add_option("--out", request->folder, "also write each rehearsal's report below this folder");
+  run_command->callback([=, &action] { action = [=] { return run(*request); }; });
+  auto* list_command = command->add_subcommand("list", "List scenarios");
+  list_command->add_option("paths", request->paths, "scenario files or folders (default: scenarios/)");
+  list_command->callback([=, &action] { action = [=] { return list(*request); }; });
+}
+
+}  // namespace understudy::cli

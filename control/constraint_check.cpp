@@ -1,0 +1,202 @@
+#include "control/constraint_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "control/path_segment.h"
+
+namespace understudy::control {
+
+using kinematics::LimitKind;
+using kinematics::LimitViolation;
+using kinematics::Solve;
+using toolpath::Step;
+using toolpath::StepKind;
+
+namespace {
+
+constexpr double kFeedLeft =
+    0.5;  // of the programmed feed; with less, the print is not the one that was asked for
+
+// Where on the path something was found: orders findings and finds their planned time.
+struct Location {
+  std::size_t step = 0;
+  double fraction = 0;
+  bool operator<=(const Location& o) const {
+    return std::tie(step, fraction) <= std::tie(o.step, o.fraction);
+  }
+};
+
+struct Found {
+  ConstraintFinding finding;
+  Location at;
+};
+
+double excess(const LimitViolation& v) { return std::abs(v.value - v.limit); }
+
+class Checker {
+ public:
+  Checker(const toolpath::Program& program, const machine::MachineDescription& machine, double step)
+      : program_(program),
+        step_(step),
+        mechanism_(machine.make_mechanism()),
+        X_BW_(machine.X_WB.inverse()),
+        limits_(motion_limits(machine)),
+        path_(*mechanism_, machine.X_WB),
+        planner_(*mechanism_, machine.X_WB, limits_, machine.X_WB * machine.X_BT_home, 0,
+                 PoseCheck::solvable),
+        X_WT_(machine.X_WB * machine.X_BT_home) {
+    report_.axis_min.fill(std::numeric_limits<double>::infinity());
+    report_.axis_max.fill(-std::numeric_limits<double>::infinity());
+  }
+
+  ConstraintReport run() {
+    note_pose(X_WT_, 0, {});
+    for (const Step& step : program_.steps) {
+      if (step.kind == StepKind::end) break;
+      walk(step);
+      plan(step);
+      ++pushed_;
+    }
+    planner_.finish();
+    drain();
+    return finish();
+  }
+
+ private:
+  // Every pose of the step, against every limit of a pose; the speed that its feed asks of the axes.
+  void walk(const Step& step) {
+    if (!toolpath::moves(step)) return;
+    const PathSegment segment = make_segment(step, X_WT_, limits_);
+    if (!segment.moves()) return;
+    const int parts = parts_of(segment, step_, kCheckTurn);
+    for (int k = 1; k <= parts; ++k) {
+      const double fraction = static_cast<double>(k) / parts;
+      const Pose X_WT = segment.pose_at(fraction * segment.length);
+      const Location at{pushed_, fraction};
+      if (note_pose(X_WT, step.line, at) && (step.kind == StepKind::move || step.kind == StepKind::print))
+        note_speed(segment, X_WT, at);
+    }
+    X_WT_ = segment.X_WT_end;
+  }
+
+  bool note_pose(const Pose& X_WT, int line, const Location& at) {
+    const Pose X_BT = X_BW_ * X_WT;
+    violations_.clear();
+    mechanism_->check(X_BT, violations_);
+    for (const LimitViolation& violation : violations_) note({violation, line, 0, 0}, at);
+    const Solve status = mechanism_->inverse(X_BT, axes_, axes_);
+    if (status != Solve::ok) {
+      if (violations_.empty()) note({{LimitKind::unreachable, "tool pose", 0, 0, ""}, line, 0, 0}, at);
+      plannable_ = false;
+      return false;
+    }
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      report_.axis_min[i] = std::min(report_.axis_min[i], axes_[i]);
+      report_.axis_max[i] = std::max(report_.axis_max[i], axes_[i]);
+    }
+    report_.condition_worst = std::max(report_.condition_worst, mechanism_->condition_number(X_BT, axes_));
+    return true;
+  }
+
+  void note_speed(const PathSegment& segment, const Pose& X_WT, const Location& at) {
+    ChannelArray slope{};
+    if (path_.evaluate(segment, X_WT, axes_, slope) != Solve::ok) return;
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      const double needed = std::abs(slope[i]) * segment.speed, limit = limits_.axis_velocity[i];
+      if (limit >= kFeedLeft * needed) continue;
+      const int axis = static_cast<int>(i);
+      const bool angle = mechanism_->axis_is_angle(axis);
+      note({{LimitKind::axis_velocity, "axis " + mechanism_->axis_name(axis), needed, limit,
+             angle ? "rad/s" : "m/s"},
+            segment.line,
+            0,
+            limit / needed},
+           at);
+    }
+  }
+
+  // The worst of a line, kind and part stays.
+  void note(ConstraintFinding finding, const Location& at) {
+    const auto key = std::make_tuple(finding.line, finding.violation.kind, finding.violation.part);
+    const auto [it, fresh] = index_.try_emplace(key, found_.size());
+    if (fresh) found_.push_back({finding, at});
+    Found& known = found_[it->second];
+    if (!fresh && excess(finding.violation) <= excess(known.finding.violation)) return;
+    known = {std::move(finding), at};
+    untimed_.insert(it->second);
+  }
+
+  void plan(const Step& step) {
+    if (!plannable_) return;
+    planner_.push(step);
+    // The machine waits here until the outputs are set.
+    if (step.kind == StepKind::temperature || step.kind == StepKind::fan) planner_.finish();
+    drain();
+  }
+
+  void drain() {
+    PlannedPoint point;
+    while (planner_.next(point)) {
+      const double dt = limits_.cycle_time;
+      for (std::size_t i = 0; i < axis_count(); ++i) {
+        const double velocity = point.setpoint.velocity[i];
+        report_.velocity_max[i] = std::max(report_.velocity_max[i], std::abs(velocity));
+        report_.acceleration_max[i] =
+            std::max(report_.acceleration_max[i], std::abs(velocity - velocity_[i]) / dt);
+        velocity_[i] = velocity;
+      }
+      passed({point.step, point.fraction}, point.setpoint.time);
+    }
+  }
+
+  void passed(const Location& here, double time) {
+    report_.duration = time;
+    std::erase_if(untimed_, [&](std::size_t k) {
+      if (found_[k].at <= here) found_[k].finding.time = time;
+      return found_[k].at <= here;
+    });
+  }
+
+  ConstraintReport finish() {
+    for (const std::size_t k : untimed_) found_[k].finding.time = report_.duration;
+    for (Found& found : found_) report_.findings.push_back(std::move(found.finding));
+    std::stable_sort(report_.findings.begin(), report_.findings.end(),
+                     [](const auto& a, const auto& b) { return a.line < b.line; });
+    for (std::size_t i = axis_count(); i < report_.axis_min.size(); ++i)
+      report_.axis_min[i] = report_.axis_max[i] = 0;
+    return std::move(report_);
+  }
+
+  std::size_t axis_count() const { return static_cast<std::size_t>(mechanism_->axis_count()); }
+
+  const toolpath::Program& program_;
+  double step_;
+  std::unique_ptr<kinematics::Mechanism> mechanism_;
+  Pose X_BW_;
+  MotionLimits limits_;
+  PathKinematics path_;
+  MotionPlanner planner_;
+  Pose X_WT_;
+  bool plannable_ = true;
+  std::size_t pushed_ = 0;
+  machine::AxisArray axes_{}, velocity_{};
+  std::vector<LimitViolation> violations_;
+  std::vector<Found> found_;
+  std::set<std::size_t> untimed_;  // of found_, not passed by the plan yet
+  std::map<std::tuple<int, LimitKind, std::string>, std::size_t> index_;
+  ConstraintReport report_;
+};
+
+}  // namespace
+
+ConstraintReport check_constraints(const toolpath::Program& program,
+                                   const machine::MachineDescription& machine, double step) {
+  return Checker(program, machine, step).run();
+}
+
+}  // namespace understudy::control

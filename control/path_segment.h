@@ -1,0 +1,74 @@
+// One programmed step as a curve in a path parameter s: the tip on a straight line, the orientation on the
+// shortest arc, and what the axes do along it.
+#pragma once
+
+#include <cstdint>
+
+#include "control/motion_planner.h"
+
+namespace understudy::control {
+
+/// Axes first, then the tip's own speed: what has an acceleration limit.
+constexpr int kChannelsMax = machine::kMaxAxes + 1;
+using ChannelArray = std::array<double, kChannelsMax>;
+
+/// [m/rad] of path for a turn: s counts tip travel, or turn times this where that is more.
+constexpr double kTurnRadius = 5e-3;
+
+/// A step that is shorter than this does not move: rounding of poses leaves so much.
+constexpr double kShortestPath = 1e-9;  // [m]
+
+struct PathSegment {
+  Pose X_WT_begin = Pose::Identity();
+  Pose X_WT_end = Pose::Identity();
+  Vec3 travel{0, 0, 0};     ///< [m], p_end - p_begin in W
+  Vec3 turn_axis{0, 0, 1};  ///< unit, in T at the beginning
+  double turn = 0;          ///< [rad]
+  double length = 0;        ///< [m] of s
+  double speed = 0;         ///< [m/s] of s, programmed
+  double rest = 0;          ///< [s], for a segment of no length: a dwell, or filament fed at rest
+  double filament_begin = 0, filament_end = 0;  ///< [m], absolute
+  int line = 0;
+  std::size_t step = 0;
+  ChannelArray slope_begin{}, slope_end{};  ///< d(axis)/ds, d(tip)/ds at both ends
+  double entry_speed = 0;                   ///< [m/s] of s, at most, where it begins
+  bool stop_before = false;                 ///< it begins at rest
+
+  bool moves() const { return length > 0; }
+  Pose pose_at(double s) const;
+  Twist twist_W() const;  ///< per unit of s: (tip, angular), constant along the segment
+  double filament_at(double fraction) const;
+};
+
+/// Throws InputError naming the line: a pose that is not finite or not rigid, no feed, a negative duration.
+PathSegment make_segment(const toolpath::Step& step, const Pose& X_WT_begin, const MotionLimits& limits);
+
+/// The mechanism along a segment.
+class PathKinematics {
+ public:
+  PathKinematics(const kinematics::Mechanism& mechanism, const Pose& X_WB);
+
+  int axis_count() const { return axis_count_; }
+  int channels() const { return axis_count_ + 1; }
+
+  kinematics::Solve axes(const Pose& X_WT, machine::AxisArray& position) const;
+  /// Positions at s (`position` holds a near one on entry: the branch) and d/ds of every channel.
+  kinematics::Solve evaluate(const PathSegment& segment, const Pose& X_WT, machine::AxisArray& position,
+                             ChannelArray& slope) const;
+  /// InputError naming line, part, value and limit for the first pose that is out, the end first. The poses
+  /// are at most kCheckTravel and kCheckTurn apart.
+  void require_reachable(const PathSegment& segment, PoseCheck check, machine::AxisArray near) const;
+
+ private:
+  const kinematics::Mechanism& mechanism_;
+  Pose X_BW_;
+  int axis_count_;
+};
+
+constexpr double kCheckTravel = 0.5e-3;  // [m]; a strut's length between bends by 0.2 um at the most
+constexpr double kCheckTurn = 0.0175;    // [rad], 1 degree
+
+/// Number of equal parts, each at most `travel` of path and `turn` [rad].
+int parts_of(const PathSegment& segment, double travel, double turn);
+
+}  // namespace understudy::control

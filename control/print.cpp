@@ -1,0 +1,181 @@
+#include "control/print.h"
+
+#include <fmt/format.h>
+
+#include "control/approach.h"
+#include "control/feeder.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+
+namespace understudy::control {
+
+using machine::Status;
+using toolpath::Step;
+using toolpath::StepKind;
+
+namespace {
+
+constexpr double kOutputPatience = 5.0;    // [s]
+constexpr double kSurfaceRadius = 2.5e-3;  // [m], around S: the dot of every gap on the way lies inside
+
+/// Straight moves along the tool axis for the gap controller, at the approach's own feed.
+class ApproachMotion : public GapMotion {
+ public:
+  ApproachMotion(Feeder& feeder, const Step& approach) : feeder_(feeder), approach_(approach) {}
+
+  Status move_to(const Pose& X_WT) override {
+    Step step = approach_;
+    step.X_WT = X_WT;
+    step.duration = 0;
+    step.filament = 0;
+    if (const Status s = feeder_.push(step); s != Status::ok) return s;
+    return feeder_.come_to_rest();
+  }
+  machine::MachinePort& port() override { return feeder_.port(); }
+
+ private:
+  Feeder& feeder_;
+  const Step& approach_;
+};
+
+class PrintLoop {
+ public:
+  PrintLoop(const toolpath::Program& program, const machine::MachineDescription& machine,
+            machine::MachinePort& port, const PrintOptions& options, PrintObserver* observer)
+      : program_(program),
+        machine_(machine),
+        port_(port),
+        options_(options),
+        observer_(observer),
+        feeder_(machine, port, machine.X_WB * machine.X_BT_home) {}
+
+  PrintResult run() {
+    try {
+      for (std::size_t i = 0; i < program_.steps.size(); ++i) {
+        stop_if_interrupted();
+        if (program_.steps[i].kind == StepKind::end) break;
+        if (!perform(i)) return finish(false);
+        if (observer_) observer_->progress(i + 1, program_.steps.size(), port_.now());
+      }
+      if (const Status s = feeder_.come_to_rest(); s != Status::ok) return finish(fail(s, last_line_));
+    } catch (const Interrupted&) {
+      port_.urgent(machine::UrgentCommand::stop);
+      throw;
+    } catch (const InputError& error) {
+      // The offset can carry a pose over a limit that the program itself keeps.
+      result_.status = Status::rejected;
+      result_.stop_line = last_line_;
+      result_.stop_reason = error.what();
+      return finish(false);
+    }
+    return finish(true);
+  }
+
+ private:
+  /// False: the print ends here and result_ says why.
+  bool perform(std::size_t index) {
+    const Step& step = program_.steps[index];
+    last_line_ = step.line;
+    switch (step.kind) {
+      case StepKind::temperature:
+        outputs_.nozzle_temperature = step.temperature;
+        return apply_outputs(step.line);
+      case StepKind::fan:
+        outputs_.fan = step.fan;
+        return apply_outputs(step.line);
+      case StepKind::end:
+        return true;
+      case StepKind::move:
+        if (options_.gap_control == GapControl::start && is_approach(program_, index))
+          return approach(step, index);
+        [[fallthrough]];
+      default:
+        return move(step);
+    }
+  }
+
+  bool move(const Step& step) {
+    Step shifted = step;
+    shifted.X_WT.translation() += offset_;
+    const Vec3 from = feeder_.resting_pose().translation();
+    if (const Status s = feeder_.push(shifted); s != Status::ok) return fail(s, step.line);
+    count(step, (shifted.X_WT.translation() - from).norm());
+    return true;
+  }
+
+  bool apply_outputs(int line) {
+    // What the program says in between two moves holds between them: the motion before comes to rest first.
+    if (const Status s = feeder_.come_to_rest(); s != Status::ok) return fail(s, line);
+    const Status s = port_.set_outputs(outputs_, port_.now() + kOutputPatience);
+    return s == Status::ok || fail(s, line);
+  }
+
+  bool approach(const Step& step, std::size_t index) {
+    if (const Status s = feeder_.come_to_rest(); s != Status::ok) return fail(s, step.line);
+    const Pose X_WT_before = pose_before(program_, index, step.X_WT);
+    const double standoff = (step.X_WT.translation() - X_WT_before.translation()).norm();
+    const LocalSurface surface =
+        options_.part ? local_surface(*options_.part, step.X_WT, kSurfaceRadius) : LocalSurface{};
+    Pose X_WT_start = step.X_WT;
+    X_WT_start.translation() += offset_;
+    ApproachMotion motion(feeder_, step);
+    GapApproach record{step.line, 0,
+                       close_gap(machine_, surface, X_WT_start, standoff, motion, options_.gap)};
+    record.done_at = port_.now();
+    const bool reached = record.outcome.stop == GapStop::none;
+    if (reached) {
+      offset_ += record.outcome.offset_W;
+      result_.offsets.push_back({port_.now(), step.line, offset_});
+      count(step, (feeder_.resting_pose().translation() - X_WT_before.translation()).norm());
+    } else {
+      result_.stop_line = step.line;
+      result_.stop_reason = fmt::format("{}: {}", to_string(record.outcome.stop), record.outcome.why);
+      result_.fault = port_.state().fault;
+    }
+    result_.approaches.push_back(std::move(record));
+    return reached;
+  }
+
+  void count(const Step& step, double way) {
+    if (!toolpath::moves(step)) return;
+    ++result_.moves;
+    if (step.filament > 0) result_.extruded += step.filament;
+    if (step.kind != StepKind::print) result_.travel += way;
+  }
+
+  bool fail(Status status, int line) {
+    result_.status = status;
+    result_.fault = port_.state().fault;
+    result_.stop_line = line;
+    result_.stop_reason = status == Status::faulted
+                              ? fmt::format("the machine reports a fault: {}", to_string(result_.fault))
+                              : fmt::format("the machine did not take the motion: {}", to_string(status));
+    return false;
+  }
+
+  PrintResult finish(bool completed) {
+    result_.completed = completed;
+    result_.duration = port_.now();
+    return std::move(result_);
+  }
+
+  const toolpath::Program& program_;
+  const machine::MachineDescription& machine_;
+  machine::MachinePort& port_;
+  const PrintOptions& options_;
+  PrintObserver* observer_;
+  Feeder feeder_;
+  machine::Outputs outputs_;
+  PrintResult result_;
+  Vec3 offset_{0, 0, 0};
+  int last_line_ = 0;
+};
+
+}  // namespace
+
+PrintResult print(const toolpath::Program& program, const machine::MachineDescription& machine,
+                  machine::MachinePort& port, const PrintOptions& options, PrintObserver* observer) {
+  return PrintLoop(program, machine, port, options, observer).run();
+}
+
+}  // namespace understudy::control

@@ -1,0 +1,55 @@
+#include "kinematics/hexapod.h"
+
+#include <cmath>
+
+namespace understudy::kinematics {
+
+Solve inverse(const HexapodGeometry& geometry, const Pose& X_BT, StrutLengths& lengths) {
+  if (!X_BT.matrix().allFinite()) return Solve::bad_input;
+  StrutLengths result;
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    const Vec3 d = geometry.base_joint[i] - X_BT * geometry.platform_joint[i];
+    const double squared = d.squaredNorm() - geometry.deviation * geometry.deviation;
+    if (!(squared > 0)) return Solve::unreachable;
+    result[i] = std::sqrt(squared);
+  }
+  lengths = result;
+  return Solve::ok;
+}
+
+Solve jacobian(const HexapodGeometry& geometry, const Pose& X_BT, Mat6& J) {
+  StrutLengths lengths;
+  const Solve status = inverse(geometry, X_BT, lengths);
+  if (status != Solve::ok) return status;
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    const Vec3 a_B = X_BT.linear() * geometry.platform_joint[i];
+    // Not a unit vector when dev is not 0: the length is the leg of a right triangle with hypotenuse |d|.
+    const Vec3 n = -(geometry.base_joint[i] - X_BT.translation() - a_B) / lengths[i];
+    const Vec3 moment = a_B.cross(n);
+    const auto row = static_cast<Eigen::Index>(i);
+    J.block<1, 3>(row, 0) = n.transpose();
+    J.block<1, 3>(row, 3) = moment.transpose();
+  }
+  return Solve::ok;
+}
+
+double platform_radius(const HexapodGeometry& geometry) {
+  double sum = 0;
+  for (const Vec3& a : geometry.platform_joint) sum += a.head<2>().norm();
+  return sum / kStruts;
+}
+
+HexapodJoints joints_at_home(const HexapodGeometry& geometry, const Pose& X_BT_home) {
+  HexapodJoints joints;
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    const Vec3& a = geometry.platform_joint[i];
+    const Vec3& b = geometry.base_joint[i];
+    const Vec3 u_T = (X_BT_home.linear().transpose() * (X_BT_home * a - b)).normalized();
+    const Vec3 radial_T = Vec3(a.x(), a.y(), 0).normalized();
+    joints.stud_axis[i] = (radial_T - radial_T.dot(u_T) * u_T).normalized();
+    joints.radial_axis[i] = Vec3(b.x(), b.y(), 0).normalized();
+  }
+  return joints;
+}
+
+}  // namespace understudy::kinematics

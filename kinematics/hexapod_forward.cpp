@@ -1,0 +1,121 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "kinematics/hexapod.h"
+
+namespace understudy::kinematics {
+namespace {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kTurnMax = 0.6;        // [rad] per step; beyond it the linear model of a strut says little
+constexpr double kTravelMax = 0.5;      // per step, of the mean strut length
+constexpr double kSmallestStep = 1e-3;  // of the Newton step, before giving up
+constexpr double kPivotRatio =
+    1e-10;  // of the scaled Jacobian; smaller leaves fewer than 6 digits of the step
+constexpr double kRigidTolerance = 1e-6;  // of R^T R - I in a seed
+
+// Everything that one iterate needs: residuals, and the factors of J with its angular columns scaled.
+struct Iterate {
+  Pose X_BT;
+  Vec6 residual;
+  Eigen::PartialPivLU<Mat6> factors;
+  Solve status = Solve::ok;
+
+  double worst() const { return residual.cwiseAbs().maxCoeff(); }
+  double det() const { return factors.determinant(); }
+};
+
+void evaluate(const HexapodGeometry& geometry, const StrutLengths& target, double radius, Iterate& at) {
+  StrutLengths lengths;
+  Mat6 J;
+  at.status = inverse(geometry, at.X_BT, lengths);
+  if (at.status == Solve::ok) at.status = jacobian(geometry, at.X_BT, J);
+  if (at.status != Solve::ok) return;
+  for (std::size_t i = 0; i < kStruts; ++i)
+    at.residual[static_cast<Eigen::Index>(i)] = lengths[i] - target[i];
+  J.rightCols<3>() /= radius;
+  at.factors.compute(J);
+  const Vec6 pivots = at.factors.matrixLU().diagonal().cwiseAbs();
+  if (!(pivots.minCoeff() > kPivotRatio * pivots.maxCoeff())) at.status = Solve::singular;
+}
+
+bool is_rigid(const Pose& X) {
+  return X.matrix().allFinite() &&
+         (X.linear().transpose() * X.linear() - Mat3::Identity()).cwiseAbs().maxCoeff() < kRigidTolerance &&
+         X.linear().determinant() > 0;
+}
+
+Twist bounded_newton_step(const Iterate& at, double radius, double travel_max) {
+  Twist step = -at.factors.solve(at.residual);
+  step.tail<3>() /= radius;
+  const double excess = std::max(step.head<3>().norm() / travel_max, step.tail<3>().norm() / kTurnMax);
+  return excess > 1 ? Twist(step / excess) : step;
+}
+
+Pose moved(const Pose& X, const Twist& step) {
+  return make_pose(Mat3(exp_rotation(step.tail<3>()) * X.linear()), X.translation() + step.head<3>());
+}
+
+// Shortens the step until the residual falls and the sign of det J stays. The status says what was in the
+// way.
+Solve advance(const HexapodGeometry& geometry, const StrutLengths& target, double radius, const Twist& step,
+              Iterate& at, Iterate& trial) {
+  const double residual = at.residual.norm();
+  const double det = at.det();
+  Solve obstacle = Solve::not_converged;
+  for (double scale = 1; scale >= kSmallestStep; scale /= 2) {
+    trial.X_BT = moved(at.X_BT, scale * step);
+    evaluate(geometry, target, radius, trial);
+    const bool crossed =
+        trial.status == Solve::singular || (trial.status == Solve::ok && trial.det() * det <= 0);
+    obstacle = crossed ? Solve::singular : Solve::not_converged;
+    if (trial.status == Solve::ok && !crossed && trial.residual.norm() < residual) {
+      std::swap(at, trial);
+      return Solve::ok;
+    }
+  }
+  return obstacle;
+}
+
+// The product of many small rotations drifts from orthogonal by rounding; one more turn of this pulls it
+// back.
+Mat3 orthonormal(const Mat3& R) { return Quat(R).normalized().toRotationMatrix(); }
+
+}  // namespace
+
+ForwardResult forward(const HexapodGeometry& geometry, const StrutLengths& lengths, const Pose& seed,
+                      const ForwardOptions& options) {
+  ForwardResult result;
+  const auto usable = [](double l) { return std::isfinite(l) && l > 0; };
+  if (!is_rigid(seed) || !std::all_of(lengths.begin(), lengths.end(), usable)) {
+    result.status = Solve::bad_input;
+    if (is_rigid(seed)) result.X_BT = seed;
+    return result;
+  }
+  double mean_length = 0;
+  for (const double l : lengths) mean_length += l / kStruts;
+  const double radius = platform_radius(geometry);
+
+  Iterate at, trial;
+  at.X_BT = make_pose(orthonormal(seed.linear()), seed.translation());
+  evaluate(geometry, lengths, radius, at);
+  result.X_BT = at.X_BT;
+  result.status = at.status;
+  if (at.status == Solve::unreachable || at.status == Solve::bad_input) return result;
+  while (result.status == Solve::ok && at.worst() > options.tolerance) {
+    if (result.iterations == options.max_iterations) {
+      result.status = Solve::not_converged;
+      break;
+    }
+    ++result.iterations;
+    const Twist step = bounded_newton_step(at, radius, kTravelMax * mean_length);
+    result.status = advance(geometry, lengths, radius, step, at, trial);
+  }
+  result.X_BT = make_pose(orthonormal(at.X_BT.linear()), at.X_BT.translation());
+  result.residual = at.worst();
+  return result;
+}
+
+}  // namespace understudy::kinematics

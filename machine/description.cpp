@@ -1,0 +1,101 @@
+#include "machine/description.h"
+
+#include <fmt/format.h>
+
+#include "core/digest.h"
+#include "core/output_file.h"
+#include "core/units.h"
+#include "machine/hexapod_section.h"
+#include "machine/model_files.h"
+#include "machine/optics_section.h"
+#include "machine/tool_section.h"
+#include "machine/yaml_reader.h"
+
+namespace understudy::machine {
+namespace {
+
+ToleranceSet read_tolerance_set(YamlMap& map) {
+  ToleranceSet set;
+  set.joint_position = map.quantity("joint_position_mm", {0, 20});
+  set.length_offset = map.quantity("length_offset_mm", {0, 20});
+  return set;
+}
+
+void read_tolerances(YamlMap& map, Tolerances& tolerances) {
+  map.section("manufactured", [&](YamlMap& set) { tolerances.manufactured = read_tolerance_set(set); });
+  map.section("after_calibration",
+              [&](YamlMap& set) { tolerances.after_calibration = read_tolerance_set(set); });
+}
+
+void read_gap(YamlMap& map, GapLimits& gap) {
+  constexpr Bounds kGap{0.001, 10};
+  gap.accepted_min = map.quantity("accepted_min_mm", kGap);
+  gap.accepted_max = map.quantity("accepted_max_mm", kGap);
+  gap.aim = map.quantity("aim_mm", kGap);
+  gap.standoff = map.quantity("standoff_mm", {0.01, 50});
+  if (!map.complete()) return;
+  if (gap.accepted_min >= gap.accepted_max)
+    throw InputError(
+        map.place("accepted_min_mm"),
+        fmt::format("{} is {:g} mm, not below accepted_max_mm of {:g} mm", map.path("accepted_min_mm"),
+                    to_mm(gap.accepted_min), to_mm(gap.accepted_max)));
+  if (gap.aim <= gap.accepted_min || gap.aim >= gap.accepted_max)
+    throw InputError(
+        map.place("aim_mm"),
+        fmt::format("{} is {:g} mm, not between {:g} and {:g} mm, the accepted gaps", map.path("aim_mm"),
+                    to_mm(gap.aim), to_mm(gap.accepted_min), to_mm(gap.accepted_max)));
+  if (gap.standoff <= gap.accepted_max)
+    throw InputError(map.place("standoff_mm"),
+                     fmt::format("{} is {:g} mm, not above accepted_max_mm of {:g} mm",
+                                 map.path("standoff_mm"), to_mm(gap.standoff), to_mm(gap.accepted_max)));
+}
+
+void read_table(YamlMap& map, geometry::Shape& table) {
+  const Vec3 size = map.vector("size_mm", {1, 5000});
+  table = {"table", geometry::Box{size}, make_pose(Quat::Identity(), Vec3(0, 0, -size.z() / 2))};
+}
+
+void read_motion(YamlMap& map, MachineDescription& machine) {
+  machine.cycle_time = map.quantity("cycle_ms", {0.05, 100});
+  machine.travel_velocity = map.quantity("travel_mm_per_s", {0.1, 5000});
+  machine.orientation_velocity = map.quantity("orientation_deg_per_s", {0.1, 5000});
+  machine.acceleration = map.quantity("acceleration_mm_per_s2", {1, 1e6});
+}
+
+void read_machine(YamlMap& root, MachineDescription& m) {
+  m.name = root.text("name");
+  m.mechanism = root.word("mechanism", {"hexapod"});
+  root.section("geometry", [&](YamlMap& map) { read_geometry(map, m); });
+  root.section("limits", [&](YamlMap& map) { read_limits(map, m); });
+  root.section("drive", [&](YamlMap& map) { read_drive(map, m.drive); });
+  root.section("play", [&](YamlMap& map) { read_play(map, m.play); });
+  root.section("masses", [&](YamlMap& map) { read_masses(map, m.masses); });
+  root.section("tool", [&](YamlMap& map) { read_tool(map, m.tool); });
+  root.section("laser", [&](YamlMap& map) { read_laser(map, m.laser); });
+  root.section("microscope", [&](YamlMap& map) { read_microscope(map, m.microscope); });
+  root.section("tolerances", [&](YamlMap& map) { read_tolerances(map, m.tolerances); });
+  root.section("gap", [&](YamlMap& map) { read_gap(map, m.gap); });
+  root.section("table", [&](YamlMap& map) { read_table(map, m.table); });
+  root.section("motion", [&](YamlMap& map) { read_motion(map, m); });
+  if (!root.complete()) return;
+  settle_home(root.place("geometry"), m);
+  check_optics(root, m);
+}
+
+}  // namespace
+
+std::unique_ptr<kinematics::Mechanism> MachineDescription::make_mechanism() const {
+  return kinematics::make_hexapod(hexapod, joints, limits, X_BT_home);
+}
+
+MachineDescription load_machine(const std::string& name_or_path) {
+  MachineDescription machine;
+  machine.file = find_model(name_or_path);
+  const std::string bytes = read_file(machine.file);
+  machine.sha256 = sha256_hex(bytes);
+  YamlMap::read_text(bytes, machine.file.string(),
+                     [&machine](YamlMap& root) { read_machine(root, machine); });
+  return machine;
+}
+
+}  // namespace understudy::machine

@@ -1,0 +1,103 @@
+#include "machine/hexapod_section.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/units.h"
+
+namespace understudy::machine {
+namespace {
+
+constexpr double kJointsApart = 1e-3;  // [m]; nearer, two joints are one point to any real bearing
+
+Vec3 on_circle(double radius, double angle, double height) {
+  return {radius * std::cos(angle), radius * std::sin(angle), height};
+}
+
+void check_apart(const Place& place, const char* what, const std::array<Vec3, kinematics::kStruts>& joints) {
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    for (std::size_t j = i + 1; j < joints.size(); ++j) {
+      const double distance = (joints[i] - joints[j]).norm();
+      if (distance < kJointsApart)
+        throw InputError(
+            place, fmt::format("{} joints {} and {} are {:.3f} mm apart, at least {} mm are needed", what,
+                               i + 1, j + 1, to_mm(distance), to_mm(kJointsApart)));
+    }
+}
+
+void check_struts_exist(const Place& place, const MachineDescription& machine) {
+  for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
+    const Vec3 d = machine.hexapod.base_joint[i] - machine.X_BT_home * machine.hexapod.platform_joint[i];
+    if (d.norm() <= machine.hexapod.deviation + kJointsApart)
+      throw InputError(place,
+                       fmt::format("strut {} has no length at home: its joints are {:.3f} mm apart, the "
+                                   "deviation is {} mm",
+                                   i + 1, to_mm(d.norm()), to_mm(machine.hexapod.deviation)));
+  }
+}
+
+}  // namespace
+
+void read_geometry(YamlMap& map, MachineDescription& machine) {
+  const double base_radius = map.quantity("base_radius_mm", {5, 2000});
+  const double base_half_angle = map.quantity("base_pair_half_angle_deg", {0, 60});
+  const double base_height = map.quantity("base_height_mm", {5, 5000});
+  const double platform_radius = map.quantity("platform_radius_mm", {5, 2000});
+  const double platform_half_angle = map.quantity("platform_pair_half_angle_deg", {0, 60});
+  const double platform_height = map.quantity("platform_height_mm", {0, 1000});
+  const Vec3 home_tip = map.vector("home_tip_mm", {-5000, 5000});
+  const double length_offset = map.quantity("length_offset_mm", {0, 5000});
+  machine.hexapod.deviation = map.quantity("deviation_mm", {0, 500});
+  machine.strut_radius = map.quantity("strut_body_radius_mm", {0.1, 100});
+
+  for (int i = 0; i < kinematics::kStruts; ++i) {
+    const auto strut = static_cast<std::size_t>(i);
+    const double centre = from_deg(120.0 * (i / 2));
+    const double side = i % 2 == 0 ? -1 : 1;
+    machine.hexapod.base_joint[strut] = on_circle(base_radius, centre + side * base_half_angle, 0);
+    machine.hexapod.platform_joint[strut] =
+        on_circle(platform_radius, centre + side * (from_deg(60) - platform_half_angle), platform_height);
+    machine.hexapod.length_offset[strut] = length_offset;
+  }
+  machine.X_WB = make_pose(Quat::Identity(), Vec3(0, 0, base_height));
+  machine.X_BT_home = machine.X_WB.inverse() * make_pose(Quat::Identity(), home_tip);
+}
+
+void read_limits(YamlMap& map, MachineDescription& machine) {
+  kinematics::HexapodLimits& limits = machine.limits;
+  limits.strut_min = map.quantity("strut_min_mm", {1, 5000});
+  limits.strut_max = map.quantity("strut_max_mm", {1, 5000});
+  limits.base_alpha_min = map.quantity("base_joint_alpha_min_deg", {-90, 90});
+  limits.base_alpha_max = map.quantity("base_joint_alpha_max_deg", {-90, 90});
+  limits.base_beta_max = map.quantity("base_joint_beta_max_deg", {1, 90});
+  limits.ball_min = map.quantity("ball_joint_min_deg", {0, 180});
+  limits.ball_max = map.quantity("ball_joint_max_deg", {0, 180});
+  limits.screw_distance_min = map.quantity("screw_distance_min_mm", {0, 500});
+  limits.condition_max = map.quantity("condition_max", {1, 1e6});
+  if (!map.complete()) return;
+  const auto ordered = [&map](const char* low_key, double low, const char* high_key, double high, double unit,
+                              const char* unit_name) {
+    if (low >= high)
+      throw InputError(map.place(low_key),
+                       fmt::format("{} is {} {}, not below {} of {} {}", map.path(low_key), low / unit,
+                                   unit_name, high_key, high / unit, unit_name));
+  };
+  ordered("strut_min_mm", limits.strut_min, "strut_max_mm", limits.strut_max, kMillimetre, "mm");
+  ordered("base_joint_alpha_min_deg", limits.base_alpha_min, "base_joint_alpha_max_deg",
+          limits.base_alpha_max, kDegree, "deg");
+  ordered("ball_joint_min_deg", limits.ball_min, "ball_joint_max_deg", limits.ball_max, kDegree, "deg");
+}
+
+void settle_home(const Place& place, MachineDescription& machine) {
+  check_apart(place, "base", machine.hexapod.base_joint);
+  check_apart(place, "platform", machine.hexapod.platform_joint);
+  check_struts_exist(place, machine);
+  machine.joints = kinematics::joints_at_home(machine.hexapod, machine.X_BT_home);
+  std::vector<kinematics::LimitViolation> violations;
+  kinematics::check(machine.hexapod, machine.joints, machine.limits, machine.X_BT_home, violations);
+  if (!violations.empty())
+    throw InputError(place, "home cannot be reached: " + kinematics::to_string(violations.front()));
+}
+
+}  // namespace understudy::machine

@@ -1,0 +1,16 @@
+// The hexapod's part of machine.yaml: geometry of three-fold symmetry, and what struts and joints allow.
+#pragma once
+
+#include "machine/description.h"
+#include "machine/yaml_reader.h"
+
+namespace understudy::machine {
+
+void read_geometry(YamlMap& map, MachineDescription& machine);
+void read_limits(YamlMap& map, MachineDescription& machine);
+
+/// Throws InputError at `place` when joints coincide, a strut has no length or home breaks a limit. Fills the
+/// stud axes, which are defined by the home pose.
+void settle_home(const Place& place, MachineDescription& machine);
+
+}  // namespace understudy::machine

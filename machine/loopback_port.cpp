@@ -1,0 +1,168 @@
+#include "machine/loopback_port.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace understudy::machine {
+namespace {
+
+/// Slower than this the axes count as resting: no drive tells a micrometre per second from rest.
+constexpr double kRest = 1e-6;  // [m/s or rad/s]
+
+bool finite(const Setpoint& s, int axes) {
+  bool all = std::isfinite(s.time) && std::isfinite(s.filament);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i)
+    all = all && std::isfinite(s.position[i]) && std::isfinite(s.velocity[i]);
+  return all;
+}
+
+bool resting(const Setpoint& s) {
+  return std::all_of(s.velocity.begin(), s.velocity.end(), [](double v) { return std::abs(v) <= kRest; });
+}
+
+double hermite(double a, double va, double b, double vb, double h, double u) {
+  const double u2 = u * u, u3 = u2 * u;
+  return a + (b - a) * (3 * u2 - 2 * u3) + va * h * (u3 - 2 * u2 + u) + vb * h * (u3 - u2);
+}
+
+}  // namespace
+
+LoopbackPort::LoopbackPort(const Options& options, FrameSource frames)
+    : options_(options), frames_(std::move(frames)) {
+  last_.position = options_.start;
+}
+
+AxisArray LoopbackPort::position_at(double queue_time) const {
+  if (queue_.empty()) return last_.position;
+  const Setpoint& next = queue_.front();
+  const double h = next.time - last_.time;
+  const double u = std::clamp((queue_time - last_.time) / h, 0.0, 1.0);
+  AxisArray position{};
+  for (std::size_t i = 0; i < position.size(); ++i)
+    position[i] = hermite(last_.position[i], last_.velocity[i], next.position[i], next.velocity[i], h, u);
+  return position;
+}
+
+AxisState LoopbackPort::state() const {
+  AxisState s;
+  s.time = s.sampled_at = time_;
+  s.position = position_at(time_ - queue_lag_);
+  s.accepted = accepted_;
+  s.executed = executed_;
+  s.free_slots = options_.queue_capacity - queue_.size();
+  s.moving = !queue_.empty() && !held_;
+  s.fault = fault_;
+  return s;
+}
+
+Status LoopbackPort::submit(std::span<const Setpoint> setpoints, double deadline) {
+  if (fault_ != Fault::none) return Status::faulted;
+  if (time_ > deadline) return Status::deadline_exceeded;
+  double time = queue_.empty() ? time_ - queue_lag_ : queue_.back().time;
+  for (const Setpoint& s : setpoints) {
+    if (!finite(s, options_.axis_count) || !(s.time > time)) return Status::rejected;
+    time = s.time;
+  }
+  if (setpoints.size() > options_.queue_capacity - queue_.size()) return Status::queue_full;
+  if (queue_.empty()) last_.time = time_ - queue_lag_;  // the axes have rested at `last_` until now
+  queue_.insert(queue_.end(), setpoints.begin(), setpoints.end());
+  accepted_ += setpoints.size();
+  return Status::ok;
+}
+
+void LoopbackPort::rest_at(const AxisArray& position) {
+  last_.position = position;
+  last_.velocity = {};
+  last_.time = time_;
+  queue_.clear();
+  queue_lag_ = 0;
+  held_ = false;
+}
+
+void LoopbackPort::raise(Fault fault) {
+  rest_at(position_at(time_ - queue_lag_));
+  fault_ = fault;
+}
+
+void LoopbackPort::execute_until(double time) {
+  if (held_) {
+    queue_lag_ += time - time_;
+    time_ = time;
+    return;
+  }
+  while (!queue_.empty() && queue_.front().time + queue_lag_ <= time) {
+    last_ = queue_.front();
+    queue_.pop_front();
+    ++executed_;
+    history_.push_back(last_);
+    if (queue_.empty() && !resting(last_)) {
+      time_ = last_.time + queue_lag_;
+      return raise(Fault::underrun);
+    }
+  }
+  time_ = time;
+}
+
+Status LoopbackPort::wait_until(double time) {
+  if (fault_ == Fault::none && time > time_) {
+    const bool fault_comes = coming_fault_ != Fault::none && coming_fault_time_ <= time;
+    execute_until(fault_comes ? std::max(time_, coming_fault_time_) : time);
+    if (fault_comes && fault_ == Fault::none) {
+      raise(coming_fault_);
+      coming_fault_ = Fault::none;
+    }
+  }
+  return fault_ == Fault::none ? Status::ok : Status::faulted;
+}
+
+Status LoopbackPort::urgent(UrgentCommand command) {
+  switch (command) {
+    case UrgentCommand::hold:
+      held_ = true;
+      return Status::ok;
+    case UrgentCommand::resume:
+      held_ = false;
+      return Status::ok;
+    case UrgentCommand::stop:
+      rest_at(position_at(time_ - queue_lag_));
+      return Status::ok;
+    case UrgentCommand::clear_fault:
+      fault_ = Fault::none;
+      return Status::ok;
+  }
+  return Status::rejected;
+}
+
+Status LoopbackPort::set_outputs(const Outputs& outputs, double deadline) {
+  if (fault_ != Fault::none) return Status::faulted;
+  if (time_ > deadline) return Status::deadline_exceeded;
+  outputs_ = outputs;
+  return Status::ok;
+}
+
+Status LoopbackPort::capture(const Region& region, Frame& frame, double deadline) {
+  if (time_ + options_.frame_time > deadline) return Status::deadline_exceeded;
+  const double received_at = time_ + options_.frame_time;
+  const double exposed_at = time_ + options_.frame_time / 2;
+  if (const Status s = wait_until(exposed_at); s != Status::ok) return s;
+  const AxisState exposed = state();
+  if (const Status s = wait_until(received_at); s != Status::ok) return s;
+  if (!repeat_frames_ || last_frame_.number == 0) {
+    Image image;
+    if (!frames_ || !frames_(exposed, region, image)) return Status::no_frame;
+    last_frame_.image = std::move(image);
+    last_frame_.exposed_at = exposed_at;
+    last_frame_.number = ++frame_number_;
+  }
+  last_frame_.received_at = time_;
+  frame = last_frame_;
+  return Status::ok;
+}
+
+void LoopbackPort::inject_fault(Fault fault, double time) {
+  if (time <= time_) return raise(fault);
+  coming_fault_ = fault;
+  coming_fault_time_ = time;
+}
+
+}  // namespace understudy::machine

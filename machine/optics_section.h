@@ -1,0 +1,15 @@
+// The parts of machine.yaml about seeing the gap: laser and microscope, and whether they see the dot at all.
+#pragma once
+
+#include "machine/description.h"
+#include "machine/yaml_reader.h"
+
+namespace understudy::machine {
+
+void read_laser(YamlMap& map, Laser& laser);
+void read_microscope(YamlMap& map, Microscope& microscope);
+
+/// Throws InputError when the beam meets the nozzle's flat or the dot at the gap aimed at is out of view.
+void check_optics(const YamlMap& root, const MachineDescription& machine);
+
+}  // namespace understudy::machine

@@ -1,0 +1,32 @@
+// The figures of one rehearsal under dotted names, as scenarios speak of them: "gap.start_mm", "verdict".
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace understudy::rehearsal {
+
+using MetricValue = std::variant<double, std::string>;
+using Metrics = std::map<std::string, MetricValue>;
+
+/// Metrics of a summary.json's text. Besides its own keys: `exit_status` (0 go, 1 no-go), `findings.count`,
+/// `findings.error.count`, `findings.warning.count` and `findings.<kind>.count`. A kind that this run did not
+/// look for (no collision section: no collision check) has no count; zero means looked for and not found.
+/// Throws std::logic_error for text that is not a summary.
+Metrics flatten(const std::string& summary_json);
+
+/// A run that ended without a summary: bad input (2) or a failed engine (3).
+Metrics failed_run(int exit_status);
+
+/// Every name that a scenario may use.
+const std::vector<std::string>& metric_names();
+
+/// Values of this metric are words (verdict, engine.name), not numbers.
+bool metric_is_text(const std::string& metric);
+
+/// The unit that the name ends in: "mm", "um", "mrad", "s"; "1" for counts and fractions; empty for text.
+std::string metric_unit(const std::string& metric);
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,208 @@
+#include "rehearsal/rehearse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "control/constraint_check.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/units.h"
+#include "rehearsal/findings.h"
+#include "rehearsal/pictures.h"
+#include "rehearsal/run_twin.h"
+#include "rehearsal/version.h"
+#include "toolpath/gcode.h"
+
+namespace understudy::rehearsal {
+namespace fs = std::filesystem;
+namespace {
+
+control::GapControl gap_control_of(const std::string& word) {
+  if (word == "off") return control::GapControl::off;
+  if (word == "start") return control::GapControl::start;
+  throw InputError("gap control '" + word + "': one of off, start");
+}
+
+Stage prepare(const RehearsalRequest& request) {
+  if (request.engine != "mujoco")
+    throw InputError("unknown engine '" + request.engine + "': known is mujoco");
+  Stage stage;
+  stage.machine = machine::load_machine(request.machine);
+  toolpath::GcodeOptions gcode;
+  gcode.X_WT_home = stage.machine.X_WB * stage.machine.X_BT_home;
+  stage.program = toolpath::read_gcode(request.program, gcode);
+  if (!request.fixture.empty()) stage.part = geometry::read_stl(find_fixture(request.fixture));
+  stage.as_built = sim::make_as_built(stage.machine, request.as_built, request.seed);
+  stage.engine = request.engine;
+  stage.seed = request.seed;
+  return stage;
+}
+
+Record describe(const RehearsalRequest& request, const Stage& stage) {
+  Record record;
+  record.program_name = fs::path(request.program).filename().string();
+  record.machine_name = stage.machine.name;
+  record.fixture_name = request.fixture.empty() ? "" : fs::path(request.fixture).filename().string();
+  record.gap_control = request.gap_control;
+  record.title = record.program_name + " on " + record.machine_name;
+  record.gap_accepted_min_mm = to_mm(stage.machine.gap.accepted_min);
+  record.gap_accepted_max_mm = to_mm(stage.machine.gap.accepted_max);
+  record.gap_aim_mm = to_mm(stage.machine.gap.aim);
+  const auto mechanism = stage.machine.make_mechanism();
+  for (int i = 0; i < mechanism->axis_count(); ++i)
+    record.axes.push_back({mechanism->axis_name(i) + (mechanism->axis_is_angle(i) ? "_deg" : "_mm"),
+                           stage.machine.limits.strut_min, stage.machine.limits.strut_max});
+  record.provenance = {kVersion,     stage.machine.sha256, stage.program.sha256,
+                       request.seed, request.as_built,     request.command};
+  return record;
+}
+
+AccuracyFigures accuracy_of(const TwinRun& run) {
+  AccuracyFigures figures;
+  std::vector<double> errors;
+  double sum = 0;
+  for (const TracePoint& point : run.trace) {
+    if (!point.extruding) continue;
+    errors.push_back(point.tip_error);
+    sum += point.tip_error * point.tip_error;
+    figures.orientation_max_mrad = std::max(figures.orientation_max_mrad, 1e3 * point.orientation_error);
+  }
+  std::sort(errors.begin(), errors.end());
+  const auto n = errors.size();
+  figures.tip_rms_um = to_um(std::sqrt(sum / static_cast<double>(n)));
+  figures.tip_p95_um =
+      to_um(errors[std::min(n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n)))]);
+  figures.tip_max_um = to_um(errors.back());
+  return figures;
+}
+
+double tip_max_um(const TwinRun& run) {
+  double worst = 0;
+  for (const TracePoint& point : run.trace)
+    if (point.extruding) worst = std::max(worst, point.tip_error);
+  return to_um(worst);
+}
+
+/// Volume of bead, told as length of the filament it came from.
+double as_filament_mm(double volume, const machine::MachineDescription& machine) {
+  const double d = machine.tool.filament_diameter;
+  return to_mm(volume / (0.25 * std::numbers::pi * d * d));
+}
+
+void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& machine,
+                  Record& record) {
+  const auto& r = run.result;
+  record.print = PrintFigures{r.duration, r.moves, to_mm(r.extruded),
+                              as_filament_mm(run.deposition.deposited_volume, machine), to_mm(r.travel)};
+  record.collision = run.collision;
+  record.engine = run.engine;
+  if (run.deposition.length > 0) {
+    record.accuracy = accuracy_of(run);
+    record.accuracy->open_loop_tip_max_um = tip_max_um(without ? *without : run);
+    const auto& laid = run.deposition;
+    GapFigures gap;
+    gap.commanded_mm = to_mm(machine.gap.aim);
+    if (without && without->deposition.length > 0)
+      gap.open_loop_start_mm = to_mm(without->deposition.start_gap);
+    gap.start_mm = to_mm(laid.start_gap);
+    gap.path_min_mm = to_mm(laid.gap_min);
+    gap.path_mean_mm = to_mm(laid.gap_mean);
+    gap.path_max_mm = to_mm(laid.gap_max);
+    gap.in_band_fraction = laid.in_band_fraction;
+    gap.frames = static_cast<int>(run.frames.size());
+    record.gap = gap;
+  }
+}
+
+/// Both runs at once: they share nothing that changes.
+struct Runs {
+  TwinRun main;
+  std::optional<TwinRun> without;
+};
+
+Runs run_both(const Stage& stage, control::GapControl mode, bool compare, const Progress& progress) {
+  Runs runs;
+  std::exception_ptr failure;
+  std::thread companion;
+  if (compare && mode != control::GapControl::off) {
+    companion = std::thread([&] {
+      try {
+        runs.without = run_twin(stage, {control::GapControl::off, false}, {});
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    });
+  }
+  try {
+    runs.main = run_twin(stage, {mode, true}, progress);
+  } catch (...) {
+    if (companion.joinable()) companion.join();
+    throw;
+  }
+  if (companion.joinable()) companion.join();
+  if (failure) std::rethrow_exception(failure);
+  return runs;
+}
+
+bool any_error(const std::vector<Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& f) { return f.severity == Severity::error; });
+}
+
+}  // namespace
+
+std::string find_fixture(const std::string& fixture) {
+  if (fs::is_regular_file(fixture)) return fixture;
+  const fs::path parts = machine::models_folder() / "parts";
+  const fs::path named = parts / (fixture + ".stl");
+  if (fs::is_regular_file(named)) return named.string();
+  std::vector<std::string> known;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(parts, ignored))
+    if (entry.path().extension() == ".stl") known.push_back(entry.path().stem().string());
+  std::sort(known.begin(), known.end());
+  throw InputError(
+      fmt::format("no fixture {}: neither a file nor one of {}", fixture, fmt::join(known, ", ")));
+}
+
+Record rehearse(const RehearsalRequest& request, const Progress& progress) {
+  const auto report = [&](double share, const std::string& what) {
+    if (progress) progress(share, what);
+  };
+  const control::GapControl mode = gap_control_of(request.gap_control);
+  report(0, "reading");
+  const Stage stage = prepare(request);
+  Record record = describe(request, stage);
+
+  report(0.02, "checking limits");
+  const auto constraints = control::check_constraints(stage.program, stage.machine);
+  record.findings = findings_of(constraints);
+  if (!any_error(record.findings)) {
+    const Runs runs =
+        run_both(stage, mode, request.compare_without_gap_control,
+                 [&](double share, const std::string& what) { report(0.05 + 0.85 * share, what); });
+    const TwinRun* without = runs.without ? &*runs.without : nullptr;
+    fill_figures(runs.main, without, stage.machine, record);
+    auto findings = findings_of(runs.main, stage.machine, mode);
+    record.findings.insert(record.findings.end(), findings.begin(), findings.end());
+    record.trace = runs.main.trace;
+    if (without) record.trace_without_gap_control = without->trace;
+    record.frames = runs.main.frames;
+  }
+  sort_findings(record.findings);
+  record.go = !any_error(record.findings);
+  if (request.pictures) {
+    report(0.92, "drawing");
+    add_pictures(stage, record);
+  }
+  report(1, "done");
+  return record;
+}
+
+}  // namespace understudy::rehearsal

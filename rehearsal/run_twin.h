@@ -1,0 +1,47 @@
+// One print on the twin with all its observers: the raw material of a rehearsal.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "control/print.h"
+#include "geometry/mesh.h"
+#include "machine/description.h"
+#include "rehearsal/rehearse.h"
+#include "sim/as_built/as_built.h"
+#include "sim/collision/collision.h"
+#include "sim/process/deposition.h"
+#include "toolpath/program.h"
+
+namespace understudy::rehearsal {
+
+/// What a run reads; immutable, shared by runs in several threads.
+struct Stage {
+  machine::MachineDescription machine;
+  toolpath::Program program;
+  std::shared_ptr<const geometry::Mesh> part;  ///< may be null
+  sim::AsBuilt as_built;
+  std::string engine;
+  std::uint64_t seed = 0;
+};
+
+struct TwinRun {
+  control::PrintResult result;
+  std::vector<TracePoint> trace;
+  std::vector<FrameRecord> frames;
+  std::vector<sim::Contact> collisions, near_collisions;
+  CollisionFigures collision;
+  sim::DepositionSummary deposition;
+  std::vector<sim::DepositionObserver::Loose> loose;
+  EngineFigures engine;
+};
+
+struct RunOptions {
+  control::GapControl gap_control = control::GapControl::start;
+  bool watch_collisions = true;
+};
+
+/// Throws MachineError when the engine fails, Interrupted.
+TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& progress);
+
+}  // namespace understudy::rehearsal

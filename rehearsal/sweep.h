@@ -1,0 +1,40 @@
+// The same print on many as-built machines: how often is it safe, and how far off do they start?
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rehearsal/rehearse.h"
+
+namespace understudy::rehearsal {
+
+/// One machine's answer, without the bulk of its record.
+struct SweepRow {
+  std::uint64_t seed = 0;
+  bool go = false;
+  std::string summary;            ///< summary.json of this rehearsal
+  double open_loop_start_mm = 0;  ///< true gap at the start without gap control
+  double start_mm = 0;            ///< with the request's gap control; 0 when nothing was printed
+  bool printed = false;
+  double approach_min_mm = 0;      ///< smallest true gap before extrusion begins; <= 0 is a touch
+  bool open_loop_touched = false;  ///< without gap control, from the first move to the last
+  bool touched = false;            ///< with it, from the first move to the last
+  double in_band_fraction = 0;
+  double open_loop_in_band_fraction = 0;
+};
+
+/// Rehearses with seeds first..first+count-1 on `threads` threads. Rows are ordered by seed and do not depend
+/// on the number of threads. Throws what rehearse() throws, for the smallest seed that failed.
+std::vector<SweepRow> sweep(const RehearsalRequest& request, std::uint64_t first, int count, int threads,
+                            const Progress& progress = {});
+
+/// The table of a sweep, for people: distribution of the start gap with and without gap control, touches.
+std::string sweep_table(const std::vector<SweepRow>& rows, double band_min_mm, double band_max_mm);
+/// One line a machine.
+std::string sweep_csv(const std::vector<SweepRow>& rows);
+
+/// Linear interpolation between order statistics; `share` in [0, 1]; `values` need not be sorted.
+double quantile(std::vector<double> values, double share);
+
+}  // namespace understudy::rehearsal

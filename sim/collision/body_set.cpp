@@ -1,0 +1,119 @@
+#include "sim/collision/body_set.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "sim/collision/penetration.h"
+
+namespace understudy::sim {
+namespace {
+
+bool is_nozzle(const std::string& name) { return name.starts_with("nozzle"); }
+
+double reach_of(const geometry::Shape& shape) {
+  if (const auto solid = convex_solid(shape)) return reach(*solid, shape.X_FS);
+  double r = 0;
+  for (const Vec3& v : std::get<geometry::MeshShape>(shape.form).mesh->vertices()) {
+    r = std::max(r, (shape.X_FS * v).norm());
+  }
+  return r;
+}
+
+}  // namespace
+
+BodySet::BodySet(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                 std::shared_ptr<const geometry::Mesh> part)
+    : X_WB_(machine.X_WB), geometry_(geometry) {
+  const std::size_t tools = machine.tool.bodies.size();
+  const auto at_home = machine_bodies(machine, geometry, machine.X_WB * machine.X_BT_home);
+  for (const geometry::Shape& shape : machine.tool.bodies) add_body(shape, Owner::tool, 0);
+  for (std::size_t i = 0; i < kinematics::kStruts; ++i) add_body(at_home[tools + i], Owner::strut, i);
+  if (part) {
+    part_ = std::make_unique<MeshClearance>(part);
+    part_body_ = bodies_.size();
+    add_body({"part", geometry::MeshShape{part}, Pose::Identity()}, Owner::world, 0);
+  }
+  geometry::Shape table = machine.table;
+  table.name = "table";
+  add_body(table, Owner::world, 0);
+  add_pairs(machine.strut_radius);
+}
+
+void BodySet::add_body(const geometry::Shape& shape, Owner owner, std::size_t strut) {
+  Body body;
+  body.shape = shape;
+  body.owner = owner;
+  body.solid = convex_solid(shape);
+  body.strut = strut;
+  body.nozzle = owner == Owner::tool && is_nozzle(shape.name);
+  if (owner == Owner::tool) body.lever = reach_of(shape);
+  // A strut turns about its base joint: no point of it moves farther than its ball joint.
+  if (owner == Owner::strut) body.lever = geometry_.platform_joint[strut].norm();
+  body.fcl = world_.add(shape);
+  bodies_.push_back(std::move(body));
+}
+
+bool BodySet::carries_joint(const Body& tool, std::size_t strut, double strut_radius) const {
+  if (tool.shape.name == "platform") return true;
+  const Vec3 p = tool.shape.X_FS.inverse(Eigen::Isometry) * geometry_.platform_joint[strut];
+  return tool.solid ? signed_distance(*tool.solid, p) <= strut_radius : contains(tool.shape, p);
+}
+
+void BodySet::add_pairs(double strut_radius) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t j = 0; j < bodies_.size(); ++j) {
+      const Body &body = bodies_[i], &obstacle = bodies_[j];
+      if (body.owner == Owner::world || (i == j)) continue;
+      const bool tool_again = obstacle.owner == Owner::tool && body.owner == Owner::tool;
+      const bool other_way_round = obstacle.owner == Owner::strut && (body.owner == Owner::tool || j < i);
+      if (tool_again || other_way_round) continue;
+      if (obstacle.owner == Owner::tool && carries_joint(obstacle, body.strut, strut_radius)) continue;
+      const bool at_work = body.nozzle && obstacle.owner == Owner::world;
+      pairs_.push_back({i, j, at_work, at_work && part_ && j == part_body_});
+    }
+  }
+}
+
+double BodySet::motion(const BodyPair& pair, double path, double turn) const {
+  double sum = 0;
+  for (const std::size_t i : {pair.body, pair.obstacle}) {
+    if (bodies_[i].owner != Owner::world) sum += path + turn * bodies_[i].lever;
+  }
+  return sum;
+}
+
+Pose BodySet::place(Body& body, const Pose& X_WT) {
+  if (body.owner == Owner::world) return body.shape.X_FS;
+  if (body.owner == Owner::tool) return X_WT * body.shape.X_FS;
+  const Vec3 base = X_WB_ * geometry_.base_joint[body.strut],
+             ball = X_WT * geometry_.platform_joint[body.strut];
+  const double length = (ball - base).norm();
+  std::get<geometry::Capsule>(body.shape.form).length = length;
+  std::get<SegmentCore>(body.solid->core).half = length / 2;
+  world_.set_capsule_length(body.fcl, length);
+  return make_pose(shortest_arc_from_z((ball - base) / length), Vec3(0.5 * (base + ball)));
+}
+
+Separation BodySet::surfaces(const Body& body, const Pose& X_W1, const Body& obstacle,
+                             const Pose& X_W2) const {
+  if (part_ && &obstacle == &bodies_[part_body_] && body.solid) return part_->distance(*body.solid, X_W1);
+  return world_.distance(body.fcl, X_W1, obstacle.fcl, X_W2);
+}
+
+Separation BodySet::separation(const BodyPair& pair, const Pose& X_WT, bool check_inside) {
+  Body &body = bodies_[pair.body], &obstacle = bodies_[pair.obstacle];
+  const Pose X_W1 = place(body, X_WT), X_W2 = place(obstacle, X_WT);
+  Separation result = surfaces(body, X_W1, obstacle, X_W2);
+  bool overlap = result.distance <= 0;
+  if (!overlap && check_inside) {
+    overlap = contains(obstacle.shape, X_W2.inverse(Eigen::Isometry) * (X_W1 * point_of(body.shape)));
+  }
+  if (!overlap) return result;
+  const Penetration deepest = penetration(body.shape, X_W1, obstacle.shape, X_W2);
+  result.distance = -deepest.depth;
+  if (deepest.depth > 0) result.place_W = deepest.place_W;
+  return result;
+}
+
+}  // namespace understudy::sim

@@ -1,0 +1,67 @@
+// The bodies that may meet, posed by the tool: which pairs to watch, how far apart they are, how far each can
+// move for a given motion of the tool.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sim/collision/collision.h"
+#include "sim/collision/convex_solid.h"
+#include "sim/collision/fcl_world.h"
+#include "sim/collision/mesh_clearance.h"
+
+namespace understudy::sim {
+
+struct BodyPair {
+  std::size_t body = 0, obstacle = 0;
+  bool nozzle_at_work = false;  ///< nozzle against part or table: nearness is its work
+  bool nozzle_at_part = false;
+};
+
+class BodySet {
+ public:
+  /// The part may be null. Struts have the as-built geometry.
+  BodySet(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+          std::shared_ptr<const geometry::Mesh> part);
+
+  /// Tool bodies and struts against part and table, struts against each other and against the tool bodies
+  /// that do not carry their ball joint.
+  const std::vector<BodyPair>& pairs() const { return pairs_; }
+  const std::string& name(std::size_t body) const { return bodies_[body].shape.name; }
+
+  /// [m], at most, by which the two can approach while the tip moves `path` [m] and the tool turns by
+  /// `turn` [rad].
+  double motion(const BodyPair& pair, double path, double turn) const;
+
+  /// Distance of the two surfaces at a pose of the tool; where they overlap, minus the depth. `check_inside`
+  /// also finds a body that lies wholly inside a closed part, which no surface shows.
+  Separation separation(const BodyPair& pair, const Pose& X_WT, bool check_inside);
+
+ private:
+  enum class Owner { tool, strut, world };
+  struct Body {
+    geometry::Shape shape;  // X_FS in T for the tool's, in W for the world's
+    Owner owner = Owner::world;
+    std::optional<ConvexSolid> solid;  // nothing for a mesh
+    std::size_t strut = 0;
+    bool nozzle = false;
+    double lever = 0;  // [m], from the tip to the farthest point that turns with the tool
+    int fcl = -1;
+  };
+  void add_body(const geometry::Shape& shape, Owner owner, std::size_t strut);
+  void add_pairs(double strut_radius);
+  bool carries_joint(const Body& tool, std::size_t strut, double strut_radius) const;
+  Pose place(Body& body, const Pose& X_WT);
+  Separation surfaces(const Body& body, const Pose& X_W1, const Body& obstacle, const Pose& X_W2) const;
+
+  Pose X_WB_;
+  kinematics::HexapodGeometry geometry_;
+  std::unique_ptr<MeshClearance> part_;
+  std::size_t part_body_ = 0;
+  FclWorld world_;
+  std::vector<Body> bodies_;
+  std::vector<BodyPair> pairs_;
+};
+
+}  // namespace understudy::sim

@@ -1,0 +1,162 @@
+#include "sim/collision/collision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "core/error.h"
+#include "sim/collision/body_set.h"
+#include "sim/collision/watched_pair.h"
+
+namespace understudy::sim {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLeastAccuracy = 0.05e-3;  // [m], of min_clearance()
+constexpr double kNozzleFineness = 4;  // the nozzle works a few margins from the part: looked at more often
+
+}  // namespace
+
+struct CollisionObserver::State {
+  struct Look {
+    double clearance = kInfinity;  // [m], at the last look
+    double budget = 0;             // [m], motion left until the next
+  };
+
+  BodySet bodies;
+  CollisionOptions options;
+  std::vector<Look> looks;  // one a pair
+  std::optional<Snapshot> last;
+  std::uint64_t checks = 0;
+  double least_nozzle = kInfinity;
+  Contact closest;
+  // By line and pair: the deepest.
+  std::map<std::pair<int, std::size_t>, Contact> touching, near;
+
+  double contact_level(const BodyPair& pair) const {
+    return pair.nozzle_at_work ? options.nozzle_contact : 0.0;
+  }
+  double near_level(const BodyPair& pair) const {
+    return pair.nozzle_at_work ? options.nozzle_contact : options.near;
+  }
+
+  void look(std::size_t index, const Pose& X_WT, double time, int line) {
+    const BodyPair& pair = bodies.pairs()[index];
+    Look& at = looks[index];
+    // Motion is continuous: a body that was outside gets inside only through a contact that is seen.
+    const bool check_inside = !last || at.clearance <= 0;
+    const Separation seen = bodies.separation(pair, X_WT, check_inside);
+    ++checks;
+    at.clearance = seen.distance;
+    record(index,
+           {bodies.name(pair.body), bodies.name(pair.obstacle), seen.distance, seen.place_W, time, line});
+    at.budget = allowed_motion(seen.distance, watch(index, line));
+  }
+
+  void record(std::size_t index, const Contact& contact) {
+    const BodyPair& pair = bodies.pairs()[index];
+    if (pair.nozzle_at_part) {
+      least_nozzle = std::min(least_nozzle, contact.clearance);
+    } else if (contact.clearance < closest.clearance) {
+      closest = contact;
+    }
+    if (contact.clearance > near_level(pair)) return;
+    auto& records = contact.clearance <= contact_level(pair) ? touching : near;
+    const auto [entry, added] = records.try_emplace({contact.line, index}, contact);
+    if (!added && contact.clearance < entry->second.clearance) entry->second = contact;
+  }
+
+  Watch watch(std::size_t index, int line) const {
+    const BodyPair& pair = bodies.pairs()[index];
+    Watch w;
+    w.contact = contact_level(pair);
+    w.near = near_level(pair);
+    for (const auto* records : {&touching, &near}) {
+      const auto entry = records->find({line, index});
+      if (entry != records->end()) w.deepest = std::min(w.deepest, entry->second.clearance);
+    }
+    w.least = pair.nozzle_at_part ? least_nozzle : closest.clearance;
+    w.resolution = pair.nozzle_at_part ? options.margin / kNozzleFineness : options.margin;
+    w.accuracy = pair.nozzle_at_part ? w.resolution / 2 : kLeastAccuracy;
+    return w;
+  }
+
+  // Looks wherever on the way from the last snapshot the pair's budget is used up.
+  void advance(std::size_t index, const Snapshot& to, double path, double turn) {
+    const BodyPair& pair = bodies.pairs()[index];
+    Look& at = looks[index];
+    if (to.line != last->line && at.clearance <= near_level(pair)) at.budget = 0;  // each line has its record
+    const double motion = bodies.motion(pair, path, turn);
+    double left = motion;
+    while (at.budget < left) {
+      left -= at.budget;
+      const double t = 1 - left / motion;
+      look(index, interpolate(last->X_WT, to.X_WT, t), last->time + t * (to.time - last->time), to.line);
+    }
+    at.budget -= left;
+  }
+};
+
+CollisionObserver::CollisionObserver(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                                     std::shared_ptr<const geometry::Mesh> part,
+                                     const CollisionOptions& options)
+    : state_(new State{
+          BodySet(machine, as_built.hexapod, std::move(part)), options, {}, {}, 0, kInfinity, {}, {}, {}}) {
+  if (!(options.margin > 0))
+    throw InputError("collision margin is " + std::to_string(options.margin) + " m, must be above 0");
+  state_->looks.resize(state_->bodies.pairs().size());
+  state_->closest.clearance = kInfinity;
+}
+
+CollisionObserver::~CollisionObserver() = default;
+
+void CollisionObserver::observe(const Snapshot& snapshot) {
+  State& s = *state_;
+  if (!snapshot.X_WT.matrix().allFinite()) {
+    throw MachineError("tool pose is not finite at " + std::to_string(snapshot.time) + " s");
+  }
+  const std::size_t pairs = s.looks.size();
+  if (!s.last) {
+    for (std::size_t i = 0; i < pairs; ++i) s.look(i, snapshot.X_WT, snapshot.time, snapshot.line);
+  } else {
+    const double path = (snapshot.X_WT.translation() - s.last->X_WT.translation()).norm();
+    const double turn = angle_between(s.last->X_WT.linear(), snapshot.X_WT.linear());
+    for (std::size_t i = 0; i < pairs; ++i) s.advance(i, snapshot, path, turn);
+  }
+  s.last = snapshot;
+}
+
+namespace {
+
+std::vector<Contact> by_time(std::vector<Contact> contacts) {
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const Contact& a, const Contact& b) { return a.time < b.time; });
+  return contacts;
+}
+
+}  // namespace
+
+std::vector<Contact> CollisionObserver::collisions() const {
+  std::vector<Contact> contacts;
+  for (const auto& [key, contact] : state_->touching) contacts.push_back(contact);
+  return by_time(std::move(contacts));
+}
+
+std::vector<Contact> CollisionObserver::near_collisions() const {
+  std::vector<Contact> contacts;
+  for (const auto& [key, contact] : state_->near) {
+    if (!state_->touching.contains(key)) contacts.push_back(contact);
+  }
+  return by_time(std::move(contacts));
+}
+
+double CollisionObserver::min_clearance() const { return state_->closest.clearance; }
+Contact CollisionObserver::closest() const { return state_->closest; }
+double CollisionObserver::min_nozzle_clearance() const { return state_->least_nozzle; }
+std::uint64_t CollisionObserver::checks() const { return state_->checks; }
+int CollisionObserver::pairs() const { return static_cast<int>(state_->looks.size()); }
+
+}  // namespace understudy::sim

@@ -1,0 +1,23 @@
+// When a pair of bodies must be looked at again: by how far they may have moved since the last look.
+#pragma once
+
+#include <limits>
+
+namespace understudy::sim {
+
+/// What the next query of a pair must not miss. All [m].
+struct Watch {
+  double contact = 0;  ///< at or below, they touch
+  double near = 0;     ///< at or below, they are near; equal to `contact` where nearness means nothing
+  double deepest = std::numeric_limits<double>::infinity();  ///< least clearance on record for this line
+  double least = std::numeric_limits<double>::infinity();    ///< least clearance of the group so far
+  double accuracy = 0;                                       ///< of a reported least clearance, at the least
+  double resolution = 0;                                     ///< motion that is always allowed
+};
+
+constexpr double kRelativeAccuracy = 0.01;  // of a reported least clearance, beyond Watch::accuracy
+
+/// Motion that the pair may make after `clearance` was measured before any of these could be missed.
+double allowed_motion(double clearance, const Watch& watch);
+
+}  // namespace understudy::sim

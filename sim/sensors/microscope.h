@@ -1,0 +1,42 @@
+// The twin's microscope: what the camera beside the nozzle sees of the true machine.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/image.h"
+#include "geometry/mesh.h"
+#include "machine/description.h"
+
+namespace understudy::sim {
+
+struct MicroscopeOptions {
+  bool speckle = true;
+  bool noise = true;
+  /// Where laser and camera really sit in the frames of their nominal mounts; the controller does not know.
+  Pose X_LL_built = Pose::Identity();
+  Pose X_CC_built = Pose::Identity();
+};
+
+/// Owns an OSMesa context; use from the thread that made it. Several may live in several threads.
+class Microscope {
+ public:
+  /// `part` may be null: nothing but the table. The seed is that of the surface's roughness and of the noise.
+  Microscope(const machine::MachineDescription& machine, std::shared_ptr<const geometry::Mesh> part,
+             std::uint64_t seed, const MicroscopeOptions& options);
+  ~Microscope();
+
+  /// One exposure with the tool at its true pose. `region` is clipped to the sensor. Equal arguments, equal
+  /// bytes. Throws MachineError when the renderer fails.
+  Image expose(const Pose& X_WT_true, const Region& region, std::uint64_t frame_number);
+
+  /// Where the centre of the dot truly is [px]; nothing when it is hidden or out of view. For observers only.
+  std::optional<Vec2> true_dot(const Pose& X_WT_true) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace understudy::sim

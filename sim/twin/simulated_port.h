@@ -1,0 +1,80 @@
+// The twin behind MachinePort: drives with their quantisation, the plant, the microscope, observers.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "machine/description.h"
+#include "machine/port.h"
+#include "sim/observer.h"
+#include "sim/plant/plant.h"
+
+namespace understudy::sim {
+
+/// Takes a picture of the truth; `number` counts exposures. An empty image is a lost frame.
+using Exposure = std::function<Image(const Pose& X_WT, const Region& region, std::uint64_t number)>;
+
+struct TwinOptions {
+  double observation_period = 2e-3;  ///< [s], between snapshots
+  bool quantise_steps = true;        ///< drives move in whole microsteps
+  std::size_t queue_capacity = 4096;
+};
+
+/// Converts strut lengths of the controller's geometry to drive displacements (length minus nominal l_i0):
+/// the as-built errors stay on the other side. Time advances inside wait_until() and capture() only.
+class SimulatedPort : public machine::MachinePort {
+ public:
+  /// The description, plant and observers must outlive the port; the machine starts at rest at home.
+  SimulatedPort(const machine::MachineDescription& machine, Plant& plant, Exposure exposure,
+                std::vector<Observer*> observers, const TwinOptions& options = {});
+  ~SimulatedPort() override;
+
+  int axis_count() const override;
+  double now() const override;
+  machine::AxisState state() const override;
+  machine::Status submit(std::span<const machine::Setpoint> setpoints, double deadline) override;
+  machine::Status wait_until(double time) override;
+  machine::Status urgent(machine::UrgentCommand command) override;
+  machine::Status set_outputs(const machine::Outputs& outputs, double deadline) override;
+  machine::Status capture(const Region& region, machine::Frame& frame, double deadline) override;
+
+  /// What the engine said when it failed; empty otherwise. A run with a failure has no result.
+  const std::string& engine_failure() const { return engine_failure_; }
+  std::uint64_t steps() const { return steps_; }
+  double closure_max() const { return closure_max_; }  ///< [m]
+
+ private:
+  struct Target;
+  Target target_at_queue_clock();
+  void advance();
+  void drop_queue(const Target& target);
+  void observe(const Target& target);
+
+  const machine::MachineDescription& machine_;
+  std::unique_ptr<kinematics::Mechanism> mechanism_;
+  Plant& plant_;
+  Exposure exposure_;
+  std::vector<Observer*> observers_;
+  TwinOptions options_;
+
+  std::vector<machine::Setpoint> ring_;  ///< fixed storage of the queue
+  std::size_t head_ = 0, size_ = 0;
+  machine::Setpoint last_;  ///< executed last; where the axes rest when the queue is empty
+  double queue_lag_ = 0;    ///< [s], port clock minus the queue's clock; grows while held
+  double queue_rate_ = 1;   ///< 1 running, 0 held
+  double rate_slope_ = 0;   ///< [1/s], of queue_rate_ while a hold or stop decelerates
+  bool drop_when_held_ = false;
+
+  Pose X_BT_commanded_;
+  machine::Outputs outputs_;
+  machine::Fault fault_ = machine::Fault::none;
+  std::string engine_failure_;
+  std::uint64_t accepted_ = 0, executed_ = 0, steps_ = 0, frame_number_ = 0;
+  int steps_per_observation_ = 1;
+  double closure_max_ = 0;
+};
+
+}  // namespace understudy::sim

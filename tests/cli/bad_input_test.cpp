@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <fstream>
+#include <regex>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/output_file.h"
+#include "tests/cli/program_run.h"
+
+namespace understudy::cli_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kSource = UNDERSTUDY_SOURCE_DIR;
+const std::string kBottleLine = kSource + "/scenarios/song-bottle.gcode";
+
+/// Bad input: exit status 2, one line that holds each of `parts`, nothing on stdout, nothing written.
+void expect_refused(const std::string& words, const Folder& folder, const std::vector<std::string>& parts) {
+  const int before = folder.entries();
+  const Outcome outcome = understudy(words);
+  EXPECT_EQ(outcome.status, 2) << words << "\n" << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  for (const auto& part : parts) EXPECT_THAT(outcome.err, HasSubstr(part));
+  EXPECT_EQ(folder.entries(), before) << "something was written";
+}
+
+class BadProgram : public ::testing::Test {
+ protected:
+  void expect_program_refused(const std::string& text, const std::vector<std::string>& parts) {
+    const std::string file = folder_.write("bad.gcode", text);
+    expect_refused("rehearse " + file + " --out " + (folder_ / "out"), folder_, parts);
+  }
+  Folder folder_;
+};
+
+TEST_F(BadProgram, EmptyFile) { expect_program_refused("", {"bad.gcode"}); }
+
+TEST_F(BadProgram, UnknownWordNamesLineAndColumn) {
+  expect_program_refused("G21\nG90\nG1 X1 Q5 F300\n", {"bad.gcode:3:7", "Q"});
+}
+
+TEST_F(BadProgram, QuaternionThatIsNotUnit) {
+  expect_program_refused("G21\nG1 X0 Y0 Z50 W0.9 I0.1 J0 K0 F300\n", {"bad.gcode:2", "0.9"});
+}
+
+TEST_F(BadProgram, MissingFeed) { expect_program_refused("G21\nG1 X1\n", {"bad.gcode:2", "feed"}); }
+
+TEST_F(BadProgram, NotANumber) {
+  expect_program_refused("G21\nG1 Xnan F300\n", {"bad.gcode:2"});
+  expect_program_refused("G21\nG1 Xinf F300\n", {"bad.gcode:2"});
+  expect_program_refused("G21\nG1 X1e999 F300\n", {"bad.gcode:2"});
+}
+
+TEST_F(BadProgram, MissingFile) {
+  expect_refused("rehearse " + (folder_ / "none.gcode") + " --out " + (folder_ / "out"), folder_,
+                 {"none.gcode"});
+}
+
+class BadFixture : public ::testing::Test {
+ protected:
+  void expect_fixture_refused(const std::string& file, const std::vector<std::string>& parts) {
+    expect_refused("rehearse " + kBottleLine + " --fixture " + file + " --out " + (folder_ / "out"), folder_,
+                   parts);
+  }
+  std::string bottle() const { return read_file(kSource + "/models/parts/bottle.stl"); }
+  Folder folder_;
+};
+
+TEST_F(BadFixture, Truncated) {
+  expect_fixture_refused(folder_.write("cut.stl", bottle().substr(0, 1000)), {"cut.stl"});
+}
+
+TEST_F(BadFixture, Open) {
+  std::string stl = bottle();
+  const auto triangles = static_cast<unsigned char>(stl[80]) | static_cast<unsigned char>(stl[81]) << 8 |
+                         static_cast<unsigned char>(stl[82]) << 16;
+  const auto fewer = triangles - 1;
+  stl[80] = static_cast<char>(fewer & 255);
+  stl[81] = static_cast<char>((fewer >> 8) & 255);
+  stl[82] = static_cast<char>((fewer >> 16) & 255);
+  stl.resize(stl.size() - 50);
+  expect_fixture_refused(folder_.write("open.stl", stl),
+                         {"open.stl", "3"});  // a missing triangle leaves 3 edges
+}
+
+TEST_F(BadFixture, InMetres) {
+  std::string stl = bottle();
+  for (std::size_t at = 84; at + 50 <= stl.size(); at += 50) {
+    for (std::size_t k = 12; k < 48; k += 4) {
+      float v;
+      std::copy_n(&stl[at + k], 4, reinterpret_cast<char*>(&v));
+      v *= 1e-3f;
+      std::copy_n(reinterpret_cast<char*>(&v), 4, &stl[at + k]);
+    }
+  }
+  expect_fixture_refused(folder_.write("metres.stl", stl), {"metres.stl", "mm"});
+}
+
+TEST_F(BadFixture, UnknownNameListsTheKnown) { expect_fixture_refused("botle", {"botle", "bottle"}); }
+
+TEST(BadMachine, MisspeltKeyNamesTheNearest) {
+  const Folder folder;
+  std::string yaml = read_file(kSource + "/models/hexapod/machine.yaml");
+  const auto at = yaml.find("lead_mm");
+  ASSERT_NE(at, std::string::npos);
+  yaml.replace(at, 7, "leed_mm");
+  const std::string file = folder.write("machine.yaml", yaml);
+  expect_refused("rehearse " + kBottleLine + " --machine " + file + " --out " + (folder / "out"), folder,
+                 {"machine.yaml:", "leed_mm", "lead_mm"});
+}
+
+TEST(BadMachine, UnknownNameListsTheKnown) {
+  const Folder folder;
+  expect_refused("rehearse " + kBottleLine + " --machine hexapode --out " + (folder / "out"), folder,
+                 {"hexapode", "hexapod"});
+}
+
+TEST(BadUsage, OneLineAndStatusTwo) {
+  const Folder folder;
+  expect_refused("", folder, {"understudy"});
+  expect_refused("rehears x", folder, {"rehears"});
+  expect_refused("rehearse", folder, {"program"});
+  const std::string rest = " --fixture bottle --out " + (folder / "out");
+  expect_refused("rehearse " + kBottleLine + " --gap-control sometimes" + rest, folder,
+                 {"sometimes", "off", "start"});
+  expect_refused("rehearse " + kBottleLine + " --engine magic" + rest, folder, {"magic", "mujoco"});
+  expect_refused("rehearse " + kBottleLine + " --as-built dreamt" + rest, folder, {"dreamt", "sampled"});
+  expect_refused("rehearse " + kBottleLine + " --seed -1" + rest, folder, {"seed"});
+}
+
+TEST(BadOutput, AFolderThatCannotBeWrittenIsRefusedBeforeTheWork) {
+  const Folder folder;
+  const std::string file = folder.write("file", "x");
+  expect_refused("rehearse " + kBottleLine + " --fixture bottle --out " + file + "/out", folder,
+                 {"file/out"});
+  expect_refused("rehearse " + kBottleLine + " --fixture bottle --out /proc/understudy", folder,
+                 {"/proc/understudy"});
+}
+
+TEST(BadOutput, AFolderOfSomebodyElseIsNotReplaced) {
+  const Folder folder;
+  folder.write("letter.txt", "dear");
+  expect_refused("rehearse " + kBottleLine + " --fixture bottle --out " + folder.path().string(), folder,
+                 {"summary.json"});
+}
+
+}  // namespace
+}  // namespace understudy::cli_test

@@ -1,0 +1,56 @@
+#include "tests/cli/program_run.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace understudy::cli_test {
+namespace fs = std::filesystem;
+namespace {
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Outcome shell(const std::string& prefix, const std::string& words) {
+  const Folder folder;
+  const std::string command =
+      prefix + " " UNDERSTUDY_PROGRAM " " + words + " >" + (folder / "out") + " 2>" + (folder / "err");
+  const int raw = std::system(command.c_str());
+  Outcome outcome;
+  outcome.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
+  outcome.out = slurp(folder / "out");
+  outcome.err = slurp(folder / "err");
+  return outcome;
+}
+
+}  // namespace
+
+Outcome understudy(const std::string& words) { return shell("", words); }
+
+Outcome understudy_interrupted(const std::string& words, double seconds) {
+  return shell("timeout --preserve-status -s INT " + std::to_string(seconds), words);
+}
+
+Folder::Folder() {
+  static int count = 0;
+  path_ = fs::temp_directory_path() /
+          ("understudy-cli-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+  fs::remove_all(path_);
+  fs::create_directories(path_);
+}
+
+Folder::~Folder() { fs::remove_all(path_); }
+
+std::string Folder::write(const std::string& name, const std::string& content) const {
+  std::ofstream(path_ / name, std::ios::binary) << content;
+  return (path_ / name).string();
+}
+
+int Folder::entries() const { return static_cast<int>(std::distance(fs::directory_iterator(path_), {})); }
+
+}  // namespace understudy::cli_test

@@ -1,0 +1,34 @@
+// Runs the real command as a user does.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace understudy::cli_test {
+
+struct Outcome {
+  int status = -1;  ///< exit status, or 128 + signal
+  std::string out, err;
+};
+
+/// `words` follow the program's name; a shell splits them.
+Outcome understudy(const std::string& words);
+
+/// The same, with SIGINT after `seconds`.
+Outcome understudy_interrupted(const std::string& words, double seconds);
+
+/// A fresh folder that is removed with the object.
+class Folder {
+ public:
+  Folder();
+  ~Folder();
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& content) const;
+  int entries() const;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace understudy::cli_test

@@ -1,0 +1,125 @@
+#include <filesystem>
+#include <regex>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/output_file.h"
+#include "tests/cli/program_run.h"
+
+namespace understudy::cli_test {
+namespace {
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+const std::string kSource = UNDERSTUDY_SOURCE_DIR;
+const std::string kBottle = "rehearse " + kSource + "/scenarios/song-bottle.gcode --fixture bottle ";
+
+/// The summary without what is a time or names the output folder.
+std::string comparable(const std::string& summary) {
+  auto json = nlohmann::json::parse(summary);
+  json["engine"].erase("real_time_factor");
+  json["provenance"].erase("command");
+  return json.dump();
+}
+
+TEST(Rehearse, WritesTheContractsFilesAndAnswersByExitStatus) {
+  const Folder folder;
+  const Outcome outcome = understudy(kBottle + "--out " + (folder / "out"));
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 1) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(folder.entries(), 1);
+  for (const char* name : {"summary.json", "report.html", "trace.csv", "frames"})
+    EXPECT_TRUE(fs::exists(folder.path() / "out" / name)) << name;
+  const auto summary = nlohmann::json::parse(read_file(folder.path() / "out" / "summary.json"));
+  EXPECT_EQ(summary["schema"], "understudy.rehearsal/1");
+  EXPECT_EQ(summary["verdict"], outcome.status == 0 ? "go" : "no-go");
+  EXPECT_GE(summary["gap"]["start_mm"], 0.1);
+  EXPECT_LE(summary["gap"]["start_mm"], 0.2);
+  EXPECT_EQ(summary["provenance"]["machine_sha256"].get<std::string>().size(), 64u);
+  EXPECT_THAT(outcome.out, HasSubstr("report.html"));
+}
+
+TEST(Rehearse, TheSameCommandAndSeedGiveTheSameBytes) {
+  const Folder folder;
+  ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "a")).status, 1);
+  ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "b")).status, 1);
+  EXPECT_EQ(comparable(read_file(folder / "a/summary.json")),
+            comparable(read_file(folder / "b/summary.json")));
+  EXPECT_EQ(read_file(folder / "a/trace.csv"), read_file(folder / "b/trace.csv"));
+  // Another seed is another machine.
+  ASSERT_LE(understudy(kBottle + "--seed 6 --out " + (folder / "c")).status, 1);
+  EXPECT_NE(read_file(folder / "a/trace.csv"), read_file(folder / "c/trace.csv"));
+}
+
+TEST(Rehearse, ThreadsOfTheRendererDoNotChangeTheBytes) {
+  const Folder folder;
+  ::setenv("LP_NUM_THREADS", "1", 1);
+  ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "a")).status, 1);
+  ::setenv("LP_NUM_THREADS", "4", 1);
+  ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "b")).status, 1);
+  ::unsetenv("LP_NUM_THREADS");
+  EXPECT_EQ(comparable(read_file(folder / "a/summary.json")),
+            comparable(read_file(folder / "b/summary.json")));
+}
+
+TEST(Rehearse, WithoutGapControlTheStartIsOpenLoop) {
+  const Folder folder;
+  ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "with")).status, 1);
+  ASSERT_LE(understudy(kBottle + "--seed 5 --gap-control off --out " + (folder / "without")).status, 1);
+  const auto with = nlohmann::json::parse(read_file(folder / "with/summary.json"));
+  const auto without = nlohmann::json::parse(read_file(folder / "without/summary.json"));
+  // The same machine, printed without gap control, either way it is asked for.
+  EXPECT_EQ(with["gap"]["open_loop_start_mm"], without["gap"]["start_mm"]);
+  EXPECT_EQ(without["gap"]["frames"], 0);
+  EXPECT_FALSE(without["gap"].contains("open_loop_start_mm"));
+}
+
+TEST(Rehearse, APoseOutOfReachIsANoGoThatNamesTheStrutAndHowMuch) {
+  const Folder folder;
+  const auto file = folder.write("far.gcode", "G21\nG90\nG0 X0 Y0 Z60 W1 I0 J0 K0\nG1 X0 Y0 Z110 F600\n");
+  const Outcome outcome = understudy("rehearse " + file + " --out " + (folder / "out"));
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  const auto summary = nlohmann::json::parse(read_file(folder / "out/summary.json"));
+  EXPECT_EQ(summary["verdict"], "no-go");
+  ASSERT_FALSE(summary["findings"].empty());
+  const auto& finding = summary["findings"][0];
+  EXPECT_EQ(finding["kind"], "strut_length");
+  EXPECT_EQ(finding["gcode_line"], 4);
+  EXPECT_EQ(finding["unit"], "mm");
+  EXPECT_EQ(finding["limit"], 170.0);
+  EXPECT_LT(finding["value"], 170.0);
+  EXPECT_THAT(finding["message"].get<std::string>(), HasSubstr("strut"));
+  EXPECT_FALSE(summary.contains("engine")) << "nothing was simulated";
+}
+
+TEST(Rehearse, InterruptedLeavesNothing) {
+  const Folder folder;
+  for (const double seconds : {0.1, 0.5, 1.0}) {
+    const Outcome outcome = understudy_interrupted(kBottle + "--out " + (folder / "out"), seconds);
+    if (outcome.status <= 1) continue;  // it was faster than the signal
+    EXPECT_EQ(outcome.status, 3) << seconds << " s: " << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
+    EXPECT_EQ(folder.entries(), 0) << seconds;
+  }
+}
+
+TEST(Help, EveryCommandExplainsItself) {
+  for (const char* words :
+       {"--help", "rehearse --help", "scenario --help", "scenario run --help", "plan surface --help",
+        "sweep --help", "axes --help", "poses --help", "export mjcf --help", "--version"}) {
+    const Outcome outcome = understudy(words);
+    EXPECT_EQ(outcome.status, 0) << words;
+    EXPECT_GT(outcome.out.size(), 10u) << words;
+    EXPECT_EQ(outcome.err, "") << words;
+  }
+}
+
+TEST(Doctor, ThisComputerCanRehearse) {
+  const Outcome outcome = understudy("doctor");
+  EXPECT_EQ(outcome.status, 0) << outcome.out;
+}
+
+}  // namespace
+}  // namespace understudy::cli_test

@@ -1,0 +1,71 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/output_file.h"
+#include "tests/cli/program_run.h"
+
+namespace understudy::cli_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kSource = UNDERSTUDY_SOURCE_DIR;
+
+/// The shipped scenario with one replacement, in a folder of its own.
+std::string changed(const Folder& folder, const std::string& what, const std::string& by) {
+  std::string yaml = read_file(kSource + "/scenarios/song-bottle.yaml");
+  yaml.replace(yaml.find("program: song-bottle.gcode"), 26,
+               "program: " + kSource + "/scenarios/song-bottle.gcode");
+  const auto at = yaml.find(what);
+  EXPECT_NE(at, std::string::npos);
+  yaml.replace(at, what.size(), by);
+  return folder.write("changed.yaml", yaml);
+}
+
+TEST(ScenarioRun, TheBottleHoldsWhatIsExpectedOfIt) {
+  const Folder folder;
+  const Outcome outcome =
+      understudy("scenario run " + kSource + "/scenarios/song-bottle.yaml --junit " + (folder / "junit.xml"));
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("1 passed, 0 failed"));
+  EXPECT_THAT(read_file(folder / "junit.xml"), HasSubstr("<testsuite"));
+}
+
+TEST(ScenarioRun, AnExpectationThatFailsIsStatusOneAndSaysByHowMuch) {
+  const Folder folder;
+  const auto file =
+      changed(folder, "metric: gap.start_mm, min: 0.1, max: 0.2", "metric: gap.start_mm, min: 0.5, max: 0.6");
+  const Outcome outcome = understudy("scenario run " + file + " --junit " + (folder / "junit.xml"));
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("below 0.5 mm"));
+  EXPECT_THAT(read_file(folder / "junit.xml"), HasSubstr("<failure"));
+}
+
+TEST(ScenarioRun, BadScenariosAreRefusedBeforeAnythingRuns) {
+  const Folder folder;
+  const Outcome key = understudy("scenario run " + changed(folder, "gap_control:", "gap_controll:"));
+  EXPECT_EQ(key.status, 2);
+  EXPECT_THAT(key.err, HasSubstr("gap_control"));
+  const Outcome metric =
+      understudy("scenario run " + changed(folder, "metric: gap.start_mm", "metric: gap.strat_mm"));
+  EXPECT_EQ(metric.status, 2);
+  EXPECT_THAT(metric.err, HasSubstr("gap.start_mm"));
+  EXPECT_EQ(understudy("scenario run " + (folder / "none.yaml")).status, 2);
+}
+
+TEST(ScenarioList, NamesTheShippedScenarios) {
+  const Outcome outcome = understudy("scenario list " + kSource + "/scenarios");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("song-bottle"));
+}
+
+TEST(Sweep, DoesNotDependOnTheNumberOfThreads) {
+  const Folder folder;
+  const std::string scenario = kSource + "/scenarios/song-bottle.yaml --samples 3 ";
+  ASSERT_EQ(understudy("sweep " + scenario + "-j 1 --out " + (folder / "one")).status, 0);
+  ASSERT_EQ(understudy("sweep " + scenario + "-j 3 --out " + (folder / "three")).status, 0);
+  EXPECT_EQ(read_file(folder / "one/sweep.csv"), read_file(folder / "three/sweep.csv"));
+}
+
+}  // namespace
+}  // namespace understudy::cli_test

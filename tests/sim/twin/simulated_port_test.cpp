@@ -1,0 +1,231 @@
+#include "sim/twin/simulated_port.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "sim/as_built/as_built.h"
+
+namespace understudy::sim {
+namespace {
+
+using machine::AxisArray;
+using machine::Fault;
+using machine::Setpoint;
+using machine::Status;
+
+/// A plant without mechanics: axes are where the drives say. It remembers what it was told.
+class RigidPlant : public Plant {
+ public:
+  std::string engine() const override { return "rigid 1"; }
+  double timestep() const override { return 0.5e-3; }
+  double time() const override { return time_; }
+  void reset(const AxisArray& displacement) override { displacement_ = displacement; }
+  void step(const DriveCommand& command) override {
+    if (time_ > diverge_at) throw MachineError("diverged");
+    displacement_ = command.position;
+    time_ += timestep();
+    commands.push_back(command);
+  }
+  Pose tool_pose() const override { return Pose(Eigen::Translation3d(time_, displacement_[0], 0)); }
+  AxisArray displacement() const override { return displacement_; }
+  double closure_error() const override { return 0; }
+
+  std::vector<DriveCommand> commands;
+  double diverge_at = std::numeric_limits<double>::infinity();
+
+ private:
+  double time_ = 0;
+  AxisArray displacement_{};
+};
+
+class SimulatedPortTest : public ::testing::Test {
+ protected:
+  SimulatedPortTest() : machine_(machine::load_machine("hexapod")), port_(machine_, plant_, exposure(), {}) {
+    home_ = port_.state().position;
+  }
+
+  Exposure exposure() {
+    return [this](const Pose& X_WT, const Region& region, std::uint64_t) {
+      exposed_at_ = X_WT.translation().x();
+      return Image{region,
+                   std::vector<std::uint8_t>(static_cast<std::size_t>(region.width * region.height), 7)};
+    };
+  }
+
+  /// Strut 1 at `speed` [m/s], one setpoint a millisecond, starting now.
+  std::vector<Setpoint> ramp(double speed, int count, bool rest_at_end) const {
+    std::vector<Setpoint> setpoints;
+    for (int i = 1; i <= count; ++i) {
+      Setpoint s;
+      s.time = port_.now() + 1e-3 * i;
+      s.position = home_;
+      s.position[0] += speed * 1e-3 * i;
+      s.velocity[0] = rest_at_end && i == count ? 0 : speed;
+      s.filament = 1e-4 * i;
+      s.line = 10 + i;
+      setpoints.push_back(s);
+    }
+    return setpoints;
+  }
+
+  machine::MachineDescription machine_;
+  RigidPlant plant_;
+  SimulatedPort port_;
+  AxisArray home_{};
+  double exposed_at_ = -1;
+};
+
+TEST_F(SimulatedPortTest, StartsAtRestAtHome) {
+  kinematics::StrutLengths lengths{};
+  ASSERT_EQ(kinematics::inverse(machine_.hexapod, machine_.X_BT_home, lengths), kinematics::Solve::ok);
+  for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_NEAR(home_[i], lengths[i], 1e-12);
+  EXPECT_FALSE(port_.state().moving);
+}
+
+TEST_F(SimulatedPortTest, AcceptedIsNotExecuted) {
+  ASSERT_EQ(port_.submit(ramp(0.01, 100, true), 1), Status::ok);
+  EXPECT_EQ(port_.state().accepted, 100u);
+  EXPECT_EQ(port_.state().executed, 0u);
+  EXPECT_NEAR(port_.state().position[0], home_[0], 1e-15);
+  ASSERT_EQ(port_.wait_until(0.2), Status::ok);
+  EXPECT_EQ(port_.state().executed, 100u);
+  // Whole microsteps: half a step is the largest error.
+  EXPECT_NEAR(port_.state().position[0], home_[0] + 0.01 * 0.1, 0.5 * machine_.drive.step() + 1e-12);
+}
+
+TEST_F(SimulatedPortTest, DrivesMoveInWholeMicrosteps) {
+  ASSERT_EQ(port_.submit(ramp(0.003, 200, true), 1), Status::ok);
+  ASSERT_EQ(port_.wait_until(0.25), Status::ok);
+  const double step = machine_.drive.step();
+  for (const auto& command : plant_.commands) {
+    const double steps = command.position[0] / step;
+    ASSERT_NEAR(steps, std::round(steps), 1e-6);
+  }
+}
+
+TEST_F(SimulatedPortTest, RefusesWhatCannotBe) {
+  auto late = ramp(0.01, 3, true);
+  late[1].time = late[0].time;
+  EXPECT_EQ(port_.submit(late, 1), Status::rejected);
+  auto nan = ramp(0.01, 3, true);
+  nan[2].position[4] = std::nan("");
+  EXPECT_EQ(port_.submit(nan, 1), Status::rejected);
+  auto far = ramp(0.01, 3, true);
+  far[2].position[4] = machine_.limits.strut_max + 1e-6;
+  EXPECT_EQ(port_.submit(far, 1), Status::rejected);
+  EXPECT_EQ(port_.submit(ramp(0.0, 5000, true), 10), Status::queue_full);
+  EXPECT_EQ(port_.submit(ramp(0.01, 3, true), -1), Status::deadline_exceeded);
+  EXPECT_EQ(port_.state().accepted, 0u);
+}
+
+TEST_F(SimulatedPortTest, AQueueThatRunsDryAtSpeedIsAStickyUnderrun) {
+  ASSERT_EQ(port_.submit(ramp(0.01, 50, false), 1), Status::ok);
+  EXPECT_EQ(port_.wait_until(0.2), Status::faulted);
+  EXPECT_EQ(port_.state().fault, Fault::underrun);
+  EXPECT_EQ(port_.submit(ramp(0.0, 3, true), 1), Status::faulted);
+  EXPECT_EQ(port_.wait_until(0.3), Status::faulted);
+  ASSERT_EQ(port_.urgent(machine::UrgentCommand::clear_fault), Status::ok);
+  EXPECT_EQ(port_.wait_until(0.3), Status::ok);
+}
+
+TEST_F(SimulatedPortTest, StopDeceleratesAndDropsTheQueue) {
+  ASSERT_EQ(port_.submit(ramp(0.02, 1000, true), 2), Status::ok);
+  ASSERT_EQ(port_.wait_until(0.1), Status::ok);
+  ASSERT_EQ(port_.urgent(machine::UrgentCommand::stop), Status::ok);
+  ASSERT_EQ(port_.wait_until(0.5), Status::ok);
+  // 0.1 s at 20 mm/s and a linear ramp of 0.1 s: 2 mm + 1 mm.
+  EXPECT_NEAR(port_.state().position[0] - home_[0], 3e-3, 0.05e-3);
+  EXPECT_EQ(port_.state().free_slots, 4096u);
+  double previous = 0;
+  for (const auto& c : plant_.commands) {
+    ASSERT_LE(std::abs(c.position[0] - previous) * (previous == 0 ? 0 : 1),
+              0.02 * 0.5e-3 + machine_.drive.step());
+    previous = c.position[0];
+  }
+  // And it takes orders again from where it rests.
+  home_ = port_.state().position;
+  EXPECT_EQ(port_.submit(ramp(0.0, 3, true), 2), Status::ok);
+}
+
+TEST_F(SimulatedPortTest, HoldKeepsTheQueueAndResumeGoesOn) {
+  ASSERT_EQ(port_.submit(ramp(0.02, 500, true), 2), Status::ok);
+  ASSERT_EQ(port_.wait_until(0.1), Status::ok);
+  ASSERT_EQ(port_.urgent(machine::UrgentCommand::hold), Status::ok);
+  ASSERT_EQ(port_.wait_until(1.0), Status::ok);
+  EXPECT_NEAR(port_.state().position[0] - home_[0], 3e-3, 0.05e-3);
+  ASSERT_EQ(port_.urgent(machine::UrgentCommand::resume), Status::ok);
+  ASSERT_EQ(port_.wait_until(2.0), Status::ok);
+  EXPECT_NEAR(port_.state().position[0] - home_[0], 10e-3, machine_.drive.step());
+  EXPECT_EQ(port_.state().executed, 500u);
+}
+
+TEST_F(SimulatedPortTest, AFrameShowsTheMiddleOfItsExposureAndCostsItsTime) {
+  machine::Frame frame;
+  const Region region{10, 20, 30, 40};
+  EXPECT_EQ(port_.capture(region, frame, 1e-3), Status::deadline_exceeded);
+  EXPECT_EQ(port_.now(), 0);
+  ASSERT_EQ(port_.capture(region, frame, 1), Status::ok);
+  const auto& m = machine_.microscope;
+  EXPECT_NEAR(exposed_at_, 0.5 * m.exposure, plant_.timestep());
+  EXPECT_NEAR(frame.exposed_at, exposed_at_, 1e-12);
+  EXPECT_NEAR(frame.received_at, m.exposure + m.transfer, plant_.timestep());
+  EXPECT_EQ(frame.image.region, region);
+  const auto first = frame.number;
+  ASSERT_EQ(port_.capture(region, frame, 1), Status::ok);
+  EXPECT_GT(frame.number, first);
+}
+
+TEST_F(SimulatedPortTest, AnEngineThatDivergesIsAFaultThatStays) {
+  plant_.diverge_at = 0.05;
+  EXPECT_EQ(port_.wait_until(0.2), Status::faulted);
+  EXPECT_EQ(port_.state().fault, Fault::engine);
+  EXPECT_EQ(port_.engine_failure(), "diverged");
+  EXPECT_EQ(port_.urgent(machine::UrgentCommand::clear_fault), Status::faulted);
+}
+
+class Recorder : public Observer {
+ public:
+  void observe(const Snapshot& s) override { snapshots.push_back(s); }
+  std::vector<Snapshot> snapshots;
+};
+
+TEST(SimulatedPort, SwitchingAnObserverOffLeavesTheTrajectoryBitIdentical) {
+  const auto machine = machine::load_machine("hexapod");
+  Pose end[2];
+  for (const bool watched : {false, true}) {
+    const auto plant = make_mujoco_plant(machine, make_as_built(machine, "sampled", 3));
+    Recorder recorder;
+    std::vector<Observer*> observers;
+    if (watched) observers.push_back(&recorder);
+    SimulatedPort port(machine, *plant, {}, observers);
+    std::vector<Setpoint> setpoints;
+    const AxisArray start = port.state().position;
+    for (int i = 1; i <= 300; ++i) {
+      Setpoint s;
+      s.time = port.now() + 1e-3 * i;
+      s.position = start;
+      for (std::size_t k = 0; k < 6; ++k) s.position[k] += 1e-3 * (1 - std::cos(0.02 * i)) * (k % 2 ? 1 : -1);
+      for (std::size_t k = 0; k < 6; ++k)
+        s.velocity[k] = i == 300 ? 0 : 20e-3 * std::sin(0.02 * i) * (k % 2 ? 1 : -1);
+      setpoints.push_back(s);
+    }
+    ASSERT_EQ(port.submit(setpoints, 10), Status::ok);
+    ASSERT_EQ(port.wait_until(port.now() + 0.4), Status::ok);
+    end[watched] = plant->tool_pose();
+    if (watched) {
+      EXPECT_NEAR(static_cast<double>(recorder.snapshots.size()), 200, 2);  // 0.4 s, one each 2 ms
+      EXPECT_GT((recorder.snapshots.back().X_WT.translation() -
+                 recorder.snapshots.back().X_WT_commanded.translation())
+                    .norm(),
+                1e-6);  // as built is not nominal
+    }
+  }
+  EXPECT_TRUE((end[0].matrix().array() == end[1].matrix().array()).all());
+}
+
+}  // namespace
+}  // namespace understudy::sim

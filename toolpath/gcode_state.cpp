@@ -1,0 +1,221 @@
+#include "toolpath/gcode_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace understudy::toolpath {
+namespace {
+
+constexpr const char* kMotionWords = "XYZEWIJK";
+// No machine is larger and no spool longer; keeps sums finite.
+constexpr double kLargestCoordinate = 100;  // [m]
+constexpr double kLargestExtruder = 1e6;    // [m]
+constexpr double kLongestDwell = 86400;     // [s]
+constexpr double kCelsius = 273.15;         // [K]
+
+bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
+
+}  // namespace
+
+GcodeState::GcodeState(const GcodeOptions& options) : options_(options), X_WT_(options.X_WT_home) {}
+
+void GcodeState::run(Block& block, std::vector<Step>& steps) {
+  if (block.empty()) return;
+  if (ended_) block.fail("a word after M30, the end of the program");
+  set_modes(block);
+  set_feed(block);
+  set_process(block, steps);
+  run_motion(block, steps);
+  block.check_all_taken();
+  if (block.find(Command::end) != nullptr) {
+    steps.push_back(step(StepKind::end, block.line()));
+    ended_ = true;
+  }
+}
+
+void GcodeState::set_modes(const Block& block) {
+  if (block.find(Command::inches) != nullptr) unit_ = kInch;
+  if (block.find(Command::millimetres) != nullptr) unit_ = kMillimetre;
+  if (block.find(Command::absolute) != nullptr) relative_ = false;
+  if (block.find(Command::relative) != nullptr) relative_ = true;
+  if (block.find(Command::absolute_extrusion) != nullptr) relative_extrusion_ = false;
+  if (block.find(Command::relative_extrusion) != nullptr) relative_extrusion_ = true;
+  if (block.find(Command::rapid) != nullptr) motion_ = Motion::rapid;
+  if (block.find(Command::linear) != nullptr) motion_ = Motion::linear;
+  if (block.find(Command::inverse_time) != nullptr) inverse_time_ = true;
+  // A feed does not survive a change of what it means.
+  if (block.find(Command::inverse_time) != nullptr) feed_.reset();
+  if (block.find(Command::per_minute) != nullptr) inverse_time_ = false;
+}
+
+void GcodeState::set_feed(Block& block) {
+  duration_.reset();
+  const Word* word = block.take('F');
+  if (word == nullptr) return;
+  const double feed = word->value * unit_ / 60;
+  const double duration = 60 / word->value;
+  if (!(word->value > 0 && feed > 0 && std::isfinite(duration)))
+    block.fail(*word, fmt::format("'{}': the feed must be above 0", word->text));
+  if (!inverse_time_) {
+    feed_ = feed;
+    return;
+  }
+  const bool moves = motion_ == Motion::linear && block.find_any(kMotionWords) != nullptr;
+  if (!moves)
+    block.fail(*word, fmt::format("'{}': under G93 an F belongs to the G1 move of its line", word->text));
+  duration_ = duration;
+}
+
+void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
+  const Word* heat = block.find(Command::heat);
+  const Word* wait = block.find(Command::heat_and_wait);
+  const Word* fan = block.find(Command::fan_on);
+  if (const Word* command = heat != nullptr ? heat : wait) {
+    const Word* s = block.take('S');
+    if (s == nullptr) block.fail(*command, fmt::format("'{}' needs S, the temperature in C", command->text));
+    if (s->value < 0) block.fail(*s, fmt::format("'{}': the nozzle temperature is below 0 C", s->text));
+    steps.push_back(step(StepKind::temperature, block.line()));
+    steps.back().temperature = s->value + kCelsius;
+    steps.back().wait = wait != nullptr;
+  }
+  if (fan != nullptr) {
+    const Word* s = block.take('S');
+    if (s == nullptr) block.fail(*fan, fmt::format("'{}' needs S, the fan's speed from 0 to 255", fan->text));
+    if (s->value < 0 || s->value > 255)
+      block.fail(*s, fmt::format("'{}': the fan's speed is outside 0 to 255", s->text));
+    steps.push_back(step(StepKind::fan, block.line()));
+    steps.back().fan = s->value / 255;
+  }
+  if (block.find(Command::fan_off) != nullptr) steps.push_back(step(StepKind::fan, block.line()));
+}
+
+void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
+  if (block.find(Command::dwell) != nullptr) return dwell(block, steps);
+  if (block.find(Command::home) != nullptr) return home(steps, block.line());
+  if (block.find(Command::set_position) != nullptr) return set_position(block);
+  const Word* word = block.find_any(kMotionWords);
+  if (word != nullptr && motion_ == Motion::none)
+    block.fail(*word, fmt::format("'{}' before any G0 or G1", word->text));
+  if (word != nullptr) return move(block, steps);
+  const Word* code = block.find(motion_ == Motion::rapid ? Command::rapid : Command::linear);
+  // A lone "G1 F1500" is how slicers set the feed; a lone "G1" is a line that lost its words.
+  if (code != nullptr && block.find('F') == nullptr)
+    block.fail(*code, fmt::format("'{}' has neither motion nor extrusion nor feed", code->text));
+}
+
+void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
+  const Word& code = *block.find(Command::dwell);
+  const Word* milliseconds = block.take('P');
+  const Word* seconds = block.take('S');
+  if ((milliseconds == nullptr) == (seconds == nullptr))
+    block.fail(code, "G4 needs either P (milliseconds) or S (seconds)");
+  const Word& word = seconds != nullptr ? *seconds : *milliseconds;
+  const double duration = seconds != nullptr ? seconds->value : milliseconds->value * 1e-3;
+  if (duration < 0 || duration > kLongestDwell)
+    block.fail(word, fmt::format("'{}': the dwell is outside 0 to {} s", word.text, kLongestDwell));
+  steps.push_back(step(StepKind::dwell, block.line()));
+  steps.back().duration = duration;
+}
+
+void GcodeState::home(std::vector<Step>& steps, int line) {
+  X_WT_ = options_.X_WT_home;
+  origin_.setZero();
+  steps.push_back(step(StepKind::home, line));
+}
+
+void GcodeState::set_position(Block& block) {
+  const Word& code = *block.find(Command::set_position);
+  if (block.find_any("XYZE") == nullptr) block.fail(code, "G92 names none of X Y Z E");
+  for (int i = 0; i < 3; ++i)
+    if (const Word* word = block.take("XYZ"[i])) origin_[i] = X_WT_.translation()[i] - length(block, *word);
+  if (const Word* word = block.take('E')) extruder_ = length(block, *word);
+}
+
+void GcodeState::move(Block& block, std::vector<Step>& steps) {
+  const Word* extrusion = block.find('E');
+  if (motion_ == Motion::rapid && extrusion != nullptr)
+    block.fail(*extrusion, fmt::format("'{}': G0 feeds no filament, use G1", extrusion->text));
+  const Pose from = X_WT_;
+  X_WT_ = target(block);
+  Step next = step(motion_ == Motion::rapid ? StepKind::travel : StepKind::move, block.line());
+  next.filament = fed_filament(block);
+  if (next.filament > 0) next.kind = StepKind::print;
+  if (motion_ == Motion::linear) set_pace(block, next);
+  if (next.filament != 0 && next.duration == 0 && !tip_moves(from, X_WT_)) {
+    next.duration = std::abs(next.filament) / next.feed;
+    next.feed = 0;
+  }
+  steps.push_back(next);
+}
+
+void GcodeState::set_pace(const Block& block, Step& step) const {
+  if (inverse_time_ && !duration_) block.fail("G93 needs F, one over the move's minutes, on every G1 line");
+  if (!inverse_time_ && !feed_) block.fail("G1 without a feed: no F on this line or before it");
+  step.duration = duration_.value_or(0);
+  step.feed = inverse_time_ ? 0 : *feed_;
+}
+
+Pose GcodeState::target(Block& block) const {
+  Vec3 p = X_WT_.translation();
+  for (int i = 0; i < 3; ++i) {
+    const Word* word = block.take("XYZ"[i]);
+    if (word == nullptr) continue;
+    p[i] = (relative_ ? p[i] : origin_[i]) + length(block, *word);
+    if (std::abs(p[i]) > kLargestCoordinate)
+      block.fail(*word, fmt::format("'{}' leads to {:.6g} mm, beyond {:.6g} mm", word->text, to_mm(p[i]),
+                                    to_mm(kLargestCoordinate)));
+  }
+  const std::optional<Quat> turn = orientation(block);
+  return turn ? make_pose(*turn, p) : make_pose(Mat3(X_WT_.linear()), p);
+}
+
+std::optional<Quat> GcodeState::orientation(Block& block) const {
+  const Word* first = block.find_any("WIJK");
+  if (first == nullptr) return std::nullopt;
+  const Word* w = block.take('W');
+  const Word* vector[3] = {block.take('I'), block.take('J'), block.take('K')};
+  for (int i = 0; i < 3; ++i)
+    if (vector[i] == nullptr)
+      block.fail(*first, fmt::format("orientation without {}: give W I J K (quaternion) or I J K (tool axis)",
+                                     "IJK"[i]));
+  const Vec3 v(vector[0]->value, vector[1]->value, vector[2]->value);
+  const double norm = w != nullptr ? std::hypot(w->value, v.stableNorm()) : v.stableNorm();
+  if (!(std::abs(norm - 1) <= options_.unit_tolerance))
+    block.fail(*first, fmt::format("the {} has length {:.6g}, farther than {:g} from 1",
+                                   w != nullptr ? "quaternion W I J K" : "tool axis I J K", norm,
+                                   options_.unit_tolerance));
+  if (w != nullptr) return Quat(w->value, v.x(), v.y(), v.z()).normalized();
+  return shortest_arc_from_z(v.normalized());
+}
+
+double GcodeState::fed_filament(Block& block) {
+  const Word* word = block.take('E');
+  if (word == nullptr) return 0;
+  const double value = length(block, *word);
+  const double before = extruder_;
+  extruder_ = relative_extrusion_ ? before + value : value;
+  if (std::abs(extruder_) > kLargestExtruder)
+    block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
+                                  to_mm(extruder_), to_mm(kLargestExtruder)));
+  return relative_extrusion_ ? value : value - before;
+}
+
+double GcodeState::length(const Block& block, const Word& word) const {
+  const double value = word.value * unit_;
+  if (std::abs(value) > kLargestExtruder)
+    block.fail(word, fmt::format("'{}' is {:.6g} mm, beyond {:.6g} mm", word.text, to_mm(value),
+                                 to_mm(kLargestExtruder)));
+  return value;
+}
+
+Step GcodeState::step(StepKind kind, int line) const {
+  Step step;
+  step.kind = kind;
+  step.X_WT = X_WT_;
+  step.line = line;
+  return step;
+}
+
+}  // namespace understudy::toolpath

@@ -1,0 +1,54 @@
+// What earlier lines of a G-code program left behind, and what one more line makes of it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/units.h"
+#include "toolpath/gcode.h"
+#include "toolpath/gcode_block.h"
+
+namespace understudy::toolpath {
+
+class GcodeState {
+ public:
+  explicit GcodeState(const GcodeOptions& options);
+
+  /// Runs a line and appends its steps. In the order of RS-274: units and modes, feed, heater and fan,
+  /// motion, end. Throws InputError with place.
+  void run(Block& block, std::vector<Step>& steps);
+
+ private:
+  enum class Motion { none, rapid, linear };
+
+  void set_modes(const Block& block);
+  void set_feed(Block& block);
+  void set_process(Block& block, std::vector<Step>& steps);
+  void run_motion(Block& block, std::vector<Step>& steps);
+  void dwell(Block& block, std::vector<Step>& steps);
+  void home(std::vector<Step>& steps, int line);
+  void set_position(Block& block);
+  void move(Block& block, std::vector<Step>& steps);
+  void set_pace(const Block& block, Step& step) const;
+
+  Pose target(Block& block) const;
+  std::optional<Quat> orientation(Block& block) const;
+  double fed_filament(Block& block);
+  double length(const Block& block, const Word& word) const;
+  Step step(StepKind kind, int line) const;
+
+  GcodeOptions options_;
+  Pose X_WT_;                   // where the tool is
+  Vec3 origin_ = Vec3::Zero();  // [m], coordinates + origin = world (G92)
+  double extruder_ = 0;         // [m], reading of E
+  double unit_ = kMillimetre;   // [m]
+  bool relative_ = false;
+  bool relative_extrusion_ = false;
+  bool inverse_time_ = false;
+  Motion motion_ = Motion::none;
+  std::optional<double> feed_;      // [m/s] under G94
+  std::optional<double> duration_;  // [s] of this line's move under G93
+  bool ended_ = false;
+};
+
+}  // namespace understudy::toolpath

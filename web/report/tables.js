@@ -1,0 +1,92 @@
+'use strict';
+// What was found, every figure of the summary, and where it comes from.
+const kFindingsShown = 20;
+
+function drawFindings(report) {
+  const findings = report.summary.findings;
+  const title = 'What was found, and where';
+  if (findings.length === 0) return section(title, null, element('p', {}, 'Nothing. No limit was broken or neared.'));
+  const sorted = findings.map((finding, order) => ({ finding, order })).sort((a, b) =>
+    (a.finding.severity === 'error' ? 0 : 1) - (b.finding.severity === 'error' ? 0 : 1) || a.order - b.order);
+  const rows = sorted.map(({ finding }) => findingRow(finding));
+  const rest = rows.slice(kFindingsShown);
+  return section(title, null, findingsTable(rows.slice(0, kFindingsShown)),
+    rest.length ? element('details', {}, element('summary', {}, format.plural(rest.length, 'more finding')),
+      findingsTable(rest)) : null);
+}
+
+function findingsTable(rows) {
+  const head = ['', 'Line', 'Time', 'Kind', 'Value', 'Limit', 'Message'];
+  const numeric = new Set(['Line', 'Time', 'Value', 'Limit']);
+  return element('table', { class: 'findings' },
+    element('thead', {}, element('tr', {}, ...head.map((h) => element('th', { class: numeric.has(h) ? 'number' : null }, h)))),
+    element('tbody', {}, ...rows));
+}
+
+function findingRow(finding) {
+  const cell = (label, text, kind) => element('td', { 'data-label': label, class: kind }, text);
+  const severity = element('span', { class: 'severity ' + finding.severity }, finding.severity);
+  return element('tr', {},
+    element('td', { class: 'mark' }, severity),
+    cell('Line', finding.gcode_line === undefined ? '\u2013' : String(finding.gcode_line), 'number'),
+    cell('Time', format.quantity(finding.time_s, 's'), 'number'),
+    cell('Kind', format.kind(finding.kind)),
+    cell('Value', format.quantity(finding.value, finding.unit), 'number'),
+    cell('Limit', format.quantity(finding.limit, finding.unit), 'number'),
+    cell('Message', format.message(finding.message), 'message'));
+}
+
+const kGroupTitles = {
+  print: 'Print', accuracy: 'Accuracy', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', engine: 'Engine',
+};
+
+const kFigureLabels = {
+  duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', deposited_mm: 'Bead laid down',
+  travel_mm: 'Travel without extrusion',
+  tip_rms_um: 'Tip error, RMS', tip_p95_um: 'Tip error, 95th percentile', tip_max_um: 'Tip error, largest',
+  orientation_max_mrad: 'Orientation error, largest', open_loop_tip_max_um: 'Tip error without gap control, largest',
+  commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
+  path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
+  in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',
+  min_clearance_mm: 'Least clearance', checks: 'Checks', pairs: 'Pairs of bodies',
+  name: 'Name', version: 'Version', timestep_s: 'Time step', steps: 'Steps',
+  real_time_factor: 'Simulated time / wall time', closure_max_um: 'Loop closure error, largest',
+};
+
+function figureText(key, value) {
+  if (typeof value === 'string') return value;
+  if (key.endsWith('_fraction')) return format.percent(value);
+  if (key === 'timestep_s') return format.quantity(1000 * value, '') + '\u00a0ms';
+  const unit = format.unitOfKey(key);
+  if (unit) return format.quantity(value, unit);
+  return Number.isInteger(value) ? format.count(value) : format.quantity(value, '');
+}
+
+function drawFigures(report) {
+  const groups = Object.entries(report.summary).filter(([key, value]) =>
+    key !== 'provenance' && value && typeof value === 'object' && !Array.isArray(value));
+  if (groups.length === 0) return null;
+  return section('Figures', null, element('div', { class: 'figures' }, ...groups.map(([key, values]) =>
+    element('table', {}, element('caption', {}, kGroupTitles[key] || key),
+      element('tbody', {}, ...Object.entries(values).map(([name, value]) => element('tr', {},
+        element('th', { scope: 'row' }, kFigureLabels[name] || format.kind(name)),
+        element('td', { class: 'number' }, figureText(name, value)))))))));
+}
+
+function drawProvenance(report) {
+  const provenance = report.summary.provenance;
+  const rows = [
+    ['Program', report.names.program, provenance.program_sha256],
+    ['Machine', report.names.machine, provenance.machine_sha256],
+    ['Fixture', report.names.fixture],
+    ['Gap control', report.names.gap_control],
+    ['As built', provenance.as_built],
+    ['Seed', report.names.seed],
+    ['Understudy', provenance.version],
+    ['Command', provenance.command],
+  ].filter((row) => row[1]);
+  return section('Provenance', null, element('table', { class: 'provenance' }, element('tbody', {},
+    ...rows.map(([label, text, hash]) => element('tr', {}, element('th', { scope: 'row' }, label),
+      element('td', {}, label === 'Command' ? element('code', {}, text) : text,
+        hash ? element('code', { class: 'hash' }, 'sha256 ' + hash) : null))))));
+}

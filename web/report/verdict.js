@@ -1,0 +1,52 @@
+'use strict';
+// The answer, the reason, and the few figures that carry it.
+function drawVerdict(report) {
+  const summary = report.summary;
+  const go = summary.verdict === 'go';
+  const errors = summary.findings.filter((f) => f.severity === 'error').length;
+  const warnings = summary.findings.length - errors;
+  const tally = format.plural(errors, 'error') + ' · ' + format.plural(warnings, 'warning');
+  return element('header', {},
+    element('p', { class: 'eyebrow' }, 'Understudy rehearsal'),
+    element('h1', {}, report.title),
+    element('div', { class: 'verdict ' + (go ? 'go' : 'no-go') },
+      element('strong', {}, go ? 'GO' : 'NO-GO'),
+      element('div', {},
+        element('p', { class: 'reason' }, format.message(report.reason)),
+        element('p', { class: 'tally' }, tally))),
+    drawKeyFigures(report));
+}
+
+function drawKeyFigures(report) {
+  const { gap, accuracy, collision, print } = report.summary;
+  const band = report.gap_band;
+  const tiles = [];
+  const tile = (label, value, note) => tiles.push(element('div', {},
+    element('dt', {}, label), element('dd', {}, value), element('dd', { class: 'aside' }, note || '')));
+  if (gap) {
+    tile('Gap at the start', format.quantity(gap.start_mm, 'mm'),
+      gap.open_loop_start_mm !== undefined ? 'without gap control ' + format.quantity(gap.open_loop_start_mm, 'mm') : '');
+    tile('Path in the band', format.percent(gap.in_band_fraction),
+      band ? 'band ' + band.min_mm + '\u2013' + band.max_mm + '\u00a0mm' : '');
+  }
+  if (accuracy) {
+    tile('Largest tip error', format.quantity(accuracy.tip_max_um, 'um'),
+      report.names.gap_control === 'off' ? '' : 'without gap control ' + format.quantity(accuracy.open_loop_tip_max_um, 'um'));
+  }
+  if (collision) {
+    tile('Least clearance', format.quantity(collision.min_clearance_mm, 'mm'),
+      format.count(collision.checks) + ' checks');
+  }
+  if (print) {
+    tile('Duration', formatDuration(print.duration_s), format.quantity(print.deposited_mm, 'mm') + ' laid down');
+  }
+  return tiles.length ? element('dl', { class: 'key-figures' }, ...tiles) : null;
+}
+
+function formatDuration(seconds) {
+  if (seconds < 120) return format.number(seconds, 1) + '\u00a0s';
+  const minutes = Math.floor(seconds / 60);
+  const rest = Math.round(seconds - 60 * minutes);
+  return minutes < 120 ? minutes + '\u00a0min ' + rest + '\u00a0s'
+    : Math.floor(minutes / 60) + '\u00a0h ' + (minutes % 60) + '\u00a0min';
+}
