@@ -2,15 +2,18 @@
 
 #include <algorithm>
 
+#include "core/interrupt.h"
+
 namespace understudy::control {
 
 using machine::Status;
 
 namespace {
 
-constexpr std::size_t kBatch = 256;  // setpoints handed over at once
+constexpr std::size_t kBatch = 256;  // setpoints handed over at once, or half of a small queue
 constexpr double kPatience = 30.0;   // [s], port clock: a call that takes longer has failed
-constexpr int kLeadCycles = 2;       // a stretch begins this far ahead of the port's clock
+constexpr double kLead = 0.05;       // [s], a stretch begins this far ahead: time to plan its first batch
+constexpr double kSlice = 0.25;      // [s], between looks at the interrupt flag
 
 }  // namespace
 
@@ -19,16 +22,18 @@ Feeder::Feeder(const machine::MachineDescription& machine, machine::MachinePort&
       mechanism_(machine.make_mechanism()),
       limits_(motion_limits(machine)),
       port_(port),
-      X_WT_rest_(X_WT_start) {
-  batch_.reserve(kBatch);
+      batch_size_(std::clamp<std::size_t>(port.state().free_slots / 2, 1, kBatch)),
+      X_WT_rest_(X_WT_start),
+      end_time_(port.now()) {
+  batch_.reserve(batch_size_);
 }
 
 Pose Feeder::resting_pose() const { return planner_ ? planner_->resting_pose() : X_WT_rest_; }
 
 Status Feeder::push(const toolpath::Step& step) {
   if (!planner_) {
-    planner_ = std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_, X_WT_rest_,
-                                               port_.now() + kLeadCycles * limits_.cycle_time);
+    planner_ =
+        std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_, X_WT_rest_, port_.now() + kLead);
     filament_at_start_ = filament_;
   }
   planner_->push(step);
@@ -43,7 +48,14 @@ Status Feeder::come_to_rest() {
   if (const Status s = hand_over(); s != Status::ok) return s;
   X_WT_rest_ = planner_->resting_pose();
   planner_.reset();
-  return port_.wait_until(end_time_ + limits_.cycle_time);
+  if (const Status s = wait_until(end_time_ + limits_.cycle_time); s != Status::ok) return s;
+  // Accepted is not executed: a machine that was held is late, not done.
+  const double deadline = end_time_ + kPatience;
+  while (port_.state().executed < port_.state().accepted) {
+    if (port_.now() > deadline) return Status::deadline_exceeded;
+    if (const Status s = wait_until(port_.now() + kSlice); s != Status::ok) return s;
+  }
+  return Status::ok;
 }
 
 Status Feeder::pump() {
@@ -51,7 +63,7 @@ Status Feeder::pump() {
   while (planner_->next(point)) {
     point.setpoint.filament += filament_at_start_;
     batch_.push_back(point.setpoint);
-    if (batch_.size() == kBatch)
+    if (batch_.size() >= batch_size_)
       if (const Status s = hand_over(); s != Status::ok) return s;
   }
   return Status::ok;
@@ -62,9 +74,10 @@ Status Feeder::hand_over() {
   const double deadline = port_.now() + kPatience;
   Status s = port_.submit(batch_, deadline);
   while (s == Status::queue_full) {
+    if (port_.now() > deadline) return Status::deadline_exceeded;
     // The queue empties at the cycle's pace: wait for about one batch.
-    if (const Status waited =
-            port_.wait_until(port_.now() + static_cast<double>(kBatch) * limits_.cycle_time);
+    const double pause = static_cast<double>(batch_size_) * limits_.cycle_time;
+    if (const Status waited = wait_until(std::min(port_.now() + pause, deadline + limits_.cycle_time));
         waited != Status::ok)
       return waited;
     s = port_.submit(batch_, deadline);
@@ -73,6 +86,16 @@ Status Feeder::hand_over() {
   end_time_ = batch_.back().time;
   batch_.clear();
   return s;
+}
+
+Status Feeder::wait_until(double time) {
+  while (port_.now() < time) {
+    stop_if_interrupted();
+    const double before = port_.now();
+    if (const Status s = port_.wait_until(std::min(time, before + kSlice)); s != Status::ok) return s;
+    if (port_.now() <= before) break;  // as near as the port's clock comes
+  }
+  return Status::ok;
 }
 
 }  // namespace understudy::control

@@ -19,7 +19,8 @@ struct GapControllerOptions {
   int frames_averaged = 3;      ///< in the slow zone; the tip creeps between them, so speckle changes
   int stops_max = 40;           ///< steps before giving up
   double residual_max_px = 12;  ///< farther off its line, the dot is implausible
-  double settle_time = 0.05;    ///< [s], rest before an exposure
+  double depth_max = 4e-3;    ///< [m], below S: a surface that lies lower is not the one that was programmed
+  double settle_time = 0.05;  ///< [s], rest before an exposure
   double frame_age_max = 0.25;  ///< [s]
   double retreat = 2e-3;        ///< [m], along the tool axis, after a stop for a reason
 };

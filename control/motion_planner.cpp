@@ -63,7 +63,6 @@ struct MotionPlanner::State {
   Pose X_WT_rest;  // at the end of what was queued
   double filament_rest = 0;
   AxisArray axes_rest{};  // at the end of what was cut
-  bool stop_next = true;  // the next segment begins at rest
 
   std::deque<Piece> pieces;
   double window_length = 0;   // [m]
@@ -128,8 +127,6 @@ void MotionPlanner::State::push(const toolpath::Step& step) {
   segment.filament_end += filament_rest;
   filament_rest = segment.filament_end;
   if (!segment.moves() && segment.rest == 0) return;
-  segment.stop_before = stop_next;
-  stop_next = !segment.moves();
   if (cut_segments < first_segment + segments.size()) {
     const PathSegment& before = segments.back();
     double speed = 0;
@@ -152,8 +149,7 @@ void MotionPlanner::State::cut_last(double exit_speed) {
   const std::size_t index = cut_segments - first_segment;
   const PathSegment& segment = segments[index];
   ChannelArray jump{};
-  if (!segment.stop_before && segment.moves() && index > 0 && segments[index - 1].moves())
-    jump = corner_jump(segments[index - 1], segment, kinematics.axis_count());
+  if (segment.entry_speed > 0) jump = corner_jump(segments[index - 1], segment, kinematics.axis_count());
   append_pieces(segment, cut_segments, exit_speed, jump, kinematics, limits, channels, axes_rest, pieces);
   window_length += segment.length;
   ++cut_segments;
@@ -162,7 +158,6 @@ void MotionPlanner::State::cut_last(double exit_speed) {
 void MotionPlanner::State::finish() {
   if (cut_segments < first_segment + segments.size()) cut_last(0);
   settled = pieces.size();
-  stop_next = true;
 }
 
 // Plans everything that is cut. Final is what a stop at the window's end cannot reach back to: its first

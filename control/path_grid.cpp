@@ -88,7 +88,6 @@ void append_pieces(const PathSegment& segment, std::size_t number, double exit_s
   Piece piece;
   piece.segment = number;
   piece.rest = segment.rest;
-  piece.stop = segment.stop_before;
   piece.jump = jump;
   piece.corner = std::any_of(jump.begin(), jump.end(), [](double j) { return j > 0; });
   piece.node_speed_max = segment.entry_speed;
@@ -123,7 +122,7 @@ void append_pieces(const PathSegment& segment, std::size_t number, double exit_s
     piece.slope_begin = piece.slope_end;
     piece.node_speed_max = piece.speed_max;
     piece.jump.fill(0);
-    piece.corner = piece.stop = false;
+    piece.corner = false;
   }
 }
 

@@ -31,8 +31,7 @@ struct PathSegment {
   int line = 0;
   std::size_t step = 0;
   ChannelArray slope_begin{}, slope_end{};  ///< d(axis)/ds, d(tip)/ds at both ends
-  double entry_speed = 0;                   ///< [m/s] of s, at most, where it begins
-  bool stop_before = false;                 ///< it begins at rest
+  double entry_speed = 0;                   ///< [m/s] of s, at most, where it begins; 0: at rest
 
   bool moves() const { return length > 0; }
   Pose pose_at(double s) const;

@@ -1,11 +1,14 @@
 #include "control/print.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "control/approach.h"
 #include "control/feeder.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/units.h"
 
 namespace understudy::control {
 
@@ -17,6 +20,7 @@ namespace {
 
 constexpr double kOutputPatience = 5.0;    // [s]
 constexpr double kSurfaceRadius = 2.5e-3;  // [m], around S: the dot of every gap on the way lies inside
+constexpr double kAtHome = 50e-6;          // [m or rad]: drives that rest at home read this or less beside it
 
 /// Straight moves along the tool axis for the gap controller, at the approach's own feed.
 class ApproachMotion : public GapMotion {
@@ -38,6 +42,25 @@ class ApproachMotion : public GapMotion {
   const Step& approach_;
 };
 
+/// Where the tool stands before the first step: home, unless the drives read otherwise.
+Pose standing_pose(const machine::MachineDescription& machine, const machine::MachinePort& port) {
+  const auto mechanism = machine.make_mechanism();
+  const auto axes = static_cast<std::size_t>(mechanism->axis_count());
+  const machine::AxisArray measured = port.state().position;
+  machine::AxisArray home{};
+  const std::span<double> home_axes(home.data(), axes);
+  bool at_home = mechanism->inverse(machine.X_BT_home, home_axes, home_axes) == kinematics::Solve::ok;
+  for (std::size_t i = 0; i < axes; ++i) at_home = at_home && std::abs(measured[i] - home[i]) <= kAtHome;
+  if (at_home) return machine.X_WB * machine.X_BT_home;
+  Pose X_BT;
+  const kinematics::Solve solved =
+      mechanism->forward(std::span<const double>(measured.data(), axes), machine.X_BT_home, X_BT);
+  if (solved != kinematics::Solve::ok)
+    throw MachineError(fmt::format("the drives read axis positions that belong to no pose of the machine: {}",
+                                   kinematics::to_string(solved)));
+  return machine.X_WB * X_BT;
+}
+
 class PrintLoop {
  public:
   PrintLoop(const toolpath::Program& program, const machine::MachineDescription& machine,
@@ -47,7 +70,8 @@ class PrintLoop {
         port_(port),
         options_(options),
         observer_(observer),
-        feeder_(machine, port, machine.X_WB * machine.X_BT_home) {}
+        feeder_(machine, port, standing_pose(machine, port)),
+        started_at_(port.now()) {}
 
   PrintResult run() {
     try {
@@ -59,10 +83,13 @@ class PrintLoop {
       }
       if (const Status s = feeder_.come_to_rest(); s != Status::ok) return finish(fail(s, last_line_));
     } catch (const Interrupted&) {
-      port_.urgent(machine::UrgentCommand::stop);
+      make_safe();
       throw;
     } catch (const InputError& error) {
-      // The offset can carry a pose over a limit that the program itself keeps.
+      // The offset can carry a pose over a limit that the program itself keeps, and a part may not lie where
+      // the program begins: what was planned before this step still ends at rest.
+      if (feeder_.come_to_rest() != Status::ok) port_.urgent(machine::UrgentCommand::stop);
+      make_safe();
       result_.status = Status::rejected;
       result_.stop_line = last_line_;
       result_.stop_reason = error.what();
@@ -78,6 +105,8 @@ class PrintLoop {
     last_line_ = step.line;
     switch (step.kind) {
       case StepKind::temperature:
+        // M109 waits for the heater, which reports nothing through the port: the temperature is set and the
+        // print goes on.
         outputs_.nozzle_temperature = step.temperature;
         return apply_outputs(step.line);
       case StepKind::fan:
@@ -88,10 +117,14 @@ class PrintLoop {
       case StepKind::move:
         if (options_.gap_control == GapControl::start && is_approach(program_, index))
           return approach(step, index);
-        [[fallthrough]];
-      default:
+        return move(step);
+      case StepKind::travel:
+      case StepKind::print:
+      case StepKind::home:
+      case StepKind::dwell:
         return move(step);
     }
+    return true;
   }
 
   bool move(const Step& step) {
@@ -118,6 +151,7 @@ class PrintLoop {
         options_.part ? local_surface(*options_.part, step.X_WT, kSurfaceRadius) : LocalSurface{};
     Pose X_WT_start = step.X_WT;
     X_WT_start.translation() += offset_;
+    const Vec3 from = feeder_.resting_pose().translation();
     ApproachMotion motion(feeder_, step);
     GapApproach record{step.line, 0,
                        close_gap(machine_, surface, X_WT_start, standoff, motion, options_.gap)};
@@ -126,11 +160,13 @@ class PrintLoop {
     if (reached) {
       offset_ += record.outcome.offset_W;
       result_.offsets.push_back({port_.now(), step.line, offset_});
-      count(step, (feeder_.resting_pose().translation() - X_WT_before.translation()).norm());
+      count(step, (feeder_.resting_pose().translation() - from).norm());
     } else {
+      make_safe();
       result_.stop_line = step.line;
       result_.stop_reason = fmt::format("{}: {}", to_string(record.outcome.stop), record.outcome.why);
       result_.fault = port_.state().fault;
+      if (result_.fault != machine::Fault::none) result_.status = Status::faulted;
     }
     result_.approaches.push_back(std::move(record));
     return reached;
@@ -150,12 +186,19 @@ class PrintLoop {
     result_.stop_reason = status == Status::faulted
                               ? fmt::format("the machine reports a fault: {}", to_string(result_.fault))
                               : fmt::format("the machine did not take the motion: {}", to_string(status));
+    make_safe();
     return false;
+  }
+
+  /// Nothing moves on and nothing stays hot once the print has ended early. A port that is lost cannot obey.
+  void make_safe() {
+    static_cast<void>(port_.urgent(machine::UrgentCommand::stop));
+    static_cast<void>(port_.set_outputs({}, port_.now() + kOutputPatience));
   }
 
   PrintResult finish(bool completed) {
     result_.completed = completed;
-    result_.duration = port_.now();
+    result_.duration = port_.now() - started_at_;
     return std::move(result_);
   }
 
@@ -165,6 +208,7 @@ class PrintLoop {
   const PrintOptions& options_;
   PrintObserver* observer_;
   Feeder feeder_;
+  const double started_at_;
   machine::Outputs outputs_;
   PrintResult result_;
   Vec3 offset_{0, 0, 0};

@@ -83,7 +83,7 @@ double largest_speed2(const Bounds& bounds, double length, double x_end_max, dou
 
 double node_cap(const std::deque<Piece>& pieces, std::size_t k) {
   const Piece& piece = pieces[k];
-  if (piece.stop || piece.length == 0 || (k > 0 && pieces[k - 1].length == 0)) return 0;
+  if (piece.length == 0 || (k > 0 && pieces[k - 1].length == 0)) return 0;
   double speed = std::min(piece.node_speed_max, piece.speed_max);
   if (k > 0) speed = std::min(speed, pieces[k - 1].speed_max);
   return speed * speed;
@@ -104,7 +104,7 @@ CornerWindow corner_window(const std::deque<Piece>& pieces, std::size_t k, const
   for (std::size_t j = k; j-- > 0;) {
     const Piece& piece = pieces[j];
     distance += piece.length;
-    if (piece.length == 0 || pieces[j + 1].stop) break;
+    if (piece.length == 0 || pieces[j + 1].node_speed_max == 0) break;
     if (distance > cycle_reach(window.speed, piece.slope_begin, limits)) break;
     if (!piece.corner) continue;
     ChannelArray sum = window.jump;

@@ -24,8 +24,7 @@ struct Piece {
   ChannelArray slope_begin{}, slope_end{};  ///< dq/ds
   ChannelArray used{};  ///< part of each acceleration limit that jumps at corners near by may take
 
-  double node_speed_max = 0;  ///< [m/s], where the piece begins
-  bool stop = false;          ///< at rest where the piece begins
+  double node_speed_max = 0;  ///< [m/s], where the piece begins; 0: at rest there
   bool corner = false;        ///< `jump` is not 0
   ChannelArray jump{};        ///< |change of dq/ds| from the piece before
 

@@ -56,6 +56,8 @@ constexpr const char* kFigures[] = {"print.duration_s",
                                     "engine.steps",
                                     "engine.real_time_factor",
                                     "engine.closure_max_um"};
+// What a series of machines knows besides the summaries (run_scenario.h).
+constexpr const char* kSeriesFigures[] = {"approach.min_gap_mm"};
 constexpr const char* kTexts[] = {"verdict",
                                   "engine.name",
                                   "engine.version",
@@ -109,6 +111,7 @@ const std::vector<std::string>& metric_names() {
                                  "findings.warning.count"};
     for (const Kind& kind : kKinds) all.push_back(std::string("findings.") + kind.word + ".count");
     all.insert(all.end(), std::begin(kFigures), std::end(kFigures));
+    all.insert(all.end(), std::begin(kSeriesFigures), std::end(kSeriesFigures));
     all.insert(all.end(), std::begin(kTexts), std::end(kTexts));
     return all;
   }();
@@ -117,6 +120,10 @@ const std::vector<std::string>& metric_names() {
 
 bool metric_is_text(const std::string& metric) {
   return std::find(std::begin(kTexts), std::end(kTexts), metric) != std::end(kTexts);
+}
+
+bool metric_is_of_series(const std::string& metric) {
+  return std::find(std::begin(kSeriesFigures), std::end(kSeriesFigures), metric) != std::end(kSeriesFigures);
 }
 
 std::string metric_unit(const std::string& metric) {

@@ -124,6 +124,8 @@ std::vector<Expectation> read_expectations(StrictMap& parent, bool over_machines
     expectation.metric = read_metric(map);
     if (over_machines)
       read_statistic(map, expectation);
+    else if (metric_is_of_series(expectation.metric))
+      map.fail("metric", expectation.metric + " exists under 'machines' only");
     else if (map.has("statistic"))
       map.fail("statistic", "'statistic' is for expectations under 'machines'");
     if (metric_is_text(expectation.metric))

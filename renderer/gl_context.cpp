@@ -54,7 +54,8 @@ GlContext::GlContext() : handle_(std::make_unique<Handle>()) {
 
 GlContext::~GlContext() {
   const std::lock_guard lock(context_mutex());
-  if (OSMesaGetCurrentContext() == handle_->context) OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
+  if (OSMesaGetCurrentContext() == handle_->context)
+    OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
   OSMesaDestroyContext(handle_->context);
 }
 
@@ -149,6 +150,50 @@ GlTarget::~GlTarget() {
 void GlTarget::bind() const {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   gl_.Viewport(0, 0, width_, height_);
+}
+
+GlSmoothTarget::GlSmoothTarget(const GlFunctions& gl, int width, int height)
+    : gl_(gl), width_(width), height_(height) {
+  constexpr int kSamples = 4;  // all that llvmpipe offers
+  gl.GenFramebuffers(2, framebuffers_);
+  gl.GenRenderbuffers(3, buffers_);
+  const auto attach = [&](int framebuffer, int buffer, int samples, GLenum format, GLenum place) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[framebuffer]);
+    gl.BindRenderbuffer(GL_RENDERBUFFER, buffers_[buffer]);
+    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffers_[buffer]);
+  };
+  attach(0, 0, kSamples, GL_RGBA8, GL_COLOR_ATTACHMENT0);
+  attach(0, 1, kSamples, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT);
+  attach(1, 2, 0, GL_RGBA8, GL_COLOR_ATTACHMENT0);
+  for (const GLuint framebuffer : framebuffers_) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw MachineError("OpenGL cannot make a smooth framebuffer of " + std::to_string(width) + " x " +
+                         std::to_string(height) + " pixels");
+    }
+  }
+}
+
+GlSmoothTarget::~GlSmoothTarget() {
+  gl_.DeleteFramebuffers(2, framebuffers_);
+  gl_.DeleteRenderbuffers(3, buffers_);
+}
+
+void GlSmoothTarget::bind() const {
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[0]);
+  gl_.Viewport(0, 0, width_, height_);
+}
+
+std::vector<unsigned char> GlSmoothTarget::resolve() const {
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers_[0]);
+  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffers_[1]);
+  gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers_[1]);
+  std::vector<unsigned char> pixels(4 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  gl_.ReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  return pixels;
 }
 
 GlVertices::GlVertices(const GlFunctions& gl, const std::vector<int>& layout) : gl_(gl) {

@@ -13,17 +13,22 @@
 namespace understudy::renderer {
 
 // libepoxy and GLEW need GLX or EGL; OSMesa hands out its own functions.
-#define UNDERSTUDY_GL_FUNCTIONS(X)                                                                       \
-  X(ActiveTexture) X(AttachShader) X(BindBuffer) X(BindBufferBase) X(BindFramebuffer) X(BindTexture)     \
-  X(BindVertexArray) X(BlitFramebuffer) X(BufferData) X(CheckFramebufferStatus) X(Clear)                 \
-  X(ClearBufferfv) X(ClearDepth) X(CompileShader) X(CreateProgram) X(CreateShader) X(DeleteBuffers)      \
-  X(DeleteFramebuffers) X(DeleteProgram) X(DeleteShader) X(DeleteTextures) X(DeleteVertexArrays)         \
-  X(DepthFunc) X(Disable) X(DrawArrays) X(Enable) X(EnableVertexAttribArray) X(Finish)                   \
-  X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenTextures) X(GenVertexArrays) X(GetError) \
-  X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetUniformLocation)          \
-  X(LinkProgram) X(PixelStorei) X(PolygonOffset) X(ReadPixels) X(Scissor) X(ShaderSource)                \
-  X(TexImage2D) X(TexParameteri) X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform3f) X(Uniform3fv)       \
-  X(Uniform4f) X(UniformMatrix3fv) X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
+#define UNDERSTUDY_GL_FUNCTIONS(X)                                                                           \
+  X(ActiveTexture)                                                                                           \
+  X(AttachShader)                                                                                            \
+  X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) X(BindTexture) X(BindVertexArray) X(BlitFramebuffer)  \
+      X(BufferData) X(CheckFramebufferStatus) X(Clear) X(ClearBufferfv) X(CompileShader) X(CreateProgram)    \
+          X(CreateShader) X(DeleteBuffers) X(DeleteFramebuffers) X(DeleteProgram) X(DeleteRenderbuffers)     \
+              X(DeleteShader) X(DeleteTextures) X(DeleteVertexArrays) X(DepthFunc) X(Disable) X(DrawArrays)  \
+                  X(Enable) X(EnableVertexAttribArray) X(FramebufferRenderbuffer) X(FramebufferTexture2D)    \
+                      X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures) X(GenVertexArrays) \
+                          X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog)               \
+                              X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) X(PixelStorei)             \
+                                  X(PolygonOffset) X(ReadPixels) X(RenderbufferStorageMultisample)           \
+                                      X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) X(Uniform1f) \
+                                          X(Uniform1i) X(Uniform2f) X(Uniform2i) X(Uniform3f) X(Uniform3fv)  \
+                                              X(Uniform4f) X(UniformMatrix3fv) X(UniformMatrix4fv)           \
+                                                  X(UseProgram) X(VertexAttribPointer) X(Viewport)
 
 struct GlFunctions {
 #define UNDERSTUDY_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
@@ -87,6 +92,25 @@ class GlTarget {
   const GlFunctions& gl_;
   GLuint framebuffer_ = 0;
   GLuint textures_[2] = {0, 0};
+  int width_, height_;
+};
+
+/// 8-bit colour and depth with four samples in a pixel; read through resolve().
+class GlSmoothTarget {
+ public:
+  GlSmoothTarget(const GlFunctions& gl, int width, int height);
+  ~GlSmoothTarget();
+  GlSmoothTarget(const GlSmoothTarget&) = delete;
+  GlSmoothTarget& operator=(const GlSmoothTarget&) = delete;
+
+  void bind() const;
+  /// RGBA, bottom row first.
+  std::vector<unsigned char> resolve() const;
+
+ private:
+  const GlFunctions& gl_;
+  GLuint framebuffers_[2] = {0, 0};  // drawn, resolved
+  GLuint buffers_[3] = {0, 0, 0};    // drawn colour, drawn depth, resolved colour
   int width_, height_;
 };
 

@@ -18,16 +18,18 @@ namespace understudy::renderer {
 namespace {
 
 constexpr int kShadowCells = 256;
-constexpr double kBeamReach = 2.2;         // radii; beyond, less than 1e-4 of the peak
-constexpr double kNear = 2e-3, kFar = 1;   // [m] before the camera
-constexpr double kTableHalf = 0.25;        // [m] of the table around the tool
-constexpr float kToolAlbedo = 0.6f;        // brass and steel beside matt plastic: 1
+constexpr int kSegments = 128;            // chord error of a nozzle of 1 mm: 0.3 um
+constexpr double kBeamReach = 2.2;        // radii; beyond, less than 1e-4 of the peak
+constexpr double kNear = 2e-3, kFar = 1;  // [m] before the camera
+constexpr double kTableHalf = 0.25;       // [m] of the table around the tool
+constexpr float kToolAlbedo = 0.6f;       // brass and steel beside matt plastic: 1
 const std::vector<int> kViewLayout = {3, 3, 4, 1};
 constexpr std::uint64_t kRoughness = 0x726F756768, kShot = 0x73686F74;  // key the streams of hash_bits
 
 void check(bool good, const char* quantity, double value, const char* limit) {
   if (!good) {
-    throw InputError(std::string("laser scene: ") + quantity + " is " + std::to_string(value) + ", must be " + limit);
+    throw InputError(std::string("laser scene: ") + quantity + " is " + std::to_string(value) + ", must be " +
+                     limit);
   }
 }
 
@@ -105,7 +107,8 @@ struct LaserView::State {
 
   void prepare(const LaserScene& scene, int margin);
   void gather(const LaserScene& scene, const Region& region);
-  void add(const Surface& surface, const Pose& X_CF, Owner owner, const LaserScene& scene, const Region& region);
+  void add(const Surface& surface, const Pose& X_CF, Owner owner, const LaserScene& scene,
+           const Region& region);
   void draw_blockers(const LaserScene& scene);
   SampleGrid draw_view(const LaserScene& scene, const Region& samples);
 };
@@ -117,8 +120,11 @@ void LaserView::State::prepare(const LaserScene& scene, int margin) {
   // Large enough for the pinhole's picture of the whole sensor and its margin.
   const Region sensor{-margin, -margin, scene.camera.width + 2 * margin, scene.camera.height + 2 * margin};
   const Region samples = lens->ideal_samples(sensor);
-  const int border = std::max({-samples.x, -samples.y, samples.x + samples.width - kSamplesPerPixel * scene.camera.width,
-                               samples.y + samples.height - kSamplesPerPixel * scene.camera.height});
+  const int border =
+      std::max({-samples.x, -samples.y, samples.x + samples.width - kSamplesPerPixel * scene.camera.width,
+                samples.y + samples.height - kSamplesPerPixel * scene.camera.height});
+  check(border < kSamplesPerPixel * (scene.camera.width + scene.camera.height), "lens distortion k1",
+        scene.camera.k1, "small enough for every pixel to have a ray");
   const int width = kSamplesPerPixel * scene.camera.width + 2 * border;
   const int height = kSamplesPerPixel * scene.camera.height + 2 * border;
   target.emplace(context.gl(), GL_RGBA32F, width, height);
@@ -131,8 +137,8 @@ void LaserView::State::add(const Surface& surface, const Pose& X_CF, Owner owner
   const Beam beam = beam_in(X_CT, scene.X_TL);
   const double reach = kBeamReach * scene.waist_diameter / 2;
   const Vec2 low = (Vec2(region.x, region.y) - scene.camera.centre_px) / scene.camera.focal_px;
-  const Vec2 high =
-      (Vec2(region.x + region.width, region.y + region.height) - scene.camera.centre_px) / scene.camera.focal_px;
+  const Vec2 high = (Vec2(region.x + region.width, region.y + region.height) - scene.camera.centre_px) /
+                    scene.camera.focal_px;
 
   std::vector<Vec3> p_C(surface.vertices.size()), p_beam(surface.vertices.size());
   for (std::size_t i = 0; i < p_C.size(); ++i) {
@@ -141,14 +147,17 @@ void LaserView::State::add(const Surface& surface, const Pose& X_CF, Owner owner
   }
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const auto& [a, b, c] = surface.triangles[t];
-    const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b), ic = static_cast<std::size_t>(c);
+    const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b),
+               ic = static_cast<std::size_t>(c);
     const Vec3 least = p_beam[ia].cwiseMin(p_beam[ib]).cwiseMin(p_beam[ic]);
     const Vec3 most = p_beam[ia].cwiseMax(p_beam[ib]).cwiseMax(p_beam[ic]);
     if (least.x() <= reach && least.y() <= reach && most.x() >= -reach && most.y() >= -reach) {
       for (const std::size_t i : {ia, ib, ic}) put(shadow_data, p_beam[i]);
     }
 
-    const auto beside = [&](const auto& outside) { return outside(p_C[ia]) && outside(p_C[ib]) && outside(p_C[ic]); };
+    const auto beside = [&](const auto& outside) {
+      return outside(p_C[ia]) && outside(p_C[ib]) && outside(p_C[ic]);
+    };
     if (beside([](const Vec3& p) { return p.z() < kNear; }) ||
         beside([&](const Vec3& p) { return p.x() < low.x() * p.z(); }) ||
         beside([&](const Vec3& p) { return p.x() > high.x() * p.z(); }) ||
@@ -182,7 +191,7 @@ void LaserView::State::gather(const LaserScene& scene, const Region& region) {
     if (mesh) {
       add(surface_of(mesh->mesh), X_CT * body.X_FS, Owner::tool, scene, region);
     } else {
-      add(tessellate(body), X_CT, Owner::tool, scene, region);
+      add(tessellate(body, kSegments), X_CT, Owner::tool, scene, region);
     }
   }
   if (scene.table) add(table_around(scene.X_WT.translation()), X_CW, Owner::scenery, scene, region);
@@ -225,7 +234,8 @@ SampleGrid LaserView::State::draw_view(const LaserScene& scene, const Region& sa
   gl.Uniform4f(view.uniform("lens"), static_cast<float>(kSamplesPerPixel * scene.camera.focal_px),
                static_cast<float>(sample_of_pixel(scene.camera.centre_px.x()) + border_x + 0.5),
                static_cast<float>(sample_of_pixel(scene.camera.centre_px.y()) + border_y + 0.5), 0.0f);
-  gl.Uniform2f(view.uniform("size"), static_cast<float>(target->width()), static_cast<float>(target->height()));
+  gl.Uniform2f(view.uniform("size"), static_cast<float>(target->width()),
+               static_cast<float>(target->height()));
   gl.Uniform2f(view.uniform("near_far"), static_cast<float>(kNear), static_cast<float>(kFar));
   const Eigen::Vector3f point = beam.point.cast<float>();
   const Eigen::Matrix3f axes = beam.axes.cast<float>();
@@ -266,8 +276,13 @@ Image LaserView::render(const LaserScene& scene, const Region& region) {
 
   const Pose X_WC = scene.X_WT * scene.X_TC;
   const double tip_depth = scene.X_TC.inverse().translation().z();
-  const SpeckleOptics optics{scene.wavelength, scene.aperture_sine, scene.camera.focal_px, tip_depth,
-                             X_WC, scene.X_TC, hash_bits(scene.seed, kRoughness)};
+  const SpeckleOptics optics{scene.wavelength,
+                             scene.aperture_sine,
+                             scene.camera.focal_px,
+                             tip_depth,
+                             X_WC,
+                             scene.X_TC,
+                             hash_bits(scene.seed, kRoughness)};
   if (!(tip_depth > kNear)) throw InputError("laser scene: the tip is not before the camera");
   const int margin = blur_margin(scene.blur_px) + (scene.speckle ? speckle_margin(optics) : 0) + 1;
   s.prepare(scene, margin);
@@ -283,11 +298,12 @@ Image LaserView::render(const LaserScene& scene, const Region& region) {
   SampleGrid grid = s.draw_view(scene, ideal);
   if (s.lens->distorts()) {
     grid = through_lens(grid, *s.lens,
-                        {kSamplesPerPixel * around.x, kSamplesPerPixel * around.y, kSamplesPerPixel * around.width,
-                         kSamplesPerPixel * around.height});
+                        {kSamplesPerPixel * around.x, kSamplesPerPixel * around.y,
+                         kSamplesPerPixel * around.width, kSamplesPerPixel * around.height});
   }
   if (scene.speckle) apply_speckle(grid, *s.lens, optics);
-  const SensorNoise noise{scene.full_well, scene.read_noise, hash_bits(hash_bits(scene.seed, kShot), scene.frame)};
+  const SensorNoise noise{scene.full_well, scene.read_noise,
+                          hash_bits(hash_bits(scene.seed, kShot), scene.frame)};
   return digitise(integrate(grid, read_out, scene.blur_px), read_out, scene.camera.width,
                   scene.noise ? &noise : nullptr);
 }

@@ -13,25 +13,25 @@
 namespace understudy::renderer {
 
 struct LaserScene {
-  std::shared_ptr<const geometry::Mesh> part;   ///< may be null: nothing but the table
-  bool table = true;                            ///< the plane z = 0 of W
-  std::vector<geometry::Shape> tool_bodies;     ///< in T; they occlude beam and view
-  Pose X_WT = Pose::Identity();                 ///< true pose
+  std::shared_ptr<const geometry::Mesh> part;  ///< may be null: nothing but the table
+  bool table = true;                           ///< the plane z = 0 of W
+  std::vector<geometry::Shape> tool_bodies;    ///< in T; they occlude beam and view
+  Pose X_WT = Pose::Identity();                ///< true pose
   Pose X_TC = Pose::Identity();
   Pose X_TL = Pose::Identity();
   Camera camera;
-  double waist_diameter = 0;   ///< [m], 1/e^2
-  double wavelength = 0;       ///< [m]
-  double peak_level = 0;       ///< grey levels
-  double ambient_level = 0;    ///< grey levels
+  double waist_diameter = 0;  ///< [m], 1/e^2
+  double wavelength = 0;      ///< [m]
+  double peak_level = 0;      ///< grey levels
+  double ambient_level = 0;   ///< grey levels
   double aperture_sine = 0;
   double blur_px = 0;
-  double full_well = 0;        ///< [electrons] at 255
-  double read_noise = 0;       ///< [electrons]
+  double full_well = 0;   ///< [electrons] at 255
+  double read_noise = 0;  ///< [electrons]
   bool speckle = true;
   bool noise = true;
-  std::uint64_t seed = 0;      ///< of the surface's roughness: speckle is frozen to the surface
-  std::uint64_t frame = 0;     ///< of shot and read noise
+  std::uint64_t seed = 0;   ///< of the surface's roughness: speckle is frozen to the surface
+  std::uint64_t frame = 0;  ///< of shot and read noise
 };
 
 /// Owns an OSMesa context; use from one thread. Throws MachineError when no context can be made.

@@ -25,7 +25,8 @@ struct SampleGrid {
   std::vector<Sample> samples;
 
   std::size_t index(int i, int j) const {
-    return static_cast<std::size_t>(j - y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i - x);
+    return static_cast<std::size_t>(j - y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(i - x);
   }
   Sample& at(int i, int j) { return samples[index(i, j)]; }
   const Sample& at(int i, int j) const { return samples[index(i, j)]; }

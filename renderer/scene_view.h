@@ -13,17 +13,25 @@
 namespace understudy::renderer {
 
 struct ColouredShape {
-  geometry::Shape shape;              ///< X_FS is the pose in W
-  std::array<float, 3> colour{};      ///< linear RGB 0..1
+  geometry::Shape shape;          ///< X_FS is the pose in W
+  std::array<float, 3> colour{};  ///< linear RGB 0..1
+};
+
+/// A line in space, drawn as a round tube: a tool path, a bead, a beam.
+struct Polyline {
+  std::vector<Vec3> points;       ///< in W
+  std::array<float, 3> colour{};  ///< linear RGB 0..1
+  double radius = 0;              ///< [m]
 };
 
 struct PictureScene {
   std::vector<ColouredShape> shapes;
+  std::vector<Polyline> polylines;
   Vec3 eye_W{0, 0, 0};
   Vec3 target_W{0, 0, 0};
   Vec3 up_W{0, 0, 1};
-  double field_of_view = 0.6;         ///< [rad], vertical
-  int width = 1280, height = 960;     ///< [px]
+  double field_of_view = 0.6;      ///< [rad], vertical
+  int width = 1280, height = 960;  ///< [px]
   std::array<float, 3> background{1, 1, 1};
 };
 
@@ -33,7 +41,9 @@ struct Picture {
   std::vector<std::uint8_t> rgb;
 };
 
-/// Lit, anti-aliased, with a soft ground shadow. Throws MachineError when no OSMesa context can be made.
+/// Lit by the sky and one lamp, anti-aliased, with creases drawn and a soft shadow on a ground below the
+/// lowest shape. Equal scenes give equal bytes. Throws MachineError when no OSMesa context can be made,
+/// InputError for a picture without size or a camera that looks nowhere.
 Picture render_picture(const PictureScene& scene);
 
 }  // namespace understudy::renderer

@@ -29,9 +29,7 @@ std::vector<float> pixel_kernel(double blur_px) {
 
 double unit_interval(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1.0p-53; }
 
-double normal(double u, double v) {
-  return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
-}
+double normal(double u, double v) { return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v); }
 
 /// Electrons of a Poisson law; from some forty on, a rounded Gaussian cannot be told from it at 8 bits.
 double photo_electrons(double mean, std::uint64_t key, std::uint64_t counter) {
@@ -95,8 +93,9 @@ Image digitise(const std::vector<float>& levels, const Region& region, int senso
       double level = levels[k];
       if (noise && noise->full_well > 0) {
         const double electrons_per_level = noise->full_well / 255;
-        const std::uint64_t counter = 4 * (static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(sensor_width) +
-                                           static_cast<std::uint64_t>(x));
+        const std::uint64_t counter =
+            4 * (static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(sensor_width) +
+                 static_cast<std::uint64_t>(x));
         double electrons = photo_electrons(std::max(0.0, level * electrons_per_level), noise->key, counter);
         electrons += noise->read_noise * normal(unit_interval(hash_bits(noise->key, counter + 2)),
                                                 unit_interval(hash_bits(noise->key, counter + 3)));

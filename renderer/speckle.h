@@ -14,10 +14,10 @@ namespace understudy::renderer {
 /// magnitude is fully developed speckle (exponential intensity, mean 1, correlation area
 /// wavelength^2 / (pi sin^2 u)), bound to the surface and changing with the direction of view.
 struct SpeckleOptics {
-  double wavelength = 0;      ///< [m]
-  double aperture_sine = 0;   ///< sin u on the object side
-  double focal_px = 0;        ///< [px]
-  double distance = 0;        ///< [m], typical depth of the surface
+  double wavelength = 0;         ///< [m]
+  double aperture_sine = 0;      ///< sin u on the object side
+  double focal_px = 0;           ///< [px]
+  double distance = 0;           ///< [m], typical depth of the surface
   Pose X_WC = Pose::Identity();  ///< scatterers of the scenery rest in W
   Pose X_TC = Pose::Identity();  ///< and those of the tool in T
   std::uint64_t seed = 0;

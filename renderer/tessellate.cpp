@@ -10,8 +10,6 @@
 namespace understudy::renderer {
 namespace {
 
-constexpr int kSegments = 96;  // chord error of a 20 mm cylinder: 5 um
-constexpr int kCapSegments = 16;
 const double kCreaseCosine = std::cos(from_deg(30));
 
 /// One straight piece of a profile that turns about z, with the profile normals at its ends.
@@ -26,10 +24,13 @@ ProfilePiece straight(const Vec2& from, const Vec2& to) {
   return {from, to, normal, normal};
 }
 
-void add_arc(std::vector<ProfilePiece>& profile, double z, double radius, double from, double to) {
-  for (int i = 0; i < kCapSegments; ++i) {
-    const double a = from + (to - from) * i / kCapSegments;
-    const double b = from + (to - from) * (i + 1) / kCapSegments;
+/// A quarter of a circle.
+void add_arc(std::vector<ProfilePiece>& profile, double z, double radius, double from, double to,
+             int segments) {
+  const int pieces = segments / 4;
+  for (int i = 0; i < pieces; ++i) {
+    const double a = from + (to - from) * i / pieces;
+    const double b = from + (to - from) * (i + 1) / pieces;
     const Vec2 na(std::cos(a), std::sin(a)), nb(std::cos(b), std::sin(b));
     profile.push_back({Vec2(0, z) + radius * na, Vec2(0, z) + radius * nb, na, nb});
   }
@@ -46,14 +47,15 @@ void add_triangle(Surface& s, const std::array<Vec3, 3>& corners, const std::arr
   s.corner_normals.push_back(normals);
 }
 
-Surface revolve(const std::vector<ProfilePiece>& profile) {
+Surface revolve(const std::vector<ProfilePiece>& profile, int segments) {
   Surface s;
   for (std::size_t k = 0; k < profile.size(); ++k) {
     const ProfilePiece& piece = profile[k];
-    const bool sharp = k + 1 < profile.size() && piece.normal_to.dot(profile[k + 1].normal_from) < kCreaseCosine;
-    for (int i = 0; i < kSegments; ++i) {
-      const double a = 2 * std::numbers::pi * i / kSegments;
-      const double b = 2 * std::numbers::pi * (i + 1) / kSegments;
+    const bool sharp =
+        k + 1 < profile.size() && piece.normal_to.dot(profile[k + 1].normal_from) < kCreaseCosine;
+    for (int i = 0; i < segments; ++i) {
+      const double a = 2 * std::numbers::pi * i / segments;
+      const double b = 2 * std::numbers::pi * (i + 1) / segments;
       const Vec3 p00 = turn(piece.from, a), p01 = turn(piece.from, b);
       const Vec3 p10 = turn(piece.to, a), p11 = turn(piece.to, b);
       const Vec3 n00 = turn(piece.normal_from, a), n01 = turn(piece.normal_from, b);
@@ -66,37 +68,37 @@ Surface revolve(const std::vector<ProfilePiece>& profile) {
   return s;
 }
 
-Surface surface_of(const geometry::Sphere& sphere) {
+Surface surface_of(const geometry::Sphere& sphere, int segments) {
   std::vector<ProfilePiece> profile;
-  add_arc(profile, 0, sphere.radius, -std::numbers::pi / 2, 0);
-  add_arc(profile, 0, sphere.radius, 0, std::numbers::pi / 2);
-  return revolve(profile);
+  add_arc(profile, 0, sphere.radius, -std::numbers::pi / 2, 0, segments);
+  add_arc(profile, 0, sphere.radius, 0, std::numbers::pi / 2, segments);
+  return revolve(profile, segments);
 }
 
-Surface surface_of(const geometry::Capsule& capsule) {
+Surface surface_of(const geometry::Capsule& capsule, int segments) {
   const double h = capsule.length / 2, r = capsule.radius;
   std::vector<ProfilePiece> profile;
-  add_arc(profile, -h, r, -std::numbers::pi / 2, 0);
+  add_arc(profile, -h, r, -std::numbers::pi / 2, 0, segments);
   if (h > 0) profile.push_back(straight({r, -h}, {r, h}));
-  add_arc(profile, h, r, 0, std::numbers::pi / 2);
-  return revolve(profile);
+  add_arc(profile, h, r, 0, std::numbers::pi / 2, segments);
+  return revolve(profile, segments);
 }
 
-Surface surface_of(const geometry::Frustum& f) {
+Surface surface_of(const geometry::Frustum& f, int segments) {
   std::vector<ProfilePiece> profile;
   if (f.radius_bottom > 0) profile.push_back(straight({0, 0}, {f.radius_bottom, 0}));
   profile.push_back(straight({f.radius_bottom, 0}, {f.radius_top, f.height}));
   if (f.radius_top > 0) profile.push_back(straight({f.radius_top, f.height}, {0, f.height}));
-  return revolve(profile);
+  return revolve(profile, segments);
 }
 
-Surface surface_of(const geometry::Cylinder& c) {
-  Surface s = surface_of(geometry::Frustum{c.radius, c.radius, c.length});
+Surface surface_of(const geometry::Cylinder& c, int segments) {
+  Surface s = surface_of(geometry::Frustum{c.radius, c.radius, c.length}, segments);
   transform(s, make_pose(Quat::Identity(), Vec3(0, 0, -c.length / 2)));
   return s;
 }
 
-Surface surface_of(const geometry::Box& box) {
+Surface surface_of(const geometry::Box& box, int) {
   Surface s;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
@@ -118,46 +120,38 @@ Surface surface_of(const geometry::Box& box) {
   return s;
 }
 
-Surface surface_of(const geometry::MeshShape& shape) { return tessellate(*shape.mesh); }
+Surface surface_of(const geometry::MeshShape& shape, int) { return tessellate(*shape.mesh); }
 
-Vec3 scaled_normal(const geometry::Mesh& mesh, const std::array<int, 3>& t) {
-  const auto& v = mesh.vertices();
-  const auto at = [&](int i) -> const Vec3& { return v[static_cast<std::size_t>(t[static_cast<std::size_t>(i)])]; };
-  return (at(1) - at(0)).cross(at(2) - at(0));
+/// A mesh keeps a vertex of a crease once for each side; the first copy stands for all of them here.
+std::vector<int> joined_vertices(const std::vector<Vec3>& vertices) {
+  std::map<std::array<double, 3>, int> first;
+  std::vector<int> joined;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3& p = vertices[i];
+    joined.push_back(first.try_emplace({p.x(), p.y(), p.z()}, static_cast<int>(i)).first->second);
+  }
+  return joined;
 }
 
-/// Triangles around each vertex, one after the other.
-struct Fans {
-  std::vector<int> first;  // of each vertex, into `triangles`
-  std::vector<int> triangles;
-};
-
-Fans make_fans(const geometry::Mesh& mesh) {
-  Fans fans;
-  fans.first.assign(mesh.vertices().size() + 1, 0);
-  for (const auto& t : mesh.triangles()) {
-    for (const int v : t) ++fans.first[static_cast<std::size_t>(v) + 1];
-  }
-  for (std::size_t v = 1; v < fans.first.size(); ++v) fans.first[v] += fans.first[v - 1];
-  fans.triangles.resize(mesh.triangles().size() * 3);
-  std::vector<int> next(fans.first.begin(), fans.first.end() - 1);
-  for (std::size_t i = 0; i < mesh.triangles().size(); ++i) {
-    for (const int v : mesh.triangles()[i]) {
-      fans.triangles[static_cast<std::size_t>(next[static_cast<std::size_t>(v)]++)] = static_cast<int>(i);
-    }
-  }
-  return fans;
+Vec3 face_normal(const Surface& s, std::size_t triangle) {
+  const auto at = [&](std::size_t k) {
+    return s.vertices[static_cast<std::size_t>(s.triangles[triangle][k])];
+  };
+  const Vec3 scaled = (at(1) - at(0)).cross(at(2) - at(0));
+  return scaled.squaredNorm() > 0 ? Vec3(scaled.normalized()) : Vec3(0, 0, 0);
 }
 
-void add_creases(Surface& s, const std::vector<Vec3>& unit_normals) {
-  std::map<std::pair<int, int>, int> seen;
+void add_creases(Surface& s) {
+  const std::vector<int> joined = joined_vertices(s.vertices);
+  std::map<std::pair<int, int>, std::size_t> seen;
   for (std::size_t i = 0; i < s.triangles.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const int a = s.triangles[i][k], b = s.triangles[i][(k + 1) % 3];
-      const auto [other, is_new] = seen.try_emplace(std::minmax(a, b), static_cast<int>(i));
+      const auto a = static_cast<std::size_t>(s.triangles[i][k]);
+      const auto b = static_cast<std::size_t>(s.triangles[i][(k + 1) % 3]);
+      const auto [other, is_new] = seen.try_emplace(std::minmax(joined[a], joined[b]), i);
       if (is_new) continue;
-      if (unit_normals[i].dot(unit_normals[static_cast<std::size_t>(other->second)]) < kCreaseCosine) {
-        s.creases.emplace_back(s.vertices[static_cast<std::size_t>(a)], s.vertices[static_cast<std::size_t>(b)]);
+      if (face_normal(s, i).dot(face_normal(s, other->second)) < kCreaseCosine) {
+        s.creases.emplace_back(s.vertices[a], s.vertices[b]);
       }
     }
   }
@@ -169,36 +163,16 @@ Surface tessellate(const geometry::Mesh& mesh) {
   Surface s;
   s.vertices = mesh.vertices();
   s.triangles = mesh.triangles();
-  s.corner_normals.resize(s.triangles.size());
-  std::vector<Vec3> scaled(s.triangles.size()), unit(s.triangles.size());
-  for (std::size_t i = 0; i < scaled.size(); ++i) {
-    scaled[i] = scaled_normal(mesh, s.triangles[i]);
-    unit[i] = scaled[i].squaredNorm() > 0 ? Vec3(scaled[i].normalized()) : Vec3(0, 0, 0);
+  for (const auto& [a, b, c] : s.triangles) {
+    const auto normal = [&](int v) { return mesh.vertex_normals()[static_cast<std::size_t>(v)]; };
+    s.corner_normals.push_back({normal(a), normal(b), normal(c)});
   }
-  const Fans fans = make_fans(mesh);
-  for (std::size_t i = 0; i < s.triangles.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(s.triangles[i][k]);
-      Vec3 sum = Vec3::Zero();
-      for (int f = fans.first[v]; f < fans.first[v + 1]; ++f) {
-        const auto t = static_cast<std::size_t>(fans.triangles[static_cast<std::size_t>(f)]);
-        if (unit[t].dot(unit[i]) < kCreaseCosine) continue;
-        // Weighted by the angle at the vertex, so that the way a face is cut into triangles does not tell.
-        const auto& tri = s.triangles[t];
-        const auto j = static_cast<std::size_t>(std::find(tri.begin(), tri.end(), static_cast<int>(v)) - tri.begin());
-        const Vec3 a = s.vertices[static_cast<std::size_t>(tri[(j + 1) % 3])] - s.vertices[v];
-        const Vec3 b = s.vertices[static_cast<std::size_t>(tri[(j + 2) % 3])] - s.vertices[v];
-        sum += std::atan2(a.cross(b).norm(), a.dot(b)) * unit[t];
-      }
-      s.corner_normals[i][k] = sum.squaredNorm() > 0 ? Vec3(sum.normalized()) : unit[i];
-    }
-  }
-  add_creases(s, unit);
+  add_creases(s);
   return s;
 }
 
-Surface tessellate(const geometry::Shape& shape) {
-  Surface s = std::visit([](const auto& form) { return surface_of(form); }, shape.form);
+Surface tessellate(const geometry::Shape& shape, int segments) {
+  Surface s = std::visit([&](const auto& form) { return surface_of(form, segments); }, shape.form);
   transform(s, shape.X_FS);
   return s;
 }

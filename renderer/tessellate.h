@@ -14,14 +14,14 @@ namespace understudy::renderer {
 /// Normals belong to corners, so that a crease stays sharp and a curved face is shaded smoothly.
 struct Surface {
   std::vector<Vec3> vertices;
-  std::vector<std::array<int, 3>> triangles;         ///< counter-clockwise outside
-  std::vector<std::array<Vec3, 3>> corner_normals;   ///< unit
-  std::vector<std::pair<Vec3, Vec3>> creases;        ///< edges worth a line in a picture
+  std::vector<std::array<int, 3>> triangles;        ///< counter-clockwise outside
+  std::vector<std::array<Vec3, 3>> corner_normals;  ///< unit
+  std::vector<std::pair<Vec3, Vec3>> creases;       ///< edges worth a line in a picture
 };
 
-/// In the frame F of the shape's owner.
-Surface tessellate(const geometry::Shape& shape);
-/// Faces that meet at more than 30 degrees keep an edge between them.
+/// In the frame F of the shape's owner. Round shapes get `segments` sides; a multiple of 4.
+Surface tessellate(const geometry::Shape& shape, int segments);
+/// With the mesh's own smooth normals; faces that meet at more than 30 degrees have a crease between them.
 Surface tessellate(const geometry::Mesh& mesh);
 
 void transform(Surface& surface, const Pose& X_AB);

@@ -6,8 +6,8 @@
 namespace understudy::renderer {
 namespace {
 
-constexpr double kReach = 1.0;     // [m], farther than any machine
-constexpr double kLift = 0.5e-6;   // [m], off the surface, so that a ray from it does not meet it again
+constexpr double kReach = 1.0;    // [m], farther than any machine
+constexpr double kLift = 0.5e-6;  // [m], off the surface, so that a ray from it does not meet it again
 
 /// Distance to the first thing on the ray, in W; `kReach` when there is none.
 double first_hit(const LaserScene& scene, const Vec3& origin, const Vec3& direction, double reach) {

@@ -54,10 +54,14 @@ class Stretch {
   std::vector<double> arc_;
 };
 
-std::vector<Vec3> without_repeats(const std::vector<Vec3>& curve) {
+std::vector<Vec3> checked_points(const geometry::Mesh& mesh, const std::vector<Vec3>& curve) {
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     if (!curve[i].allFinite()) throw InputError(fmt::format("point {} of the curve is not finite", i + 1));
+    if (const double off = mesh.nearest(curve[i]).distance; off > kFarthest)
+      throw InputError(
+          fmt::format("point {} of the curve, {}, is {:.3f} mm from the part, more than {:.0f} mm", i + 1,
+                      in_mm(curve[i]), to_mm(off), to_mm(kFarthest)));
     if (points.empty() || (curve[i] - points.back()).norm() > kFinest) points.push_back(curve[i]);
   }
   if (points.size() < 2)
@@ -160,7 +164,7 @@ class Sampler {
 std::vector<SurfacePoint> sample_curve(const geometry::Mesh& mesh, const std::vector<Vec3>& curve,
                                        const SamplingLimits& limits) {
   Sampler sampler(mesh, limits);
-  for (const Stretch& stretch : stretches_between_corners(without_repeats(curve))) sampler.add(stretch);
+  for (const Stretch& stretch : stretches_between_corners(checked_points(mesh, curve))) sampler.add(stretch);
   std::vector<SurfacePoint> samples = sampler.take();
   if (samples.size() < 2) throw InputError("the curve has no length on the surface");
   return samples;

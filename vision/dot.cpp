@@ -10,14 +10,15 @@
 namespace understudy::vision {
 namespace {
 
-constexpr double kWindowNeeded = 2;     // standard deviations: the 1/e^2 ellipse lies inside the picture
-constexpr double kLongest = 8;          // axis ratio; a laser at 80 degrees from the normal draws 6
+constexpr double kWindowNeeded = 2;  // standard deviations: the 1/e^2 ellipse lies inside the picture
+constexpr double kLongest = 8;       // axis ratio; a laser at 80 degrees from the normal draws 6
 constexpr double kSmallest = 0.3, kLargest = 4;  // of the expected radius
 
 bool usable(const Image& image, const DotOptions& options) {
   return image.width() >= 5 && image.height() >= 5 && options.expected_radius_px > 0 &&
          std::isfinite(options.expected_radius_px) &&
-         image.pixels.size() == static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height());
+         image.pixels.size() ==
+             static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height());
 }
 
 bool all_white(const Image& image) {
@@ -55,11 +56,16 @@ DotStatus judge(const DotMeasurement& m, const Spot& spot, const DotOptions& opt
 
 const char* to_string(DotStatus s) {
   switch (s) {
-    case DotStatus::ok: return "ok";
-    case DotStatus::no_dot: return "no dot";
-    case DotStatus::saturated: return "saturated";
-    case DotStatus::clipped_by_border: return "clipped by the border";
-    case DotStatus::not_a_spot: return "not a spot";
+    case DotStatus::ok:
+      return "ok";
+    case DotStatus::no_dot:
+      return "no dot";
+    case DotStatus::saturated:
+      return "saturated";
+    case DotStatus::clipped_by_border:
+      return "clipped by the border";
+    case DotStatus::not_a_spot:
+      return "not a spot";
   }
   return "unknown";
 }

@@ -9,9 +9,9 @@ enum class DotStatus { ok, no_dot, saturated, clipped_by_border, not_a_spot };
 const char* to_string(DotStatus s);
 
 struct DotOptions {
-  double expected_radius_px = 5;      ///< 1/e^2 radius of the spot in the image
-  double saturated_fraction_max = 0.02;  ///< of the spot's pixels at 255
-  double contrast_min = 12;           ///< grey levels of the spot over its surroundings
+  double expected_radius_px = 5;             ///< 1/e^2 radius of the spot in the image
+  double saturated_fraction_max = 0.02;      ///< of the spot's pixels at 255
+  double contrast_min = 12;                  ///< grey levels of the spot over its surroundings
   double grey_per_electron = 255.0 / 10000;  ///< of the sensor: 255 / full well; scales shot noise
   /// Correlation area of the speckle [px^2], see speckle_area_px2(); 0: the light is incoherent; negative:
   /// estimated from the spot's own graininess, which scatters much: tell it when the optics are known.
@@ -20,10 +20,10 @@ struct DotOptions {
 
 struct DotMeasurement {
   DotStatus status = DotStatus::no_dot;
-  Vec2 position_px{0, 0};               ///< on the sensor (the image's region is added)
+  Vec2 position_px{0, 0};  ///< on the sensor (the image's region is added)
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();
-  double contrast = 0;                  ///< grey levels, peak of the Gaussian of equal flux and extent
-  double radius_px = 0;                 ///< 1/e^2, geometric mean of both axes
+  double contrast = 0;   ///< grey levels, peak of the Gaussian of equal flux and extent
+  double radius_px = 0;  ///< 1/e^2, geometric mean of both axes
   double saturated_fraction = 0;
 };
 
@@ -32,9 +32,12 @@ double speckle_area_px2(double wavelength, double aperture_sine, double px_per_m
 
 /// Weighted centroid above the surroundings: under speckle it beats a Gaussian fit. Never throws.
 /// The covariance is that of sum(w I x) / sum(w I), w the window, I above the surroundings, M its Gaussian:
-///   sum w^2 (v + g M) d d^T / F^2   noise: v as found around the spot, g M that of the photons
+///   sum w^2 (v + g M) d d^T / F^2   noise: v as found around the spot, g M that of the photons; and the
+///   doubt
+///                                   about the slope of the surroundings, which is subtracted
 ///   + A sum w^2 M^2 d d^T / F^2     speckle of correlation area A: A / (8 pi) on a round spot of any size
-/// It does not hold the offset between the centroid and the beam's axis on curved or oblique surfaces.
+/// each over the square of the share in which the window holds on to the centre (0.95 at 3 sigma). It leaves
+/// out the offset between the centroid and the beam's axis on curved or oblique surfaces.
 DotMeasurement measure_dot(const Image& image, const DotOptions& options);
 
 }  // namespace understudy::vision

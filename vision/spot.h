@@ -18,17 +18,18 @@ std::optional<SpotGuess> find_spot(const Image& image, const DotOptions& options
 
 /// A plane of grey levels under the spot, and the scatter about it.
 struct Surroundings {
-  double level = 0;       ///< grey levels at the spot's centre
-  Vec2 slope{0, 0};       ///< grey levels per px
-  double variance = 0;    ///< of a pixel about the plane
+  double level = 0;     ///< grey levels at the spot's centre
+  Vec2 slope{0, 0};     ///< grey levels per px
+  double variance = 0;  ///< of a pixel about the plane
+  Eigen::Matrix2d slope_covariance = Eigen::Matrix2d::Zero();
 };
 
 /// The spot as a Gaussian of equal moments, in pixels of the image.
 struct Spot {
   Vec2 centre{0, 0};
   Eigen::Matrix2d spread = Eigen::Matrix2d::Identity();  ///< [px^2], second central moments
-  double flux = 0;         ///< grey levels x px
-  double window = 0;       ///< half-width of the window, in standard deviations
+  double flux = 0;                                       ///< grey levels x px
+  double window = 0;                                     ///< half-width of the window, in standard deviations
   Surroundings around;
   bool converged = false;
 

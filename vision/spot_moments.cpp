@@ -36,7 +36,8 @@ Pixels ring(const Image& image, const Spot& spot) {
   const double inner = kWindow + 0.8, outer = kWindow + 2.8;
   const int rx = static_cast<int>(std::ceil(outer * std::sqrt(spot.spread(0, 0))));
   const int ry = static_cast<int>(std::ceil(outer * std::sqrt(spot.spread(1, 1))));
-  const int cx = static_cast<int>(std::lround(spot.centre.x())), cy = static_cast<int>(std::lround(spot.centre.y()));
+  const int cx = static_cast<int>(std::lround(spot.centre.x())),
+            cy = static_cast<int>(std::lround(spot.centre.y()));
   Pixels pixels;
   for (int y = std::max(0, cy - ry); y <= std::min(image.height() - 1, cy + ry); ++y) {
     for (int x = std::max(0, cx - rx); x <= std::min(image.width() - 1, cx + rx); ++x) {
@@ -85,6 +86,7 @@ std::optional<Surroundings> fit_plane(const Pixels& p) {
     s.level = plane.x();
     s.slope = plane.tail<2>();
     s.variance = std::max(0.0, (sum_squares - plane.dot(right)) / (used - 3));
+    s.slope_covariance = s.variance * Mat3(normal.inverse()).bottomRightCorner<2, 2>();
   }
   return s;
 }
@@ -104,7 +106,8 @@ double window_inside(const Image& image, const Spot& spot) {
   const double x = std::min(spot.centre.x() + 0.5, image.width() - 0.5 - spot.centre.x());
   const double y = std::min(spot.centre.y() + 0.5, image.height() - 0.5 - spot.centre.y());
   // Half a pixel for the soft edge.
-  const double fits = std::min((x - 0.5) / std::sqrt(spot.spread(0, 0)), (y - 0.5) / std::sqrt(spot.spread(1, 1)));
+  const double fits =
+      std::min((x - 0.5) / std::sqrt(spot.spread(0, 0)), (y - 0.5) / std::sqrt(spot.spread(1, 1)));
   return std::clamp(fits, kSmallestWindow, kWindow);
 }
 
@@ -118,7 +121,8 @@ Sums sum_window(const Image& image, const Spot& spot) {
   const Eigen::Matrix2d inverse = spot.spread.inverse();
   const int rx = static_cast<int>(std::ceil(spot.window * std::sqrt(spot.spread(0, 0)))) + 1;
   const int ry = static_cast<int>(std::ceil(spot.window * std::sqrt(spot.spread(1, 1)))) + 1;
-  const int cx = static_cast<int>(std::lround(spot.centre.x())), cy = static_cast<int>(std::lround(spot.centre.y()));
+  const int cx = static_cast<int>(std::lround(spot.centre.x())),
+            cy = static_cast<int>(std::lround(spot.centre.y()));
   Sums sums;
   for (int y = std::max(0, cy - ry); y <= std::min(image.height() - 1, cy + ry); ++y) {
     for (int x = std::max(0, cx - rx); x <= std::min(image.width() - 1, cx + rx); ++x) {
@@ -161,11 +165,13 @@ std::optional<Spot> measure_moments(const Image& image, const SpotGuess& guess, 
     const Sums sums = sum_window(image, spot);
     if (!(sums.flux > 0)) return std::nullopt;
     const Vec2 step = sums.first / sums.flux;
-    const Eigen::Matrix2d spread = limited(
-        (sums.second / sums.flux - step * step.transpose()) / truncated_variance(spot.window), options.expected_radius_px);
+    const Eigen::Matrix2d spread =
+        limited((sums.second / sums.flux - step * step.transpose()) / truncated_variance(spot.window),
+                options.expected_radius_px);
     spot.converged = step.norm() < 1e-4 && (spread - spot.spread).norm() < 1e-3 * spot.spread.norm();
     spot.centre += step;
-    spot.centre = spot.centre.cwiseMax(Vec2(-0.5, -0.5)).cwiseMin(Vec2(image.width() - 0.5, image.height() - 0.5));
+    spot.centre =
+        spot.centre.cwiseMax(Vec2(-0.5, -0.5)).cwiseMin(Vec2(image.width() - 0.5, image.height() - 0.5));
     spot.spread = spread;
     spot.flux = sums.flux / (1 - std::exp(-spot.window * spot.window / 2));
   }

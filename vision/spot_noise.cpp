@@ -17,8 +17,8 @@ using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 using ModeMatrix = Eigen::Matrix<double, 6, 6>;
 
 /// The window's pixels, and the measurement made linear: a disturbance n of the pixels moves the moments
-/// (flux, both coordinates, three of spread; in units of the spot) by response^T n, and with them the Gaussian
-/// by shape * moments.
+/// (flux, both coordinates, three of spread; in units of the spot) by response^T n, and with them the
+/// Gaussian by shape * moments.
 struct Linear {
   std::vector<Eigen::Vector2i> pixel;
   Eigen::VectorXd model, residual;
@@ -46,7 +46,8 @@ void fill_modes(Linear& l, const Spot& spot, const Eigen::VectorXd& weight) {
   for (Eigen::Index i = 0; i < l.size(); ++i) {
     const Vec2 z = to_units * (l.pixel[static_cast<std::size_t>(i)].cast<double>() - spot.centre);
     const double m = l.model[i], w = weight[i] / flux;
-    l.shape.row(i) << m, m * z.x(), m * z.y(), m * (z.x() * z.x() - 1) / 2, m * z.x() * z.y(), m * (z.y() * z.y() - 1) / 2;
+    l.shape.row(i) << m, m * z.x(), m * z.y(), m * (z.x() * z.x() - 1) / 2, m * z.x() * z.y(),
+        m * (z.y() * z.y() - 1) / 2;
     const double c = w / hold_on_centre, s = w / std::max(0.1, hold_on_spread);
     l.response.row(i) << w, c * z.x(), c * z.y(), s * (z.x() * z.x() - hold_on_centre), s * z.x() * z.y(),
         s * (z.y() * z.y() - hold_on_centre);
@@ -57,7 +58,8 @@ Linear linearise(const Image& image, const Spot& spot) {
   const Eigen::Matrix2d inverse = spot.spread.inverse();
   const int rx = static_cast<int>(std::ceil(spot.window * std::sqrt(spot.spread(0, 0)))) + 1;
   const int ry = static_cast<int>(std::ceil(spot.window * std::sqrt(spot.spread(1, 1)))) + 1;
-  const int cx = static_cast<int>(std::lround(spot.centre.x())), cy = static_cast<int>(std::lround(spot.centre.y()));
+  const int cx = static_cast<int>(std::lround(spot.centre.x())),
+            cy = static_cast<int>(std::lround(spot.centre.y()));
   Linear l;
   std::vector<double> weight, model, residual;
   for (int y = std::max(0, cy - ry); y <= std::min(image.height() - 1, cy + ry); ++y) {
@@ -99,8 +101,8 @@ void for_neighbours(const Linear& l, Visit visit) {
   }
 }
 
-/// What is left of a disturbance of covariance C after the fit took its share, (1 - S R^T) C (1 - R S^T), summed
-/// over pixels and over neighbours. `through` is C R, `entry(i, j)` C itself.
+/// What is left of a disturbance of covariance C after the fit took its share, (1 - S R^T) C (1 - R S^T),
+/// summed over pixels and over neighbours. `through` is C R, `entry(i, j)` C itself.
 template <typename Entry>
 Scatter left_over(const Linear& l, const Modes& through, Entry entry) {
   const ModeMatrix moments = l.response.transpose() * through;
@@ -115,8 +117,8 @@ Scatter left_over(const Linear& l, const Modes& through, Entry entry) {
 }
 
 struct Grain {
-  Scatter scatter;     ///< expected, for speckle of contrast 1 per pixel
-  Mat6 moments;        ///< covariance of the moments that goes with it
+  Scatter scatter;  ///< expected, for speckle of contrast 1 per pixel
+  Mat6 moments;     ///< covariance of the moments that goes with it
 };
 
 /// Speckle multiplies the light: covariance M M' exp(-lag^2 / 2 radius^2).
@@ -125,9 +127,11 @@ Grain grain_of(const Linear& l, double radius) {
   std::array<double, 256> table{};
   for (int lag = 0; lag < 256; ++lag) table[static_cast<std::size_t>(lag)] = falloff(lag);
   const auto entry = [&](Eigen::Index i, Eigen::Index j) {
-    const Eigen::Vector2i lag = (l.pixel[static_cast<std::size_t>(i)] - l.pixel[static_cast<std::size_t>(j)]).cwiseAbs();
+    const Eigen::Vector2i lag =
+        (l.pixel[static_cast<std::size_t>(i)] - l.pixel[static_cast<std::size_t>(j)]).cwiseAbs();
     if (lag.x() > 255 || lag.y() > 255) return 0.0;
-    return l.model[i] * l.model[j] * table[static_cast<std::size_t>(lag.x())] * table[static_cast<std::size_t>(lag.y())];
+    return l.model[i] * l.model[j] * table[static_cast<std::size_t>(lag.x())] *
+           table[static_cast<std::size_t>(lag.y())];
   };
   const int reach = static_cast<int>(std::ceil(5 * radius));
   Modes through = Modes::Zero(l.size(), 6);
@@ -142,14 +146,15 @@ Grain grain_of(const Linear& l, double radius) {
   return {left_over(l, through, entry), l.response.transpose() * through};
 }
 
-/// Covariance of the moments by speckle whose strength and grain are read from the picture itself: the pair for
-/// which pixels and neighbours are expected to scatter as they do.
+/// Covariance of the moments by speckle whose strength and grain are read from the picture itself: the pair
+/// for which pixels and neighbours are expected to scatter as they do.
 Mat6 estimated_speckle(const Linear& l, const Eigen::VectorXd& noise) {
   Modes through = noise.asDiagonal() * l.response;
   const Scatter of_noise =
       left_over(l, through, [&](Eigen::Index i, Eigen::Index j) { return i == j ? noise[i] : 0.0; });
   Scatter seen{l.residual.squaredNorm(), 0};
-  for_neighbours(l, [&](Eigen::Index i, Eigen::Index j) { seen.at_neighbours += l.residual[i] * l.residual[j]; });
+  for_neighbours(
+      l, [&](Eigen::Index i, Eigen::Index j) { seen.at_neighbours += l.residual[i] * l.residual[j]; });
   const Scatter speckle{seen.at_pixels - of_noise.at_pixels, seen.at_neighbours - of_noise.at_neighbours};
   // A scatter that noise alone explains (two standard deviations of its own sum) is not speckle.
   if (speckle.at_pixels < 2 * std::sqrt(2 * noise.squaredNorm())) return Mat6::Zero();
@@ -165,7 +170,8 @@ Mat6 estimated_speckle(const Linear& l, const Eigen::VectorXd& noise) {
       if (!finer) return strength * grain.moments;
       const double before = finer->scatter.at_neighbours / finer->scatter.at_pixels;
       const double t = expected > before ? std::clamp((ratio - before) / (expected - before), 0.0, 1.0) : 1;
-      return (1 - t) * speckle.at_pixels / finer->scatter.at_pixels * finer->moments + t * strength * grain.moments;
+      return (1 - t) * speckle.at_pixels / finer->scatter.at_pixels * finer->moments +
+             t * strength * grain.moments;
     }
     finer = grain;
   }
@@ -185,6 +191,12 @@ Eigen::Matrix2d centroid_covariance(const Image& image, const Spot& spot, const 
   const double floor = std::max(spot.around.variance, kQuantisation);
   const Eigen::VectorXd noise = (floor + options.grey_per_electron * l.model.array()).matrix();
   Mat6 moments = l.response.transpose() * noise.asDiagonal() * l.response;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> place(l.size(), 2);
+  for (Eigen::Index i = 0; i < l.size(); ++i) {
+    place.row(i) = (l.pixel[static_cast<std::size_t>(i)].cast<double>() - spot.centre).transpose();
+  }
+  const Eigen::Matrix<double, 6, 2> by_slope = l.response.transpose() * place;
+  moments += by_slope * spot.around.slope_covariance * by_slope.transpose();
   if (options.speckle_area_px2 < 0) {
     moments += estimated_speckle(l, noise);
   } else {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 #include "vision/spot.h"
@@ -7,11 +8,11 @@
 namespace understudy::vision {
 namespace {
 
-// Fractions of the strongest response and of the contrast asked for: a spot of expected size answers with 0.44
-// of its height.
-constexpr double kBlobLevel = 0.4;
-constexpr double kFaintest = 0.25;
-constexpr double kSameSize = 0.25;  // sizes that differ by less are equal; the brighter blob wins
+// A spot of expected size answers with 0.44 of its height.
+constexpr double kFaintest = 0.25;   // response, of the contrast asked for
+constexpr double kBlobLevel = 0.25;  // of the strongest response: what stands out
+constexpr double kSizeLevel = 0.5;   // of a blob's own peak: where its size is taken
+constexpr double kSameSize = 0.25;   // sizes that differ by less are equal; the brighter blob wins
 
 /// Smoothed to the spot's own size, less the surroundings at four times that size.
 cv::Mat spot_response(const Image& image, double expected_radius) {
@@ -42,22 +43,26 @@ std::vector<Blob> blobs_above(const cv::Mat& response, double level, double expe
   cv::Mat labels;
   const int count = cv::connectedComponents(mask, labels, 8, CV_32S);
   std::vector<Blob> blobs(static_cast<std::size_t>(std::max(0, count - 1)));
-  std::vector<double> area(blobs.size(), 0.0);
-  for (int y = 0; y < labels.rows; ++y) {
-    for (int x = 0; x < labels.cols; ++x) {
-      const int label = labels.at<int>(y, x);
-      if (label == 0) continue;
-      Blob& blob = blobs[static_cast<std::size_t>(label - 1)];
-      const double light = static_cast<double>(response.at<float>(y, x));
-      blob.light += light;
-      blob.centre += light * Vec2(x, y);
-      area[static_cast<std::size_t>(label - 1)] += 1;
+  std::vector<double> peak(blobs.size(), 0.0), area(blobs.size(), 0.0);
+  const auto for_pixels = [&](const auto& visit) {
+    for (int y = 0; y < labels.rows; ++y) {
+      for (int x = 0; x < labels.cols; ++x) {
+        const int label = labels.at<int>(y, x);
+        if (label > 0)
+          visit(static_cast<std::size_t>(label - 1), x, y, static_cast<double>(response.at<float>(y, x)));
+      }
     }
-  }
+  };
+  for_pixels([&](std::size_t i, int x, int y, double light) {
+    blobs[i].light += light;
+    blobs[i].centre += light * Vec2(x, y);
+    peak[i] = std::max(peak[i], light);
+  });
+  for_pixels([&](std::size_t i, int, int, double light) { area[i] += light > kSizeLevel * peak[i] ? 1 : 0; });
+  // Of a Gaussian of the expected size, smoothed as much again.
+  const double expected_area = std::numbers::pi * expected_radius * expected_radius * -std::log(kSizeLevel);
   for (std::size_t i = 0; i < blobs.size(); ++i) {
     blobs[i].centre /= blobs[i].light;
-    // Where a smoothed Gaussian of the expected size falls to kBlobLevel.
-    const double expected_area = 3.14159 * expected_radius * expected_radius * -std::log(kBlobLevel);
     blobs[i].misfit = 0.5 * std::abs(std::log(area[i] / expected_area));
   }
   return blobs;

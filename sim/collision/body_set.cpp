@@ -70,7 +70,7 @@ void BodySet::add_pairs(double strut_radius) {
       if (tool_again || other_way_round) continue;
       if (obstacle.owner == Owner::tool && carries_joint(obstacle, body.strut, strut_radius)) continue;
       const bool at_work = body.nozzle && obstacle.owner == Owner::world;
-      pairs_.push_back({i, j, at_work, at_work && part_ && j == part_body_});
+      pairs_.push_back({i, j, at_work, at_work && (!part_ || j == part_body_)});
     }
   }
 }

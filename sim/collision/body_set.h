@@ -16,7 +16,7 @@ namespace understudy::sim {
 struct BodyPair {
   std::size_t body = 0, obstacle = 0;
   bool nozzle_at_work = false;  ///< nozzle against part or table: nearness is its work
-  bool nozzle_at_part = false;
+  bool nozzle_gap = false;      ///< the gap of the work itself: to the part, or the table without one
 };
 
 class BodySet {

@@ -58,7 +58,7 @@ struct CollisionObserver::State {
 
   void record(std::size_t index, const Contact& contact) {
     const BodyPair& pair = bodies.pairs()[index];
-    if (pair.nozzle_at_part) {
+    if (pair.nozzle_gap) {
       least_nozzle = std::min(least_nozzle, contact.clearance);
     } else if (contact.clearance < closest.clearance) {
       closest = contact;
@@ -78,9 +78,10 @@ struct CollisionObserver::State {
       const auto entry = records->find({line, index});
       if (entry != records->end()) w.deepest = std::min(w.deepest, entry->second.clearance);
     }
-    w.least = pair.nozzle_at_part ? least_nozzle : closest.clearance;
-    w.resolution = pair.nozzle_at_part ? options.margin / kNozzleFineness : options.margin;
-    w.accuracy = pair.nozzle_at_part ? w.resolution / 2 : kLeastAccuracy;
+    w.least = pair.nozzle_gap ? least_nozzle : closest.clearance;
+    w.resolution = pair.nozzle_gap ? options.margin / kNozzleFineness : options.margin;
+    w.depth_accuracy = options.margin;
+    w.accuracy = pair.nozzle_gap ? w.resolution / 2 : kLeastAccuracy;
     return w;
   }
 

@@ -20,37 +20,53 @@ std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& m
 struct Contact {
   std::string body;       ///< "nozzle", "heater block", "strut 3"
   std::string obstacle;   ///< "part", "table", "strut 4"
-  double clearance = 0;   ///< [m]; negative: depth
-  Vec3 place_W{0, 0, 0};  ///< nearest point on the obstacle
+  double clearance = 0;   ///< [m]; negative: depth of the deepest point of either surface in the other body
+  Vec3 place_W{0, 0, 0};  ///< nearest point on the obstacle; the deepest point where they overlap
   double time = 0;        ///< [s]
   int line = 0;
 };
 
 struct CollisionOptions {
-  double margin = 0.02e-3;    ///< [m]: motion between two checks may use up the clearance but for this
-  double near = 0.5e-3;       ///< [m]: below, a body other than the nozzle is a near collision
+  double margin = 0.02e-3;  ///< [m], above 0: motion between two checks may use up the clearance but for this
+  double near = 0.5e-3;     ///< [m]: below, a body other than the nozzle is a near collision
   double nozzle_contact = 0;  ///< [m]: the nozzle touches when its clearance is at or below this
 };
 
 /// Watches every snapshot. Between snapshots the motion is bounded by the swept distance of each body, and
 /// the interval is subdivided (poses interpolated) while clearance minus margin is smaller than the bound.
+///
+/// Each pair has its own budget of motion, so that a pair is looked at again only when it could have reached
+/// something that matters. What this promises of the interpolated motion:
+/// - a contact deeper than margin / 2 is never missed (nozzle against the part: margin / 8), and nothing is
+///   reported that was not measured at some pose on the way;
+/// - min_clearance() is at most max(0.05 mm, 1 %), min_nozzle_clearance() at most max(margin / 8, 1 %) above
+///   the least that was passed, and never below it;
+/// - the depth of a contact is within max(margin, 5 %) of the deepest of its line.
+/// A body named "nozzle..." is the nozzle; struts are not checked against the tool body that carries their
+/// ball joint ("platform", or any within a strut's radius of the joint). Distances to the part are exact to
+/// 2 nm, all others to 0.5 um or 0.01 % of a round body's radius (FCL). Depths need a closed part; without
+/// one a contact has clearance 0.
 class CollisionObserver : public Observer {
  public:
+  /// The part may be null. Throws InputError for a margin that is not positive; observe() throws MachineError
+  /// for a pose that is not finite.
   CollisionObserver(const machine::MachineDescription& machine, const AsBuilt& as_built,
                     std::shared_ptr<const geometry::Mesh> part, const CollisionOptions& options);
   ~CollisionObserver() override;
 
   void observe(const Snapshot& snapshot) override;
 
-  /// One entry per pair of bodies and G-code line: the deepest.
+  /// One entry per pair of bodies and G-code line, the deepest; ordered by time. A pair that collides on a
+  /// line is not near on it.
   std::vector<Contact> collisions() const;
   std::vector<Contact> near_collisions() const;
-  /// Smallest clearance of all pairs but nozzle against part, whose gap is the work itself.
+  /// Smallest clearance of all pairs but nozzle against part, whose gap is the work itself. Without a part,
+  /// that against the table is left out instead.
   double min_clearance() const;
   Contact closest() const;
-  /// Smallest clearance of the nozzle to the part.
+  /// Smallest clearance of the nozzle to the part, or to the table where there is no part.
   double min_nozzle_clearance() const;
-  std::uint64_t checks() const;
+  std::uint64_t checks() const;  ///< distances measured
   int pairs() const;
 
  private:

@@ -104,15 +104,19 @@ double signed_distance(const ConvexSolid& solid, const Vec3& p) {
 
 namespace {
 
-void add_disc(double radius, double z, std::vector<Ball>& balls) {
-  constexpr int kAround = 48, kRings = 4;  // a rim point is missed by at most r (1 - cos(pi/48)) = 0.2 % of r
-  balls.push_back({Vec3(0, 0, z), 0});
-  for (int ring = 1; ring <= kRings; ++ring) {
-    for (int i = 0; i < kAround; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kAround, r = radius * ring / kRings;
-      balls.push_back({Vec3(r * std::cos(angle), r * std::sin(angle), z), 0});
-    }
+constexpr int kAround = 48;  // a rim point is missed by at most r (1 - cos(pi/48)) = 0.2 % of r
+
+void add_ring(double radius, double z, std::vector<Ball>& balls) {
+  for (int i = 0; i < kAround; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kAround;
+    balls.push_back({Vec3(radius * std::cos(angle), radius * std::sin(angle), z), 0});
   }
+}
+
+void add_disc(double radius, double z, std::vector<Ball>& balls) {
+  constexpr int kRings = 4;
+  balls.push_back({Vec3(0, 0, z), 0});
+  for (int ring = 1; ring <= kRings; ++ring) add_ring(radius * ring / kRings, z, balls);
 }
 
 struct Balls {
@@ -128,9 +132,11 @@ struct Balls {
   std::vector<Ball> operator()(const FrustumCore& f) const {
     constexpr int kLevels = 8;
     std::vector<Ball> balls;
-    for (int i = 0; i <= kLevels; ++i) {
+    add_disc(f.radius_low, f.low, balls);
+    add_disc(f.radius_high, f.high, balls);
+    for (int i = 1; i < kLevels; ++i) {
       const double share = static_cast<double>(i) / kLevels;
-      add_disc(f.radius_low + share * (f.radius_high - f.radius_low), f.low + share * (f.high - f.low),
+      add_ring(f.radius_low + share * (f.radius_high - f.radius_low), f.low + share * (f.high - f.low),
                balls);
     }
     return balls;

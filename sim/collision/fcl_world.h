@@ -9,8 +9,8 @@
 
 namespace understudy::sim {
 
-/// Spheres and capsules are exact (core plus radius); cylinders and frustums are polytopes within 0.5 um of
-/// the round shape (mean radius up to 20 mm; 0.03 % of the radius beyond); boxes and meshes are exact.
+/// Spheres and capsules are exact (core plus radius), so are boxes and meshes. Cylinders and frustums are
+/// polytopes that leave the round shape by at most 0.25 um or 0.01 % of its radius, whichever is more.
 class FclWorld {
  public:
   FclWorld();

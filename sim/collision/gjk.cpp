@@ -11,8 +11,8 @@ constexpr double kGap = 1e-9;        // [m], a thousandth of the micrometre that
 constexpr int kIterationsMax = 100;  // the worst of 10^6 random pairs took 32
 
 struct Vertex {
-  Vec3 difference;  // point of the core minus point of the triangle
-  Vec3 on_triangle;
+  Vec3 difference{0, 0, 0};  // point of the core minus point of the triangle
+  Vec3 on_triangle{0, 0, 0};
 };
 
 struct Simplex {
@@ -87,6 +87,19 @@ Simplex on_triangle(const Vertex& a, const Vertex& b, const Vertex& c) {
   return best;
 }
 
+double volume(const Vec3& a, const Vec3& b, const Vec3& c) { return a.cross(b).dot(c); }
+
+// The origin is inside: the weights make a point that both bodies share.
+Simplex around_origin(const Simplex& s) {
+  const Vec3 &a = s.at(0).difference, &b = s.at(1).difference, &c = s.at(2).difference,
+             &d = s.at(3).difference;
+  Simplex inside = s;
+  inside.weight = {volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)};
+  const double sum = inside.weight[0] + inside.weight[1] + inside.weight[2] + inside.weight[3];
+  for (double& w : inside.weight) w /= sum;
+  return inside;
+}
+
 // Size 4 in the answer: the origin is inside.
 Simplex on_tetrahedron(const Simplex& s) {
   constexpr std::array<std::array<int, 4>, 4> kFaces{
@@ -105,7 +118,7 @@ Simplex on_tetrahedron(const Simplex& s) {
       best = face;
     }
   }
-  return best.size > 0 ? best : s;
+  return best.size > 0 ? best : around_origin(s);
 }
 
 Simplex grown_and_reduced(const Simplex& s, const Vertex& w) {
@@ -139,7 +152,7 @@ GjkResult distance_to_triangle(const Core& core, const Triangle& corners, double
     const double lower = v.dot(w.difference) / length;
     if (length - lower <= kGap || lower >= enough) return {length, simplex.on_triangle(), iteration};
     const Simplex next = grown_and_reduced(simplex, w);
-    if (next.size == 4) return {0, simplex.on_triangle(), iteration};
+    if (next.size == 4) return {0, next.on_triangle(), iteration};
     const Vec3 nearer = next.nearest();
     if (nearer.squaredNorm() >= v.squaredNorm())
       return {length, simplex.on_triangle(), iteration};  // rounding

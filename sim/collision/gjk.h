@@ -12,7 +12,7 @@ using Triangle = std::array<Vec3, 3>;
 
 struct GjkResult {
   double distance = 0;        ///< [m]; 0 where they meet
-  Vec3 on_triangle{0, 0, 0};  ///< nearest point, in the core's frame
+  Vec3 on_triangle{0, 0, 0};  ///< nearest point, or one that they share, in the core's frame
   int iterations = 0;
 };
 

@@ -17,6 +17,9 @@ constexpr double kHingeDamping = 1e-4;  // [N m s/rad]
 // The screw turns and does not travel. The inertia of its rotor only keeps the mass matrix regular, because
 // the screw's motion is prescribed.
 constexpr double kScrewArmature = 0.1;  // [kg]
+// Damping ratio of the stops at the ends of play: at 1 a discrete stop rebounds, and an unloaded strut
+// rattles on for seconds; at 2 it does not.
+constexpr double kStopDamping = 2.0;
 // Share of the nut-and-rod mass that sits beyond the ball joint's play.
 constexpr double kRodEndShare = 0.5;
 // Motor and rod are taken for solid cubes of this density: the description states only their masses.
@@ -151,11 +154,11 @@ std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt
   <compiler angle="radian" inertiafromgeom="false"/>
   <size njmax="100" nconmax="0" nstack="60000"/>
   <option timestep="{dt}" gravity="0 0 {g}" integrator="Euler" solver="Newton" tolerance="1e-10"
-          jacobian="{jacobian}">
+          jacobian="dense">
     <flag contact="disable" actuation="disable"/>
   </option>
   <default>
-    <joint solreflimit="{tc} 1" solimplimit="{d} {d} 0.001"/>
+    <joint solreflimit="{tc} {stop}" solimplimit="{d} {d} 0.001"/>
     <equality solref="{tc} 1" solimp="{d} {d} 0.001"/>
   </default>
   <worldbody>{platform}{struts}
@@ -165,8 +168,8 @@ std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt
 </mujoco>
 )",
                      fmt::arg("name", machine.name), fmt::arg("dt", options.timestep),
-                     fmt::arg("g", options.gravity ? -kGravity : 0.0), fmt::arg("jacobian", "dense"),
-                     fmt::arg("tc", time_constant), fmt::arg("d", kImpedance),
+                     fmt::arg("g", options.gravity ? -kGravity : 0.0), fmt::arg("tc", time_constant),
+                     fmt::arg("d", kImpedance), fmt::arg("stop", kStopDamping),
                      fmt::arg("platform", platform_body(machine.masses, X_WT, options.platform_drag)),
                      fmt::arg("struts", struts),
                      fmt::arg("equalities", closures_and_drives(as_built, end_parts)));

@@ -24,7 +24,7 @@ class Microscope {
  public:
   /// `part` may be null: nothing but the table. The seed is that of the surface's roughness and of the noise.
   Microscope(const machine::MachineDescription& machine, std::shared_ptr<const geometry::Mesh> part,
-             std::uint64_t seed, const MicroscopeOptions& options);
+             std::uint64_t seed, const MicroscopeOptions& options = {});
   ~Microscope();
 
   /// One exposure with the tool at its true pose. `region` is clipped to the sensor. Equal arguments, equal

@@ -134,11 +134,13 @@ TEST_F(StlFile, NonFiniteCoordinatesAreNamed) {
   EXPECT_THAT(rejection(replaced(text(box_), "vertex 0", "vertex nan")),
               AllOf(StartsWith(":4:"), HasSubstr("'nan'")));
   EXPECT_THAT(rejection(replaced(text(box_), "vertex 0", "vertex 1e999")), HasSubstr("'1e999'"));
-  std::string bytes = binary(box_);
-  set_float(bytes, 4, 2, std::numeric_limits<float>::infinity());
-  EXPECT_THAT(rejection(bytes), AllOf(HasSubstr("triangle 5"), HasSubstr("inf"), HasSubstr("not finite")));
-  set_float(bytes, 4, 2, std::numeric_limits<float>::quiet_NaN());
-  EXPECT_THAT(rejection(bytes), AllOf(HasSubstr("triangle 5"), HasSubstr("nan")));
+  for (std::size_t number = 0; number < 9; ++number) {
+    std::string bytes = binary(box_);
+    set_float(bytes, 4, number, std::numeric_limits<float>::infinity());
+    EXPECT_THAT(rejection(bytes), AllOf(HasSubstr("triangle 5"), HasSubstr("inf"), HasSubstr("not finite")));
+    set_float(bytes, 4, number, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_THAT(rejection(bytes), AllOf(HasSubstr("triangle 5"), HasSubstr("nan")));
+  }
 }
 
 TEST_F(StlFile, AnOpenSurfaceIsRefusedUnlessAllowed) {
@@ -171,7 +173,7 @@ TEST_F(StlFile, AWrongUnitShowsInTheSize) {
 TEST_F(StlFile, RandomDamageGivesAMeshOrOneClearError) {
   const std::string originals[] = {binary(box_), text(box_)};
   Random random(21, "stl damage");
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 600; ++i) {
     std::string bytes = originals[i % 2];
     const auto position = [&] {
       return static_cast<std::size_t>(random.uniform() * static_cast<double>(bytes.size()));

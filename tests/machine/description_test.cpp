@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -92,6 +93,17 @@ TEST(MachineDescription, ShippedHexapodIsMachineG4) {
   EXPECT_DOUBLE_EQ(m.microscope.exposure, 0.01);
   EXPECT_DOUBLE_EQ(m.laser.wavelength, 650e-9);
   EXPECT_DOUBLE_EQ(m.orientation_velocity, from_deg(60));
+}
+
+TEST(MachineDescription, TheDocumentExplainsEveryKeyOfTheShippedFile) {
+  const std::string yaml = read_file(kShipped);
+  const std::string document = read_file(UNDERSTUDY_SOURCE_DIR "/docs/machine-description.md");
+  const std::regex key("(?:^|[\\n{,]) *([a-z][a-z0-9_]*):");
+  int keys = 0;
+  for (auto it = std::sregex_iterator(yaml.begin(), yaml.end(), key); it != std::sregex_iterator();
+       ++it, ++keys)
+    EXPECT_THAT(document, HasSubstr("`" + it->str(1) + "`"));
+  EXPECT_GT(keys, 80);
 }
 
 TEST(MachineDescription, MechanismRestsAtHome) {
@@ -255,7 +267,7 @@ TEST_F(MachineFile, ABeamIntoTheNozzleIsRefused) {
 }
 
 TEST_F(MachineFile, AMicroscopeThatLooksBesideTheDotIsRefused) {
-  EXPECT_THAT(error_of("looks_at_mm: [1.0607, -0.6, -1.0607]", "looks_at_mm: [0, 20, 0]"),
+  EXPECT_THAT(error_of("looks_at_mm: [0, 1.1, 0]", "looks_at_mm: [0, 20, 0]"),
               HasSubstr("the microscope does not see the dot at the gap aimed at, 0.13 mm"));
 }
 

@@ -11,10 +11,10 @@
 namespace understudy::rehearsal {
 namespace {
 
-constexpr double kPrintSpeed = 5e-3;      // [m/s]
-constexpr double kPrintLength = 60e-3;    // [m]
-constexpr double kApproachTime = 6.0;     // [s]
-constexpr double kSample = 2e-3;          // [s]
+constexpr double kPrintSpeed = 5e-3;    // [m/s]
+constexpr double kPrintLength = 60e-3;  // [m]
+constexpr double kApproachTime = 6.0;   // [s]
+constexpr double kSample = 2e-3;        // [s]
 
 Pose pose_on_arc(double fraction) {
   const double angle = from_deg(-20 + 40 * std::clamp(fraction, 0.0, 1.0));
@@ -78,7 +78,8 @@ FrameRecord sample_frame(int index, double gap, Random& random) {
 std::vector<FrameRecord> sample_frames() {
   std::vector<FrameRecord> frames;
   Random random(7, "sample frames");
-  const double gaps[] = {2.0e-3, 1.31e-3, 0.86e-3, 0.57e-3, 0.57e-3, 0.38e-3, 0.26e-3, 0.19e-3, 0.15e-3, 0.131e-3};
+  const double gaps[] = {2.0e-3,  1.31e-3, 0.86e-3, 0.57e-3, 0.57e-3,
+                         0.38e-3, 0.26e-3, 0.19e-3, 0.15e-3, 0.131e-3};
   for (int i = 0; i < 10; ++i) frames.push_back(sample_frame(i, gaps[i], random));
   frames[3].look.used = false;
   frames[3].look.why = "saturated: 6.1 % of the spot's pixels are at 255, more than 2.0 %";
@@ -105,12 +106,13 @@ Record base_record() {
   record.machine_name = "hexapod";
   record.fixture_name = "bottle.stl";
   record.gap_control = "start";
-  record.provenance = {"0.1.0",
-                       "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
-                       "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752",
-                       12345678901234567890u,
-                       "sampled",
-                       "understudy rehearse models/bottle/curved-line.gcode --machine hexapod --as-built sampled --seed 1"};
+  record.provenance = {
+      "0.1.0",
+      "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
+      "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752",
+      12345678901234567890u,
+      "sampled",
+      "understudy rehearse models/bottle/curved-line.gcode --machine hexapod --as-built sampled --seed 1"};
   for (int i = 1; i <= 6; ++i) record.axes.push_back({"l" + std::to_string(i) + "_mm", 0.170, 0.240});
   record.gap_accepted_min_mm = 0.1;
   record.gap_accepted_max_mm = 0.2;

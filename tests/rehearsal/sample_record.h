@@ -6,8 +6,8 @@
 namespace understudy::rehearsal {
 
 Record sample_go();
-Record sample_no_go();                 ///< 30 findings
+Record sample_no_go();  ///< 30 findings
 Record sample_without_gap_control();
-Record sample_stopped_by_constraints();   ///< nothing was simulated
+Record sample_stopped_by_constraints();  ///< nothing was simulated
 
 }  // namespace understudy::rehearsal

@@ -4,7 +4,7 @@ const format = {
   // Decimals by unit: a tenth of what matters in that unit.
   decimals: { mm: 3, um: 1, mrad: 3, deg: 2, s: 2, 'mm/s': 2, px: 2 },
 
-  unit(unit) { return unit === 'um' ? 'µm' : unit === 'deg' ? '°' : unit === '1' ? '' : unit; },
+  unit(unit) { return unit === 'um' ? 'µm' : unit === 'deg' ? '°' : unit === '1' ? '' : unit.replace('/s2', '/s²'); },
 
   // Columns and keys end in their unit: gap.start_mm, l1_mm, duration_s.
   unitOfKey(key) {

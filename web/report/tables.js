@@ -41,7 +41,7 @@ const kGroupTitles = {
 };
 
 const kFigureLabels = {
-  duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', deposited_mm: 'Bead laid down',
+  duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', deposited_mm: 'Filament that sticks',
   travel_mm: 'Travel without extrusion',
   tip_rms_um: 'Tip error, RMS', tip_p95_um: 'Tip error, 95th percentile', tip_max_um: 'Tip error, largest',
   orientation_max_mrad: 'Orientation error, largest', open_loop_tip_max_um: 'Tip error without gap control, largest',

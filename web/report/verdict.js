@@ -38,7 +38,7 @@ function drawKeyFigures(report) {
       format.count(collision.checks) + ' checks');
   }
   if (print) {
-    tile('Duration', formatDuration(print.duration_s), format.quantity(print.deposited_mm, 'mm') + ' laid down');
+    tile('Duration', formatDuration(print.duration_s), format.quantity(print.extruded_mm, 'mm') + ' of filament');
   }
   return tiles.length ? element('dl', { class: 'key-figures' }, ...tiles) : null;
 }

@@ -1,4 +1,5 @@
-// The adaptive observer against a slow, obvious one: FCL at every thousandth of the way.
+// The adaptive observer against a slow, obvious one: the clearance at every thousandth of the way. What it
+// takes for contact is asked of FCL as well.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include "core/random.h"
 #include "sim/collision/collision.h"
 #include "sim/collision/fcl_world.h"
+#include "sim/collision/mesh_clearance.h"
 #include "sim/collision/penetration.h"
 #include "tests/sim/collision/bodies_for_tests.h"
 
@@ -47,12 +49,12 @@ struct Seen {
   double deepest = 0;        // [m], a lower bound
 };
 
-Seen sample(const FclWorld& world, int body, int part, const geometry::Shape& shape, const Motion& m,
-            int samples) {
+Seen sample(const MeshClearance& part, const geometry::Shape& shape, const Motion& m, int samples) {
+  const ConvexSolid solid = *convex_solid(shape);
   Seen seen;
   for (int i = 0; i <= samples; ++i) {
     const Pose X = interpolate(m.from, m.to, static_cast<double>(i) / samples) * shape.X_FS;
-    const double d = world.distance(body, X, part, Pose::Identity()).distance;
+    const double d = part.distance(solid, X).distance;
     seen.least = std::min(seen.least, d);
     if (d <= 0 && seen.deepest < 0.1e-3) {
       seen.deepest = std::max(seen.deepest, penetration(shape, X, m.part, Pose::Identity()).depth);
@@ -81,12 +83,13 @@ void compare(std::uint64_t seed, int samples, Tally& tally) {
 
   FclWorld world;
   const int part = world.add(m.part);
+  const MeshClearance clearance(std::get<geometry::MeshShape>(m.part.form).mesh);
   const double path = (m.to.translation() - m.from.translation()).norm();
   const double turn = angle_between(m.from.linear(), m.to.linear());
   const auto contacts = observer.collisions();
   for (const geometry::Shape& shape : machine.tool.bodies) {
     const int body = world.add(shape);
-    const Seen seen = sample(world, body, part, shape, m, samples);
+    const Seen seen = sample(clearance, shape, m, samples);
     const auto hit = std::find_if(contacts.begin(), contacts.end(), [&](const Contact& c) {
       return c.body == shape.name && c.obstacle == "part";
     });
@@ -97,7 +100,9 @@ void compare(std::uint64_t seed, int samples, Tally& tally) {
     }
     if (found) {
       const Pose X = interpolate(m.from, m.to, hit->time) * shape.X_FS;
-      EXPECT_LE(world.distance(body, X, part, Pose::Identity()).distance, kPolytope)
+      // FCL knows surfaces only: a body that starts inside the part is far from its surface.
+      EXPECT_TRUE(world.distance(body, X, part, Pose::Identity()).distance <= kPolytope ||
+                  contains(m.part, X * point_of(shape)))
           << "false alarm, seed " << seed;
     }
     (found ? tally.hits : seen.least <= 0 ? tally.grazes : tally.clear) += 1;
@@ -117,9 +122,9 @@ void compare(std::uint64_t seed, int samples, Tally& tally) {
 
 TEST(CollisionOracle, RandomMotionsAgreeWithDenseSampling) {
   Tally tally;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) compare(seed, 200, tally);
-  EXPECT_GT(tally.hits, 30);
-  EXPECT_GT(tally.clear, 30);
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) compare(seed, 150, tally);
+  EXPECT_GT(tally.hits, 10);
+  EXPECT_GT(tally.clear, 15);
 }
 
 TEST(SlowCollisionOracle, ThousandsOfRandomMotionsAgreeWithDenseSampling) {

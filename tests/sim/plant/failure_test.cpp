@@ -50,9 +50,9 @@ TEST_F(MujocoFailure, CommandThatIsNotFiniteIsRefused) {
 }
 
 TEST_F(MujocoFailure, AFailedPlantStaysFailedUntilReset) {
-  DriveCommand jump = home_;
-  jump.position[0] += from_mm(100);
-  EXPECT_THROW(plant_->step(jump), MachineError);
+  DriveCommand bad = home_;
+  bad.position[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(plant_->step(bad), MachineError);
   EXPECT_THROW(plant_->step(home_), MachineError);
   plant_->reset(home_.position);
   EXPECT_NO_THROW(plant_->step(home_));
@@ -119,6 +119,14 @@ TEST(MujocoEngine, ErrorsBecomeExceptionsAndLeaveNoFile) {
         const auto model = falling_body("nstack='1'");
         const auto data = make_data(*model);
         checked_step(*model, *data);  // the engine's stack overflows: mju_error
+      },
+      MachineError);
+  EXPECT_THROW(
+      {
+        const auto model = falling_body("");
+        const auto data = make_data(*model);
+        data->qpos[0] = std::numeric_limits<double>::quiet_NaN();
+        checked_step(*model, *data);  // mju_warning
       },
       MachineError);
   EXPECT_TRUE(std::filesystem::is_empty(folder));

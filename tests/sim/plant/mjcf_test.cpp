@@ -67,7 +67,11 @@ TEST_P(Mjcf, ScrewStandsOffTheUniversalJointByDev) {
     const Vec3 axis(data_->xaxis + 3 * screw), first(data_->xaxis + 3 * alpha),
         second(data_->xaxis + 3 * beta);
     const Vec3 from_joint = Vec3(data_->xanchor + 3 * screw) - Vec3(data_->xanchor + 3 * alpha);
-    EXPECT_NEAR(axis.cross(from_joint).norm(), machine_.hexapod.deviation, 1e-12);
+    const Vec3 offset = from_joint - axis.dot(from_joint) * axis;
+    EXPECT_NEAR(offset.norm(), machine_.hexapod.deviation, 1e-12);
+    EXPECT_GT(offset.dot(machine_.X_WB.linear() * machine_.joints.radial_axis[static_cast<std::size_t>(i)]),
+              0)
+        << "the screws hang outside the circle of the universal joints";
     EXPECT_NEAR(axis.dot(second), 0, 1e-12);
     EXPECT_NEAR(first.dot(second), 0, 1e-12);
   }

@@ -69,6 +69,11 @@ TEST(TrueGap, ARoofAboveTheTipDoesNotCount) {
   EXPECT_NEAR(true_gap(&roof, over(1e-3, 0.0125)), -17.5e-3, kRounding) << "inside the roof";
 }
 
+TEST(TrueGap, UnderARoofWithNothingBelowItIsInfinite) {
+  const auto roof = boxes({{Vec3(-0.05, -0.05, 0.081), Vec3(0.05, 0.05, 0.082)}});
+  EXPECT_TRUE(std::isinf(true_gap(&roof, over(1e-3, 0.08))));
+}
+
 TEST(TrueGap, TheTableIsMetWhereThePartIsNot) {
   const auto plate = boxes({{Vec3(-0.01, -0.01, 0.001), Vec3(0.01, 0.01, 0.02)}});
   EXPECT_NEAR(true_gap(&plate, over(0.02, 0.003)), 0.003, kRounding);

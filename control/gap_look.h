@@ -1,0 +1,42 @@
+// One look through the microscope: expose, measure, invert, and judge whether it can be believed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "control/gap_controller.h"
+
+namespace understudy::control {
+
+/// What the next reading should be, from the last one and the motion since.
+struct Expectation {
+  double gap = 0;    ///< [m]
+  double bound = 0;  ///< [m], a reading farther off is implausible
+};
+
+class GapEye {
+ public:
+  GapEye(const machine::MachineDescription& machine, const LocalSurface& surface,
+         const GapControllerOptions& options, machine::MachinePort& port);
+
+  /// Without an expectation the whole sensor is read. The result says why `look` cannot be used; none: it
+  /// can.
+  GapStop take(const std::optional<Expectation>& expected, GapLook& look);
+
+ private:
+  GapStop expose(const Region& region, GapLook& look);
+  GapStop judge_dot(GapLook& look) const;
+  GapStop judge_reading(const std::optional<Expectation>& expected, GapLook& look) const;
+
+  const machine::MachineDescription& machine_;
+  const LocalSurface& surface_;
+  const GapControllerOptions& options_;
+  machine::MachinePort& port_;
+  vision::DotOptions dot_options_;
+  std::optional<std::uint64_t> last_number_;
+};
+
+/// How the dot of this laser looks in this microscope.
+vision::DotOptions dot_options(const machine::MachineDescription& machine);
+
+}  // namespace understudy::control
