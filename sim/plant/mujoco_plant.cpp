@@ -125,7 +125,7 @@ void MujocoPlant::find_parts() {
 }
 
 void MujocoPlant::reset(const AxisArray& displacement) {
-  failed_ = false;
+  failed_ = true;
   const Pose X_WT = assemble(displacement);
   model_ = load_model(write_mjcf(machine_, as_built_, X_WT, options_));
   data_ = make_data(*model_);
@@ -185,7 +185,7 @@ void MujocoPlant::check_state(const DriveCommand& command) const {
 
 void MujocoPlant::step(const DriveCommand& command) {
   if (failed_) throw MachineError("engine failure: the plant has failed before and was not reset");
-  failed_ = false;
+  failed_ = true;
   command_drives(command);
   checked_step(*model_, *data_);
   check_state(command);
