@@ -1,6 +1,9 @@
 // understudy: the command, and the one place where every error becomes a line and an exit status.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -20,6 +23,18 @@ int fail(int status, const std::string& message) {
   return status;
 }
 
+/// CLI11 would only say that a sub-command is missing.
+void check_first_word(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return;
+  const std::string nearest = nearest_word(std::string(argv[1]), known);
+  throw InputError(
+      fmt::format("unknown command '{}'{}", argv[1],
+                  nearest.empty() ? ": see understudy --help" : "; did you mean '" + nearest + "'?"));
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Rehearses prints of machines that print in many directions, and says go or no-go.",
                "understudy");
@@ -36,6 +51,7 @@ int run(int argc, char** argv) {
   cli::add_kinematics(app, action);
   cli::add_export(app, action);
   cli::add_inspection(app, action);
+  check_first_word(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

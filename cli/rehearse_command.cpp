@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/command.h"
 #include "cli/progress.h"
@@ -80,6 +81,7 @@ void add_rehearse(CLI::App& app, Action& action) {
                    "the twin's errors: nominal, sampled (left after calibration), manufactured")
       ->capture_default_str();
   command->add_option("--seed", request->seed, "of the as-built errors and of all noise")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
       ->add_option("--gap-control", request->gap_control,

@@ -74,14 +74,15 @@ Finding loose_finding(const sim::DepositionObserver::Loose& loose, double accept
   f.kind = "adhesion";
   f.gcode_line = loose.line;
   f.time_s = loose.time;
-  f.value = to_mm(loose.worst_gap);
   f.limit = to_mm(accepted_max);
   f.unit = "mm";
   const Vec3 place = loose.place_W * 1e3;
-  f.message = fmt::format(
-      "bead of {:.2f} mm does not stick: gap up to {:.3f} mm, above {:.3f} mm, from ({:.2f}, {:.2f}, {:.2f}) "
-      "mm",
-      to_mm(loose.length), f.value, f.limit, place.x(), place.y(), place.z());
+  const bool in_air = !std::isfinite(loose.worst_gap);
+  f.value = in_air ? to_mm(sim::kGapReach) : to_mm(loose.worst_gap);
+  const std::string why = in_air ? fmt::format("nothing lies below the nozzle within {:.0f} mm", f.value)
+                                 : fmt::format("gap up to {:.3f} mm, above {:.3f} mm", f.value, f.limit);
+  f.message = fmt::format("bead of {:.2f} mm does not stick: {}, from ({:.2f}, {:.2f}, {:.2f}) mm",
+                          to_mm(loose.length), why, place.x(), place.y(), place.z());
   return f;
 }
 
@@ -111,7 +112,7 @@ void add_gap_findings(const TwinRun& run, const machine::MachineDescription& mac
           return (a.extruding ? a.gap : HUGE_VAL) < (b.extruding ? b.gap : HUGE_VAL);
         });
     findings.push_back(
-        gap_finding(Severity::warning, lowest->line, lowest->time, laid.gap_min, limits.accepted_min,
+        gap_finding(Severity::error, lowest->line, lowest->time, laid.gap_min, limits.accepted_min,
                     fmt::format("the nozzle runs as low as {:.3f} mm over the surface, below {:.3f} mm",
                                 to_mm(laid.gap_min), to_mm(limits.accepted_min))));
   }

@@ -89,6 +89,28 @@ double tip_max_um(const TwinRun& run) {
   return to_um(worst);
 }
 
+bool any_extrusion(const std::vector<TracePoint>& trace) {
+  return std::any_of(trace.begin(), trace.end(), [](const TracePoint& p) { return p.extruding; });
+}
+
+/// Nothing where no gap exists: nothing was printed, or somewhere nothing lies below the nozzle.
+std::optional<GapFigures> gap_of(const TwinRun& run, const TwinRun* without,
+                                 const machine::MachineDescription& machine) {
+  const auto& laid = run.deposition;
+  if (!(laid.length > 0) || !std::isfinite(laid.gap_max)) return std::nullopt;
+  GapFigures gap;
+  gap.commanded_mm = to_mm(machine.gap.aim);
+  if (without && without->deposition.length > 0 && std::isfinite(without->deposition.start_gap))
+    gap.open_loop_start_mm = to_mm(without->deposition.start_gap);
+  gap.start_mm = to_mm(laid.start_gap);
+  gap.path_min_mm = to_mm(laid.gap_min);
+  gap.path_mean_mm = to_mm(laid.gap_mean);
+  gap.path_max_mm = to_mm(laid.gap_max);
+  gap.in_band_fraction = laid.in_band_fraction;
+  gap.frames = static_cast<int>(run.frames.size());
+  return gap;
+}
+
 /// Volume of bead, told as length of the filament it came from.
 double as_filament_mm(double volume, const machine::MachineDescription& machine) {
   const double d = machine.tool.filament_diameter;
@@ -102,22 +124,11 @@ void fill_figures(const TwinRun& run, const TwinRun* without, const machine::Mac
                               as_filament_mm(run.deposition.deposited_volume, machine), to_mm(r.travel)};
   record.collision = run.collision;
   record.engine = run.engine;
-  if (run.deposition.length > 0) {
+  if (any_extrusion(run.trace)) {
     record.accuracy = accuracy_of(run);
     record.accuracy->open_loop_tip_max_um = tip_max_um(without ? *without : run);
-    const auto& laid = run.deposition;
-    GapFigures gap;
-    gap.commanded_mm = to_mm(machine.gap.aim);
-    if (without && without->deposition.length > 0)
-      gap.open_loop_start_mm = to_mm(without->deposition.start_gap);
-    gap.start_mm = to_mm(laid.start_gap);
-    gap.path_min_mm = to_mm(laid.gap_min);
-    gap.path_mean_mm = to_mm(laid.gap_mean);
-    gap.path_max_mm = to_mm(laid.gap_max);
-    gap.in_band_fraction = laid.in_band_fraction;
-    gap.frames = static_cast<int>(run.frames.size());
-    record.gap = gap;
   }
+  record.gap = gap_of(run, without, machine);
 }
 
 /// Both runs at once: they share nothing that changes.

@@ -10,6 +10,7 @@ namespace understudy::vision {
 namespace {
 
 constexpr double kWindow = 3;          // standard deviations: 1.1 % of a Gaussian lies outside
+constexpr double kTightest = 2.2;      // where noise of the surroundings rules
 constexpr double kSmallestWindow = 1;  // below, the moments of what is left say nothing
 constexpr int kIterations = 60;
 
@@ -102,13 +103,35 @@ Surroundings darkest(const Image& image) {
   return s;
 }
 
-double window_inside(const Image& image, const Spot& spot) {
+/// Variance of the centroid of a Gaussian by the model of dot.h, per axis of a round spot of equal area
+/// [px^2].
+double expected_variance(const Spot& spot, double window, const DotOptions& options) {
+  const double s2 = std::sqrt(spot.spread.determinant()), k2 = window * window;
+  const double inside = 1 - std::exp(-k2 / 2), hold = truncated_variance(window);
+  const double level = std::max(spot.around.variance, 1.0 / 12) * std::numbers::pi * k2 * k2 * s2 * s2 / 4;
+  const double photons = options.grey_per_electron * spot.flux * s2 * inside * hold;
+  const double grains = options.speckle_area_px2 * spot.flux * spot.flux / (8 * std::numbers::pi) *
+                        (1 - (1 + k2) * std::exp(-k2));
+  return (level + photons + grains) / std::pow(spot.flux * inside * hold, 2);
+}
+
+/// Speckle wants a wide window, a dim spot on a noisy ground a tight one.
+double best_window(const Spot& spot, const DotOptions& options) {
+  if (options.speckle_area_px2 < 0) return kWindow;
+  double best = kWindow;
+  for (double window = kWindow - 0.2; window > kTightest - 0.1; window -= 0.2) {
+    if (expected_variance(spot, window, options) < expected_variance(spot, best, options)) best = window;
+  }
+  return best;
+}
+
+double window_inside(const Image& image, const Spot& spot, double wanted) {
   const double x = std::min(spot.centre.x() + 0.5, image.width() - 0.5 - spot.centre.x());
   const double y = std::min(spot.centre.y() + 0.5, image.height() - 0.5 - spot.centre.y());
   // Half a pixel for the soft edge.
   const double fits =
       std::min((x - 0.5) / std::sqrt(spot.spread(0, 0)), (y - 0.5) / std::sqrt(spot.spread(1, 1)));
-  return std::clamp(fits, kSmallestWindow, kWindow);
+  return std::clamp(fits, kSmallestWindow, wanted);
 }
 
 struct Sums {
@@ -158,8 +181,10 @@ std::optional<Spot> measure_moments(const Image& image, const SpotGuess& guess, 
   spot.centre = guess.centre;
   const double sigma = options.expected_radius_px / 2;
   spot.spread = Eigen::Matrix2d::Identity() * (1.5 * 1.5 * sigma * sigma);
+  double wanted = kWindow;
   for (int i = 0; i < kIterations && !spot.converged; ++i) {
-    spot.window = window_inside(image, spot);
+    if (i > 2 && i < 8) wanted = best_window(spot, options);  // then fixed, so that the rest converges
+    spot.window = window_inside(image, spot, wanted);
     const auto plane = fit_plane(ring(image, spot));
     spot.around = plane ? *plane : darkest(image);
     const Sums sums = sum_window(image, spot);
@@ -168,7 +193,7 @@ std::optional<Spot> measure_moments(const Image& image, const SpotGuess& guess, 
     const Eigen::Matrix2d spread =
         limited((sums.second / sums.flux - step * step.transpose()) / truncated_variance(spot.window),
                 options.expected_radius_px);
-    spot.converged = step.norm() < 1e-4 && (spread - spot.spread).norm() < 1e-3 * spot.spread.norm();
+    spot.converged = i > 4 && step.norm() < 1e-4 && (spread - spot.spread).norm() < 1e-3 * spot.spread.norm();
     spot.centre += step;
     spot.centre =
         spot.centre.cwiseMax(Vec2(-0.5, -0.5)).cwiseMin(Vec2(image.width() - 0.5, image.height() - 0.5));

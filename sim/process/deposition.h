@@ -10,8 +10,10 @@
 
 namespace understudy::sim {
 
+constexpr double kGapReach = 50e-3;  ///< [m], below the tip: beyond it there is nothing to print on
+
 /// True gap along the tool axis: from the tip to the part or the table (the plane z = 0 of W), negative
-/// inside. Infinity where the axis meets neither within 50 mm. A roof of the part above the tip is no surface
+/// inside. Infinity where the axis meets neither within kGapReach. A roof of the part above the tip is no surface
 /// to print on and does not count.
 double true_gap(const geometry::Mesh* part, const Pose& X_WT);
 

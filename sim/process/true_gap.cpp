@@ -7,7 +7,6 @@
 namespace understudy::sim {
 namespace {
 
-constexpr double kReach = 50e-3;  // [m], below the tip
 constexpr double kLift = 5e-3;    // [m], the ray starts above the tip, which may be inside the part
 constexpr double kPast = 10e-9;   // [m], the next ray starts past the last hit, by more than its rounding
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -31,8 +30,8 @@ double part_gap(const geometry::Mesh& part, const Vec3& tip, const Vec3& axis) {
   const Vec3 origin = tip + kLift * axis;
   double entered = kInfinity;  // depth below the origin where the ray went into the solid that it is in
   double from = 0;
-  while (from < kLift + kReach) {
-    const auto hit = part.ray_hit(origin - from * axis, -axis, kLift + kReach - from);
+  while (from < kLift + kGapReach) {
+    const auto hit = part.ray_hit(origin - from * axis, -axis, kLift + kGapReach - from);
     if (!hit) break;
     const double depth = from + hit->distance;
     if (enters(part, hit->triangle, -axis)) {
@@ -50,7 +49,7 @@ double part_gap(const geometry::Mesh& part, const Vec3& tip, const Vec3& axis) {
 double table_gap(const Vec3& tip, const Vec3& axis) {
   if (axis.z() <= 0) return kInfinity;
   const double gap = tip.z() / axis.z();
-  return gap <= kReach ? gap : kInfinity;
+  return gap <= kGapReach ? gap : kInfinity;
 }
 
 }  // namespace

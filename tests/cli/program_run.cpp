@@ -33,7 +33,7 @@ Outcome shell(const std::string& prefix, const std::string& words) {
 Outcome understudy(const std::string& words) { return shell("", words); }
 
 Outcome understudy_interrupted(const std::string& words, double seconds) {
-  return shell("timeout --preserve-status -s INT " + std::to_string(seconds), words);
+  return shell("timeout --foreground --preserve-status -s INT " + std::to_string(seconds), words);
 }
 
 Folder::Folder() {

@@ -94,6 +94,19 @@ TEST(Rehearse, APoseOutOfReachIsANoGoThatNamesTheStrutAndHowMuch) {
   EXPECT_FALSE(summary.contains("engine")) << "nothing was simulated";
 }
 
+TEST(Rehearse, PrintingInTheAirIsANoGo) {
+  const Folder folder;
+  const auto file =
+      folder.write("air.gcode", "G21\nG90\nM82\nM109 S230\nG0 X0 Y0 Z60 W1 I0 J0 K0\nG1 X5 E0.2 F300\n");
+  const Outcome outcome = understudy("rehearse " + file + " --out " + (folder / "out"));
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  const auto summary = nlohmann::json::parse(read_file(folder / "out/summary.json"));
+  ASSERT_FALSE(summary["findings"].empty());
+  EXPECT_EQ(summary["findings"][0]["kind"], "adhesion");
+  EXPECT_EQ(summary["findings"][0]["gcode_line"], 6);
+  EXPECT_FALSE(summary.contains("gap")) << "there is no gap where nothing lies below";
+}
+
 TEST(Rehearse, InterruptedLeavesNothing) {
   const Folder folder;
   for (const double seconds : {0.1, 0.5, 1.0}) {

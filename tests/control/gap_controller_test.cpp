@@ -177,6 +177,15 @@ TEST(GapController, AveragesItsLastLooksAtDifferentHeights) {
   EXPECT_LT(looks.size(), 15u);  // ten looks are a second and a half of a print
 }
 
+TEST(GapController, AveragesAlsoWhenOneStepWouldDo) {
+  GapControllerOptions options;
+  options.step_fraction = 1;  // the second look is at the aim already
+  Stage stage(on_slope(0));
+  const GapOutcome outcome = stage.run(options);
+  ASSERT_EQ(outcome.stop, GapStop::none) << outcome.why;
+  EXPECT_GE(outcome.looks.size(), 4u);  // one from afar, three averaged
+}
+
 TEST(GapController, AimsWhereItIsTold) {
   GapControllerOptions options;
   options.aim = 0.17e-3;

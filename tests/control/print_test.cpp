@@ -127,6 +127,26 @@ TEST(Print, CountsWhatItDid) {
   EXPECT_NEAR(rig.port().outputs().fan, 0.5, 1e-12);
 }
 
+TEST(Print, FilamentCountsOnWhereTheMotionPauses) {
+  Program program = bead_program();
+  Step fan;
+  fan.kind = StepKind::fan;
+  fan.fan = 1;
+  fan.line = 6;
+  program.steps.insert(program.steps.begin() + 6, fan);  // between the two beads: the tool comes to rest
+  GapRig rig(hexapod(), low_by(0));
+  PrintOptions options;
+  options.gap_control = GapControl::off;
+  ASSERT_TRUE(print(program, hexapod(), rig.port(), options).completed);
+  double last = 0;
+  for (const auto& s : rig.port().history()) {
+    if (s.line > 7) break;
+    ASSERT_GE(s.filament, last - 1e-15) << "line " << s.line;
+    last = s.filament;
+  }
+  EXPECT_NEAR(last, 2e-4, 1e-12);
+}
+
 TEST(Print, MeasuresItsTimeFromItsOwnBeginning) {
   GapRig early(hexapod(), low_by(0)), late(hexapod(), low_by(0));
   ASSERT_EQ(late.port().wait_until(100), Status::ok);

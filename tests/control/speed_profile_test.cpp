@@ -83,6 +83,21 @@ TEST(SpeedProfile, CircleIsTakenAtTheClosedFormOfTheTimeOptimum) {
   EXPECT_LE(worst_acceleration(pieces, 2), a * (1 + 1e-9));
 }
 
+// q' = 0 and q'' = 50 /m at the first node: whatever u is, 50 x <= a. The other channel leaves u free.
+TEST(SpeedProfile, ChannelThatStandsStillBoundsTheSpeedByItsCurvatureAlone) {
+  std::deque<Piece> pieces;
+  for (int n = 0; n < 50; ++n) {
+    Piece piece = straight_piece(1e-4, 10);
+    piece.slope_begin[1] = 50 * 1e-4 * n;
+    piece.slope_end[1] = 50 * 1e-4 * (n + 1);
+    pieces.push_back(piece);
+  }
+  ChannelLimits limits = limits_of(2, 1e6, 1e-3);
+  limits.acceleration[1] = 1;
+  plan_speeds(pieces, 100, limits);
+  EXPECT_NEAR(pieces[0].node_speed2, 1.0 / 50, 1e-12);
+}
+
 TEST(SpeedProfile, RandomPathsStayWithinEveryBound) {
   Random random(41, "profiles");
   for (int trial = 0; trial < 200; ++trial) {

@@ -114,10 +114,10 @@ TEST(LaserView, ALensThatDistortsMovesTheDotWithIt) {
   scene.camera.centre_px = {-200, 100};  // the dot lies far from the lens's axis
   scene.X_TC = scene.X_TC * make_pose(Quat::Identity(), Vec3(-7e-3, -1.5e-3, 0));
   const Vec2 straight = dot_of(scene);
-  scene.camera.k1 = -0.8;
+  scene.camera.k1 = -0.3;
   scene.camera.p1 = 0.01;
   const Vec2 bent = dot_of(scene);
-  EXPECT_GT((bent - straight).norm(), 3);
+  EXPECT_GT((bent - straight).norm(), 2);
   EXPECT_LT((moments(view.render(scene, around(bent)), 0).centre - bent).norm(), 0.02);
 }
 
