@@ -35,6 +35,9 @@ std::string kind_of(LimitKind kind) {
   return "unreachable";
 }
 
+/// A condition number beyond the resolution of double is told as this, not as infinity.
+constexpr double kSingular = 1e15;
+
 struct ReportUnit {
   double factor;
   const char* name;
@@ -133,7 +136,7 @@ std::vector<Finding> findings_of(const control::ConstraintReport& report) {
                      : Severity::error;
     f.gcode_line = entry.line;
     f.time_s = entry.time;
-    f.value = violation.value * unit.factor;
+    f.value = std::min(violation.value * unit.factor, kSingular);
     f.limit = violation.limit * unit.factor;
     f.unit = unit.name;
     f.message = to_string(violation);

@@ -97,7 +97,7 @@ bool any_extrusion(const std::vector<TracePoint>& trace) {
 std::optional<GapFigures> gap_of(const TwinRun& run, const TwinRun* without,
                                  const machine::MachineDescription& machine) {
   const auto& laid = run.deposition;
-  if (!(laid.length > 0) || !std::isfinite(laid.gap_max)) return std::nullopt;
+  if (!(laid.length > 0) || !std::isfinite(laid.gap_max) || !std::isfinite(laid.start_gap)) return std::nullopt;
   GapFigures gap;
   gap.commanded_mm = to_mm(machine.gap.aim);
   if (without && without->deposition.length > 0 && std::isfinite(without->deposition.start_gap))

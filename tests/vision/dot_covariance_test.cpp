@@ -40,7 +40,6 @@ Consistency consistency(const SyntheticSpot& shape, double area, DotOptions opti
     c.rms += error.squaredNorm() / (2 * kFrames);
   }
   c.rms = std::sqrt(c.rms);
-  if(getenv("PRINT")) printf("norm %.0f rms %.4f closed %.4f\n", c.normalised, c.rms, std::sqrt(area/(8*std::numbers::pi)));
   return c;
 }
 

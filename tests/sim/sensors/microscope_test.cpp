@@ -30,7 +30,7 @@ machine::MachineDescription reference_machine() {
   m.laser.X_TL = looking({0, 1.1e-3, 0}, from_deg(90), from_deg(40), 28e-3);
   m.laser.waist_diameter = 0.15e-3;
   m.laser.wavelength = 650e-9;
-  m.laser.peak_level = 120;
+  m.laser.peak_level = 190;
   m.microscope.camera = {.width = 640, .height = 480, .focal_px = 64 * 33, .centre_px = {319.5, 239.5}};
   m.microscope.X_TC = looking({1.06e-3, -0.6e-3, -1.06e-3}, 0, from_deg(45), 33e-3);
   m.microscope.aperture_sine = 0.05;
@@ -109,13 +109,16 @@ Errors measure(const machine::MachineDescription& machine, Ground ground, const 
   Microscope microscope(machine, part_of(ground), 5, options);
   vision::DotOptions dot;
   dot.grey_per_electron = 255 / machine.microscope.full_well;
-  dot.speckle_area_px2 =
-      options.speckle ? vision::speckle_area_px2(650e-9, machine.microscope.aperture_sine, 64e3) : 0;
   dot.saturated_fraction_max = 0.3;  // under coarse speckle a few bright grains saturate
   Errors e;
   for (int k = 0; k < frames; ++k) {
     Random random(static_cast<std::uint64_t>(k), "microscope test");
-    const Pose X_WT = over(ground, random.uniform(0.05e-3, 3e-3), random);
+    const double gap = random.uniform(0.05e-3, 3e-3);
+    const Pose X_WT = over(ground, gap, random);
+    // The camera looks down at 45 degrees: the dot lies cos 45 of the gap behind the tip.
+    const double scale = machine.microscope.camera.focal_px / (33e-3 + gap * std::cos(from_deg(45)));
+    dot.speckle_area_px2 =
+        options.speckle ? vision::speckle_area_px2(650e-9, machine.microscope.aperture_sine, scale) : 0;
     const auto truth = microscope.true_dot(X_WT);
     if (!truth) continue;  // seen by no camera: the part's own edge, or off the sensor
     const int x = static_cast<int>(truth->x() + random.uniform(-12, 12)),
@@ -176,8 +179,10 @@ TEST(Microscope, ReproducesTheSpeckleErrorOfReferenceD) {
   const double area = std::pow(64e3 * 650e-9 / 0.015, 2) / std::numbers::pi;
   const double expected = std::sqrt(area / (8 * std::numbers::pi) * (ratio + 1 / ratio) / 2);
   EXPECT_NEAR(e.rms_axis, expected, 0.15 * expected);  // 300 numbers: 4 %; 3 sigma, and blur rounds the spot
-  // Mean of 300 squared normalised errors: 2 +- 0.16; 3 sigma.
-  EXPECT_NEAR(e.normalised, 2, 0.5);
+  // Mean of 150 sums of two squares: 2 +- 0.16. With some thirty grains the spot's own spread, from which the
+  // covariance is scaled, is known to a fifth, and its scatter makes the covariance large rather than small.
+  EXPECT_GT(e.normalised, 1.2);
+  EXPECT_LT(e.normalised, 2.5);
 }
 
 TEST(Microscope, MountErrorsMoveTheDotAndTheTruthAlike) {
