@@ -12,27 +12,9 @@ namespace {
 
 using kinematics::LimitKind;
 
-/// The contract's word for a broken limit.
+/// The contract's word for a broken limit: screws that come too near are a collision.
 std::string kind_of(LimitKind kind) {
-  switch (kind) {
-    case LimitKind::screw_distance:
-      return "collision";
-    case LimitKind::strut_length:
-      return "strut_length";
-    case LimitKind::joint_angle:
-      return "joint_angle";
-    case LimitKind::joint_limit:
-      return "joint_limit";
-    case LimitKind::axis_velocity:
-      return "axis_velocity";
-    case LimitKind::axis_acceleration:
-      return "axis_acceleration";
-    case LimitKind::singularity:
-      return "singularity";
-    case LimitKind::unreachable:
-      return "unreachable";
-  }
-  return "unreachable";
+  return kind == LimitKind::screw_distance ? "collision" : to_string(kind);
 }
 
 /// A condition number beyond the resolution of double is told as this, not as infinity.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "rehearsal/quantile.h"
 #include "rehearsal/scenario.h"
 
 namespace understudy::rehearsal {
@@ -87,15 +88,6 @@ std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
   for (std::size_t i = 0; i < std::min(seeds.size(), kSeedsNamed); ++i)
     text += (i > 0 ? ", " : "") + std::to_string(seeds[i]);
   return text + (seeds.size() > kSeedsNamed ? ", ..." : "");
-}
-
-// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, definition 7).
-double quantile(std::vector<double> values, double p) {
-  std::sort(values.begin(), values.end());
-  const double position = p * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (position - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 double statistic_of(Statistic statistic, const std::vector<double>& values) {

@@ -11,6 +11,7 @@
 
 #include "core/interrupt.h"
 #include "core/units.h"
+#include "rehearsal/quantile.h"
 #include "rehearsal/report.h"
 
 namespace understudy::rehearsal {
@@ -74,15 +75,6 @@ std::string line_of(const std::string& name, const Distribution& d, double low, 
 }
 
 }  // namespace
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const auto above = std::min(below + 1, values.size() - 1);
-  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
-}
 
 std::vector<SweepRow> sweep(const RehearsalRequest& request, std::uint64_t first, int count, int threads,
                             const Progress& progress) {

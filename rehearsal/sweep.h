@@ -34,7 +34,4 @@ std::string sweep_table(const std::vector<SweepRow>& rows, double band_min_mm, d
 /// One line a machine.
 std::string sweep_csv(const std::vector<SweepRow>& rows);
 
-/// Linear interpolation between order statistics; `share` in [0, 1]; `values` need not be sorted.
-double quantile(std::vector<double> values, double share);
-
 }  // namespace understudy::rehearsal

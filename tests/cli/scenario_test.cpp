@@ -53,6 +53,12 @@ TEST(ScenarioRun, BadScenariosAreRefusedBeforeAnythingRuns) {
   EXPECT_EQ(understudy("scenario run " + (folder / "none.yaml")).status, 2);
 }
 
+// 200 machines, both ways: minutes. The table is `understudy sweep scenarios/song-bottle.yaml`.
+TEST(SlowScenarioRun, TwoHundredMachinesStartInTheBandAndNoneTouches) {
+  const Outcome outcome = understudy("scenario run " + kSource + "/scenarios/studies/song-bottle-200.yaml");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
 TEST(ScenarioList, NamesTheShippedScenarios) {
   const Outcome outcome = understudy("scenario list " + kSource + "/scenarios");
   EXPECT_EQ(outcome.status, 0) << outcome.err;

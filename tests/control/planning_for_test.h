@@ -10,9 +10,22 @@
 
 namespace understudy::control {
 
-/// The shipped machine with its tool at home; `at` is relative to home in W.
+/// The shipped machine's geometry, with the dynamics that the tests' figures are worked out for: tuning the
+/// product must not move them.
+inline machine::MachineDescription hexapod_of_known_dynamics() {
+  machine::MachineDescription m = machine::load_machine("hexapod");
+  m.drive.velocity_max = 0.060;
+  m.drive.acceleration_max = 2.0;
+  m.acceleration = 1.0;
+  m.travel_velocity = 0.050;
+  m.orientation_velocity = from_deg(60);
+  m.cycle_time = 1e-3;
+  return m;
+}
+
+/// That machine with its tool at home; `at` is relative to home in W.
 struct HexapodForTest {
-  machine::MachineDescription machine = machine::load_machine("hexapod");
+  machine::MachineDescription machine = hexapod_of_known_dynamics();
   std::unique_ptr<kinematics::Mechanism> mechanism = machine.make_mechanism();
   MotionLimits limits = motion_limits(machine);
   Pose X_WT_home = machine.X_WB * machine.X_BT_home;

@@ -24,7 +24,7 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(NumberTable, ReadsRowsWithTheirLines) {
-  const auto rows = read("# made by hand\na, b\r\n1,-2.5e-3\n\n3 , 4\n");
+  const auto rows = read("# made by hand\na, b\r\n+1,-2.5e-3\n\n3 , 4\n");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].line, 3);
   EXPECT_EQ(rows[0].values, (std::vector<double>{1, -2.5e-3}));
@@ -36,9 +36,9 @@ TEST(NumberTable, NamesPlaceAndValueOfWhatIsWrong) {
   EXPECT_EQ(refusal(""), "t.csv: is empty; the header is 'a,b'");
   EXPECT_EQ(refusal("a,c\n1,2\n"), "t.csv:1: the header is 'a,c', not 'a,b'");
   EXPECT_EQ(refusal("a,b\n1,2\n1\n"), "t.csv:3: 1 cells, not 2");
-  EXPECT_EQ(refusal("a,b\n1,x\n"), "t.csv:2:2: 'x' is not a finite number");
-  EXPECT_EQ(refusal("a,b\nnan,1\n"), "t.csv:2:1: 'nan' is not a finite number");
-  EXPECT_EQ(refusal("a,b\n1,1e999\n"), "t.csv:2:2: '1e999' is not a finite number");
+  EXPECT_EQ(refusal("a,b\n1,x\n"), "t.csv:2:3: b is 'x', not a finite number");
+  EXPECT_EQ(refusal("a,b\nnan,1\n"), "t.csv:2:1: a is 'nan', not a finite number");
+  EXPECT_EQ(refusal("a,b\n1,1e999\n"), "t.csv:2:3: b is '1e999', not a finite number");
 }
 
 }  // namespace

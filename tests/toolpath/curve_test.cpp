@@ -147,11 +147,11 @@ TEST_F(CurveCsv, GivesMetres) {
 }
 
 TEST_F(CurveCsv, NamesLineAndColumnOfWhatIsWrong) {
-  EXPECT_EQ(rejection(""), ": 0 points, a curve needs 2");
+  EXPECT_EQ(rejection(""), ": is empty; the header is 'x_mm,y_mm,z_mm'");
   EXPECT_EQ(rejection("x_mm,y_mm,z_mm\n1,2,3\n"), ": 1 points, a curve needs 2");
-  EXPECT_EQ(rejection("x,y,z\n1,2,3\n"), ":1:1: the header is 'x,y,z', it must be 'x_mm,y_mm,z_mm'");
-  EXPECT_THAT(rejection("x_mm,y_mm,z_mm\n1,2,3\n1,2\n"), HasSubstr(":3:3: '1,2' needs 3 numbers"));
-  EXPECT_THAT(rejection("x_mm,y_mm,z_mm\n1,2,3,4\n"), HasSubstr(":2:5: '1,2,3,4' needs 3 numbers"));
+  EXPECT_EQ(rejection("x,y,z\n1,2,3\n"), ":1: the header is 'x,y,z', not 'x_mm,y_mm,z_mm'");
+  EXPECT_EQ(rejection("x_mm,y_mm,z_mm\n1,2,3\n1,2\n"), ":3: 2 cells, not 3");
+  EXPECT_EQ(rejection("x_mm,y_mm,z_mm\n1,2,3,4\n"), ":2: 4 cells, not 3");
   EXPECT_EQ(rejection("x_mm,y_mm,z_mm\n1,2,3\n\n1,two,3\n"), ":4:3: y_mm is 'two', not a finite number");
   EXPECT_THAT(rejection("x_mm,y_mm,z_mm\n1,2,nan\n"), HasSubstr("z_mm is 'nan'"));
   EXPECT_THAT(rejection("x_mm,y_mm,z_mm\n1e999,2,3\n"), HasSubstr("x_mm is '1e999'"));
