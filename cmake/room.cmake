@@ -25,9 +25,9 @@ function(understudy_test name)
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
   endif()
-  gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "-Slow*"
+  gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "-Slow*" NO_PRETTY_VALUES
     PROPERTIES TIMEOUT ${TEST_TIMEOUT} DISCOVERY_TIMEOUT 60)
-  gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "Slow*"
+  gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "Slow*" NO_PRETTY_VALUES
     TEST_LIST ${name}_slow_tests
     PROPERTIES LABELS slow TIMEOUT 1200 DISCOVERY_TIMEOUT 60)
 endfunction()

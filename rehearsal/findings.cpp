@@ -91,16 +91,15 @@ void add_gap_findings(const TwinRun& run, const machine::MachineDescription& mac
         Severity::warning, 0, 0, limits.aim, limits.accepted_max,
         "the program has no approach along the tool axis before it prints: the gap was not controlled"));
   const auto& laid = run.deposition;
-  if (laid.length > 0 && laid.gap_min < limits.accepted_min) {
-    const auto lowest =
-        std::min_element(run.trace.begin(), run.trace.end(), [](const auto& a, const auto& b) {
-          return (a.extruding ? a.gap : HUGE_VAL) < (b.extruding ? b.gap : HUGE_VAL);
-        });
+  if (laid.length == 0) return;
+  const auto lowest = std::min_element(run.trace.begin(), run.trace.end(), [](const auto& a, const auto& b) {
+    return (a.extruding ? a.gap : HUGE_VAL) < (b.extruding ? b.gap : HUGE_VAL);
+  });
+  if (lowest->extruding && lowest->gap < limits.accepted_min)
     findings.push_back(
-        gap_finding(Severity::error, lowest->line, lowest->time, laid.gap_min, limits.accepted_min,
+        gap_finding(Severity::error, lowest->line, lowest->time, lowest->gap, limits.accepted_min,
                     fmt::format("the nozzle runs as low as {:.3f} mm over the surface, below {:.3f} mm",
-                                to_mm(laid.gap_min), to_mm(limits.accepted_min))));
-  }
+                                to_mm(lowest->gap), to_mm(limits.accepted_min))));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(Axes, BadRowsAreRefusedWithTheirPlace) {
   const Folder folder;
   const Outcome number = understudy("axes <" + folder.write("a.csv", kPoseHeader + "0,0,x,1,0,0,0\n"));
   EXPECT_EQ(number.status, 2);
-  EXPECT_THAT(number.err, HasSubstr("standard input:2:3"));
+  EXPECT_THAT(number.err, HasSubstr("standard input:2:5"));
   const Outcome unit = understudy("axes <" + folder.write("b.csv", kPoseHeader + "0,0,50,0.9,0,0,0\n"));
   EXPECT_EQ(unit.status, 2);
   EXPECT_THAT(unit.err, HasSubstr("0.9"));
