@@ -17,6 +17,7 @@ void add_scenario(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_kinematics(CLI::App& app, Action& action);  ///< axes, poses
+void add_workspace(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_inspection(CLI::App& app, Action& action);  ///< machines, doctor
 

@@ -1,10 +1,13 @@
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "core/error.h"
 #include "core/output_file.h"
 #include "machine/description.h"
+#include "machine/urdf_writer.h"
 #include "sim/as_built/as_built.h"
 #include "sim/plant/plant.h"
 
@@ -24,6 +27,25 @@ int export_mjcf(const ExportRequest& r) {
   return kGood;
 }
 
+int export_urdf(const ExportRequest& r) {
+  const auto machine = machine::load_machine(r.machine);
+  if (!machine.chain)
+    throw InputError(
+        machine.name +
+        ": URDF holds open chains only, and the struts of a hexapod close loops; see export mjcf");
+  const auto& chain = machine.chain->kinematics.chain;
+  std::vector<machine::LinkMass> links;
+  std::vector<machine::AxisDrive> drives;
+  for (std::size_t i = 0; i < chain.axes.size(); ++i) {
+    const machine::Link& link = machine.chain->links[i];
+    links.push_back({chain.axes[i].name, static_cast<int>(i), link.mass, link.centre_O, link.inertia_O});
+    drives.push_back({machine.drives[i].velocity_max, kinematics::kEndless});
+  }
+  write_file(r.output, machine::write_urdf(machine.name, chain, links, drives));
+  fmt::print("{}\n", r.output);
+  return kGood;
+}
+
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
@@ -37,6 +59,11 @@ void add_export(CLI::App& app, Action& action) {
   mjcf->add_option("--seed", request->seed, "of the as-built errors")->capture_default_str();
   mjcf->add_option("-o,--output", request->output, "file to write")->required();
   mjcf->callback([=, &action] { action = [=] { return export_mjcf(*request); }; });
+  auto* urdf =
+      command->add_subcommand("urdf", "URDF of an open chain: links \"work\" and \"tool\" at its ends");
+  urdf->add_option("--machine", request->machine, "name under models/ or a machine.yaml")->required();
+  urdf->add_option("-o,--output", request->output, "file to write")->required();
+  urdf->callback([=, &action] { action = [=] { return export_urdf(*request); }; });
 }
 
 }  // namespace understudy::cli

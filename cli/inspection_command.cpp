@@ -1,3 +1,6 @@
+#include <cmath>
+#include <string>
+
 #include <fmt/format.h>
 
 #include "cli/command.h"
@@ -8,12 +11,41 @@
 namespace understudy::cli {
 namespace {
 
+std::string range_text(const kinematics::Mechanism& mechanism, int axis) {
+  const bool angle = mechanism.axis_is_angle(axis);
+  const double unit = angle ? kDegree : kMillimetre;
+  const char* name = angle ? "deg" : "mm";
+  const auto [lower, upper] = mechanism.axis_range(axis);
+  if (!std::isfinite(lower) && !std::isfinite(upper)) return "endless";
+  if (!std::isfinite(lower)) return fmt::format("to {:g} {}", upper / unit, name);
+  if (!std::isfinite(upper)) return fmt::format("from {:g} {}", lower / unit, name);
+  return fmt::format("{:g}..{:g} {}", lower / unit, upper / unit, name);
+}
+
+/// "l1-l6 170..240 mm": neighbours with the same range share it.
+std::string axes_text(const kinematics::Mechanism& mechanism) {
+  std::string text;
+  for (int first = 0, next = 0; first < mechanism.axis_count(); first = next) {
+    const std::string range = range_text(mechanism, first);
+    next = first + 1;
+    while (next < mechanism.axis_count() && range_text(mechanism, next) == range) ++next;
+    const std::string names =
+        mechanism.axis_name(first) + (next - first > 1 ? "-" + mechanism.axis_name(next - 1) : "");
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", names, range);
+  }
+  return text;
+}
+
+std::string tool_text(const machine::Tool& tool) {
+  return tool.prints() ? fmt::format("nozzle {:.1f} mm", to_mm(tool.nozzle_diameter))
+                       : fmt::format("end mill {:.1f} mm", to_mm(tool.flat_diameter));
+}
+
 int list_machines() {
   for (const auto& name : machine::machine_names()) {
     const auto m = machine::load_machine(name);
-    fmt::print("{:<12} {}, struts {:.0f}..{:.0f} mm, nozzle {:.1f} mm, {}\n", m.name, m.mechanism,
-               to_mm(m.limits.strut_min), to_mm(m.limits.strut_max), to_mm(m.tool.nozzle_diameter),
-               m.file.string());
+    fmt::print("{:<12} {}; {}; {}; {}\n", m.name, m.mechanism, axes_text(*m.make_mechanism()),
+               tool_text(m.tool), m.file.string());
   }
   return kGood;
 }

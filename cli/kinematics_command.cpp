@@ -40,9 +40,9 @@ Pose pose_of(const NumberRow& row) {
 }
 
 /// "ok", or why there is no usable answer: the first limit that the pose breaks.
-std::string status_of(const Mechanism& mechanism, const Pose& X_BT) {
+std::string status_of(const Mechanism& mechanism, const Pose& X_BT, std::span<const double> axes) {
   std::vector<kinematics::LimitViolation> violations;
-  mechanism.check(X_BT, violations);
+  mechanism.check(X_BT, axes, violations);
   return violations.empty() ? "ok" : to_string(violations.front());
 }
 
@@ -56,7 +56,8 @@ int print_axes(const std::string& name) {
     const Pose X_BT = machine.X_WB.inverse() * pose_of(row);
     std::array<double, kinematics::kMaxAxes> axes{};
     const auto solved = mechanism->inverse(X_BT, {}, std::span(axes).first(n));
-    std::string status = solved == kinematics::Solve::ok ? status_of(*mechanism, X_BT) : to_string(solved);
+    std::string status =
+        solved == kinematics::Solve::ok ? status_of(*mechanism, X_BT, axes) : to_string(solved);
     for (std::size_t i = 0; i < n; ++i)
       out += solved == kinematics::Solve::ok && status == "ok"
                  ? fmt::format("{:.6f},", axes[i] / file_unit(*mechanism, static_cast<int>(i)))
@@ -82,7 +83,7 @@ int print_poses(const std::string& name) {
       out += fmt::format("nan,nan,nan,nan,nan,nan,nan,{}\n", to_string(solved));
       continue;
     }
-    const std::string status = status_of(*mechanism, X_BT);
+    const std::string status = status_of(*mechanism, X_BT, axes);
     if (status != "ok") {
       out += fmt::format("nan,nan,nan,nan,nan,nan,nan,{}\n", status);
       continue;
@@ -112,7 +113,8 @@ void add_kinematics(CLI::App& app, Action& action) {
   auto* poses =
       app.add_subcommand("poses", "Forward kinematics: axes.csv on standard input, poses on standard output");
   poses->add_option("--machine", *machine, "name under models/ or a machine.yaml")->capture_default_str();
-  poses->footer("Header of the hexapod: l1_mm,l2_mm,l3_mm,l4_mm,l5_mm,l6_mm, strut lengths.");
+  poses->footer(
+      "Header: the machine's axes, as `understudy axes` prints them; hexapod: l1_mm..l6_mm, strut lengths.");
   poses->callback([=, &action] { action = [=] { return print_poses(*machine); }; });
 }
 

@@ -73,20 +73,22 @@ void add_rehearse(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--machine", request->machine, "name under models/ or a machine.yaml")
       ->capture_default_str();
-  command->add_option("--engine", request->engine, "plant: mujoco")->capture_default_str();
+  command->add_option("--engine", request->engine, "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
+      ->capture_default_str();
   command->add_option("--fixture", request->fixture,
                       "the inserted part: an STL in mm, or a name under models/parts");
   command
       ->add_option("--as-built", request->as_built,
-                   "the twin's errors: nominal, sampled (left after calibration), manufactured")
+                   "the twin's errors: nominal, sampled (left after calibration), manufactured, or a file of "
+                   "as-built parameters")
       ->capture_default_str();
   command->add_option("--seed", request->seed, "of the as-built errors and of all noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
       ->add_option("--gap-control", request->gap_control,
-                   "off, or start: close the gap before each print move by laser and camera")
-      ->capture_default_str();
+                   "off, or start: close the gap before each print move by laser and camera; start where the "
+                   "machine has them");
   command->add_option("--out", *folder, "folder of results")->capture_default_str();
   command->callback([=, &action] { action = [=] { return rehearse(*request, *folder); }; });
 }

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "control/path_segment.h"
+#include "core/error.h"
 
 namespace understudy::control {
 
@@ -73,13 +74,17 @@ class Checker {
     if (!toolpath::moves(step)) return;
     const PathSegment segment = make_segment(step, X_WT_, limits_);
     if (!segment.moves()) return;
+    if (const auto first = path_.self_motion_before(segment, axes_)) axes_ = first->self_motion->to;
     const int parts = parts_of(segment, step_, kCheckTurn);
     for (int k = 1; k <= parts; ++k) {
+      const machine::AxisArray before = axes_;
       const double fraction = static_cast<double>(k) / parts;
       const Pose X_WT = segment.pose_at(fraction * segment.length);
       const Location at{pushed_, fraction};
-      if (note_pose(X_WT, step.line, at) && (step.kind == StepKind::move || step.kind == StepKind::print))
-        note_speed(segment, X_WT, at);
+      const bool reached = note_pose(X_WT, step.line, at);
+      if (reached) note_leap(before, step.line, at);
+      if (reached && (step.kind == StepKind::move || step.kind == StepKind::print))
+        note_speed(segment, fraction * segment.length, at);
     }
     X_WT_ = segment.X_WT_end;
   }
@@ -87,9 +92,10 @@ class Checker {
   bool note_pose(const Pose& X_WT, int line, const Location& at) {
     const Pose X_BT = X_BW_ * X_WT;
     violations_.clear();
-    mechanism_->check(X_BT, violations_);
-    for (const LimitViolation& violation : violations_) note({violation, line, 0, 0}, at);
     const Solve status = mechanism_->inverse(X_BT, axes_, axes_);
+    mechanism_->check(X_BT, status == Solve::ok ? std::span<const double>(axes_) : std::span<const double>(),
+                      violations_);
+    for (const LimitViolation& violation : violations_) note({violation, line, 0, 0}, at);
     if (status != Solve::ok) {
       if (violations_.empty()) note({{LimitKind::unreachable, "tool pose", 0, 0, ""}, line, 0, 0}, at);
       plannable_ = false;
@@ -103,9 +109,18 @@ class Checker {
     return true;
   }
 
-  void note_speed(const PathSegment& segment, const Pose& X_WT, const Location& at) {
+  /// No path through here: the planner would refuse it.
+  void note_leap(const machine::AxisArray& before, int line, const Location& at) {
+    const auto [axis, turn] = path_.largest_turn(before, axes_);
+    if (turn <= kLeap) return;
+    note({{LimitKind::singularity, "axis " + mechanism_->axis_name(axis), turn, kLeap, "rad"}, line, 0, 0},
+         at);
+    plannable_ = false;
+  }
+
+  void note_speed(const PathSegment& segment, double s, const Location& at) {
     ChannelArray slope{};
-    if (path_.evaluate(segment, X_WT, axes_, slope) != Solve::ok) return;
+    if (path_.evaluate(segment, s, axes_, slope) != Solve::ok) return;
     for (std::size_t i = 0; i < axis_count(); ++i) {
       const double needed = std::abs(slope[i]) * segment.speed, limit = limits_.axis_velocity[i];
       if (limit >= kFeedLeft * needed) continue;
@@ -133,7 +148,15 @@ class Checker {
 
   void plan(const Step& step) {
     if (!plannable_) return;
-    planner_.push(step);
+    try {
+      planner_.push(step);
+    } catch (const InputError&) {
+      // Only a way past a singular pose gets here: everything else was noted and is not planned.
+      note({{LimitKind::singularity, "the way past a singular pose", 0, 0, ""}, step.line, 0, 0},
+           {pushed_, 0});
+      plannable_ = false;
+      return;
+    }
     // The machine waits here until the outputs are set.
     if (step.kind == StepKind::temperature || step.kind == StepKind::fan) planner_.finish();
     drain();

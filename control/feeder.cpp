@@ -24,6 +24,7 @@ Feeder::Feeder(const machine::MachineDescription& machine, machine::MachinePort&
       port_(port),
       batch_size_(std::clamp<std::size_t>(port.state().free_slots / 2, 1, kBatch)),
       X_WT_rest_(X_WT_start),
+      axes_rest_(port.state().position),
       end_time_(port.now()) {
   batch_.reserve(batch_size_);
 }
@@ -32,8 +33,8 @@ Pose Feeder::resting_pose() const { return planner_ ? planner_->resting_pose() :
 
 Status Feeder::push(const toolpath::Step& step) {
   if (!planner_) {
-    planner_ =
-        std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_, X_WT_rest_, port_.now() + kLead);
+    planner_ = std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_, X_WT_rest_,
+                                               port_.now() + kLead, PoseCheck::limits, &axes_rest_);
     filament_at_start_ = filament_;
   }
   planner_->push(step);
@@ -47,6 +48,7 @@ Status Feeder::come_to_rest() {
   if (const Status s = pump(); s != Status::ok) return s;
   if (const Status s = hand_over(); s != Status::ok) return s;
   X_WT_rest_ = planner_->resting_pose();
+  axes_rest_ = planner_->resting_axes();
   planner_.reset();
   if (const Status s = wait_until(end_time_ + limits_.cycle_time); s != Status::ok) return s;
   // Accepted is not executed: a machine that was held is late, not done.

@@ -37,6 +37,7 @@ class Feeder {
   std::vector<machine::Setpoint> batch_;
   std::size_t batch_size_;
   Pose X_WT_rest_;
+  machine::AxisArray axes_rest_;  ///< there
   double filament_ = 0;           ///< [m], fed by everything pushed
   double filament_at_start_ = 0;  ///< [m], when the stretch began: planners count from 0
   double end_time_ = 0;           ///< [s], of the last setpoint queued

@@ -79,8 +79,7 @@ class Approach {
         motion_(motion),
         options_(options),
         aim_(options.aim > 0 ? options.aim : machine.gap.aim),
-        // A strut's play is one nut and two ball joints; struts stand within 45 degrees of the way.
-        play_(std::sqrt(2.0) * (machine.play.screw_nut + 2 * machine.play.ball_joint)),
+        play_(machine.tip_play()),
         eye_(machine, surface, options, motion.port()),
         height_(standoff) {
     if (aim_ <= limits_.accepted_min || aim_ >= limits_.accepted_max)

@@ -36,8 +36,10 @@ ChannelLimits channel_limits(const MotionLimits& limits, int axis_count) {
 
 MotionLimits motion_limits(const machine::MachineDescription& machine) {
   MotionLimits limits;
-  limits.axis_velocity.fill(machine.drive.velocity_max);
-  limits.axis_acceleration.fill(machine.drive.acceleration_max);
+  for (std::size_t i = 0; i < limits.axis_velocity.size(); ++i) {
+    limits.axis_velocity[i] = machine.drives[i].velocity_max;
+    limits.axis_acceleration[i] = machine.drives[i].acceleration_max;
+  }
   limits.tip_acceleration = machine.acceleration;
   limits.travel_velocity = machine.travel_velocity;
   limits.orientation_velocity = machine.orientation_velocity;
@@ -49,7 +51,7 @@ MotionLimits motion_limits(const machine::MachineDescription& machine) {
 // finish); pieces are planned in windows and handed out as points. Times here count from `start_time`.
 struct MotionPlanner::State {
   State(const kinematics::Mechanism& mechanism, const Pose& X_WB, const MotionLimits& motion_limits,
-        const Pose& X_WT_start, double start, PoseCheck pose_check);
+        const Pose& X_WT_start, const AxisArray& axes_start, double start, PoseCheck pose_check);
 
   PathKinematics kinematics;
   MotionLimits limits;
@@ -63,6 +65,7 @@ struct MotionPlanner::State {
   Pose X_WT_rest;  // at the end of what was queued
   double filament_rest = 0;
   AxisArray axes_rest{};  // at the end of what was cut
+  AxisArray axes_end{};   // at the end of what was queued
 
   std::deque<Piece> pieces;
   double window_length = 0;   // [m]
@@ -77,6 +80,8 @@ struct MotionPlanner::State {
   bool resting = true;  // the last point handed out is at rest at the end of everything
 
   void push(const toolpath::Step& step);
+  void find_slopes(PathSegment& segment, AxisArray& axes) const;
+  void queue(PathSegment segment);
   void cut_last(double exit_speed);
   void finish();
   bool plan();
@@ -86,8 +91,8 @@ struct MotionPlanner::State {
 };
 
 MotionPlanner::State::State(const kinematics::Mechanism& mechanism, const Pose& X_WB,
-                            const MotionLimits& motion_limits, const Pose& X_WT_start, double start,
-                            PoseCheck pose_check)
+                            const MotionLimits& motion_limits, const Pose& X_WT_start,
+                            const AxisArray& axes_start, double start, PoseCheck pose_check)
     : kinematics(mechanism, X_WB),
       limits(motion_limits),
       channels(channel_limits(motion_limits, mechanism.axis_count())),
@@ -102,9 +107,10 @@ MotionPlanner::State::State(const kinematics::Mechanism& mechanism, const Pose& 
     require_positive("axis velocity", limits.axis_velocity[i]);
     require_positive("axis acceleration", limits.axis_acceleration[i]);
   }
+  axes_rest = axes_start;
   if (const Solve status = kinematics.axes(X_WT_start, axes_rest); status != Solve::ok)
     throw InputError(std::string("the pose to start from is ") + to_string(status));
-  axes_now = axes_rest;
+  axes_now = axes_end = axes_rest;
 }
 
 void MotionPlanner::State::push(const toolpath::Step& step) {
@@ -113,16 +119,30 @@ void MotionPlanner::State::push(const toolpath::Step& step) {
     return;
   }
   PathSegment segment = make_segment(step, X_WT_rest, limits);
-  if (segment.moves()) {
-    kinematics.require_reachable(segment, check, axes_rest);
-    AxisArray near = axes_rest;
-    Solve status = kinematics.evaluate(segment, segment.X_WT_begin, near, segment.slope_begin);
-    if (status == Solve::ok) status = kinematics.evaluate(segment, segment.X_WT_end, near, segment.slope_end);
-    if (status != Solve::ok)
-      throw InputError(Place{"", step.line, 0},
-                       "line " + std::to_string(step.line) + ": the pose is " + to_string(status));
-  }
-  segment.step = steps_pushed++;
+  segment.step = steps_pushed;
+  AxisArray axes = axes_end;
+  std::optional<PathSegment> first = kinematics.self_motion_before(segment, axes);
+  if (first) find_slopes(*first, axes);
+  if (segment.moves()) find_slopes(segment, axes);
+  ++steps_pushed;
+  if (first) queue(std::move(*first));
+  queue(std::move(segment));
+  axes_end = axes;
+}
+
+// Leaves the planner as it is when the segment cannot be.
+void MotionPlanner::State::find_slopes(PathSegment& segment, AxisArray& axes) const {
+  AxisArray near = axes;
+  kinematics.require_reachable(segment, check, axes);
+  Solve status = kinematics.evaluate(segment, 0, near, segment.slope_begin);
+  near = axes;
+  if (status == Solve::ok) status = kinematics.evaluate(segment, segment.length, near, segment.slope_end);
+  if (status != Solve::ok)
+    throw InputError(Place{"", segment.line, 0},
+                     "line " + std::to_string(segment.line) + ": the pose is " + to_string(status));
+}
+
+void MotionPlanner::State::queue(PathSegment segment) {
   segment.filament_begin = filament_rest;
   segment.filament_end += filament_rest;
   filament_rest = segment.filament_end;
@@ -204,14 +224,15 @@ void MotionPlanner::State::point_on_front(double elapsed, PlannedPoint& point) {
     s = piece.begin + std::min(piece.length, elapsed * (begin_speed + 0.5 * u * elapsed));
     speed = std::max(0.0, begin_speed + u * elapsed);
   }
-  point.fraction =
-      segment.moves() ? std::min(1.0, s / segment.length) : std::min(1.0, elapsed / segment.rest);
-  point.X_WT = segment.moves() ? segment.pose_at(s) : segment.X_WT_end;
+  point.fraction = segment.self_motion ? 0
+                   : segment.moves()   ? std::min(1.0, s / segment.length)
+                                       : std::min(1.0, elapsed / segment.rest);
+  point.X_WT = segment.moves() && !segment.self_motion ? segment.pose_at(s) : segment.X_WT_end;
   point.step = segment.step;
   point.setpoint.line = segment.line;
   point.setpoint.filament = segment.filament_at(point.fraction);
   ChannelArray slope{};
-  kinematics.evaluate(segment, point.X_WT, axes_now, slope);
+  kinematics.evaluate(segment, s, axes_now, slope);
   point.setpoint.position = axes_now;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kinematics.axis_count()); ++i)
     point.setpoint.velocity[i] = slope[i] * speed;
@@ -247,10 +268,22 @@ bool MotionPlanner::State::next(PlannedPoint& point) {
   return true;
 }
 
+namespace {
+
+AxisArray axes_from_home(const kinematics::Mechanism& mechanism, const Pose& X_WB, const Pose& X_WT) {
+  AxisArray axes{};
+  (void)mechanism.inverse(X_WB.inverse() * X_WT, {}, axes);  // what fails here fails again in the constructor
+  return axes;
+}
+
+}  // namespace
+
 MotionPlanner::MotionPlanner(const kinematics::Mechanism& mechanism, const Pose& X_WB,
                              const MotionLimits& limits, const Pose& X_WT_start, double start_time,
-                             PoseCheck check)
-    : state_(std::make_unique<State>(mechanism, X_WB, limits, X_WT_start, start_time, check)) {}
+                             PoseCheck check, const machine::AxisArray* axes_start)
+    : state_(std::make_unique<State>(mechanism, X_WB, limits, X_WT_start,
+                                     axes_start ? *axes_start : axes_from_home(mechanism, X_WB, X_WT_start),
+                                     start_time, check)) {}
 MotionPlanner::~MotionPlanner() = default;
 
 void MotionPlanner::push(const toolpath::Step& step) { state_->push(step); }
@@ -260,5 +293,6 @@ double MotionPlanner::time() const {
   return state_->start_time + static_cast<double>(state_->cycle) * state_->limits.cycle_time;
 }
 Pose MotionPlanner::resting_pose() const { return state_->X_WT_rest; }
+machine::AxisArray MotionPlanner::resting_axes() const { return state_->axes_end; }
 
 }  // namespace understudy::control

@@ -50,11 +50,15 @@ enum class PoseCheck {
 /// feeds filament without moving takes |filament| / feed. Steps that neither move nor dwell are ignored.
 /// Acceleration is switched, not ramped: jerk is not limited. At a corner the velocity of each axis changes
 /// within one cycle by at most half of acceleration * cycle_time; the other half is for speeding up and down.
+/// Where a step leaves a pose that lets an axis turn freely (a table under an upright tool), the axis turns
+/// to where the step needs it first, with the tool at rest on the part.
 class MotionPlanner {
  public:
-  /// The mechanism and X_WB must outlive the planner. Starts at rest at X_WT_start at `start_time`.
+  /// The mechanism and X_WB must outlive the planner. Starts at rest at X_WT_start at `start_time`, on the
+  /// branch of `axes_start`; nullptr: of home.
   MotionPlanner(const kinematics::Mechanism& mechanism, const Pose& X_WB, const MotionLimits& limits,
-                const Pose& X_WT_start, double start_time, PoseCheck check = PoseCheck::limits);
+                const Pose& X_WT_start, double start_time, PoseCheck check = PoseCheck::limits,
+                const machine::AxisArray* axes_start = nullptr);
   ~MotionPlanner();
 
   /// Queues a step that moves or dwells. Throws InputError naming the line and the axis or strut and by how
@@ -69,6 +73,7 @@ class MotionPlanner {
 
   double time() const;        ///< [s] of the last point handed out
   Pose resting_pose() const;  ///< X_WT at the end of what was queued
+  machine::AxisArray resting_axes() const;
 
  private:
   struct State;

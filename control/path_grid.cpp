@@ -96,7 +96,9 @@ void append_pieces(const PathSegment& segment, std::size_t number, double exit_s
     return;
   }
   const int axes = kinematics.axis_count();
-  const double piece_max = segment.length / parts_of(segment, kPieceMax, kPieceTurnMax);
+  const double piece_max =
+      segment.self_motion ? kTurnRadius * kPieceTurnMax
+                          : segment.length / (segment.fineness * parts_of(segment, kPieceMax, kPieceTurnMax));
   const auto cruise = [&](const ChannelArray& slope) {
     return speed_limit(segment.speed, slope, motion, axes);
   };
@@ -114,7 +116,7 @@ void append_pieces(const PathSegment& segment, std::size_t number, double exit_s
     piece.length = nodes[k + 1] - nodes[k];
     // A pose on the way is as good as those that were checked; where it is not, the last slopes hold.
     ChannelArray slope = piece.slope_begin;
-    if (kinematics.evaluate(segment, segment.pose_at(nodes[k + 1]), position, slope) != kinematics::Solve::ok)
+    if (kinematics.evaluate(segment, nodes[k + 1], position, slope) != kinematics::Solve::ok)
       slope = piece.slope_begin;
     piece.slope_end = slope;
     piece.speed_max = std::min(cruise(piece.slope_begin), cruise(piece.slope_end));

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "control/motion_planner.h"
 
@@ -31,7 +33,13 @@ struct PathSegment {
   int line = 0;
   std::size_t step = 0;
   ChannelArray slope_begin{}, slope_end{};  ///< d(axis)/ds, d(tip)/ds at both ends
-  double entry_speed = 0;                   ///< [m/s] of s, at most, where it begins; 0: at rest
+  /// The axes move and the tool stays: a table turns under an upright tool. From and to, along all of s.
+  struct SelfMotion {
+    machine::AxisArray from{}, to{};
+  };
+  std::optional<SelfMotion> self_motion;
+  int fineness = 1;        ///< by which it is looked at more closely: it passes a singular pose
+  double entry_speed = 0;  ///< [m/s] of s, at most, where it begins; 0: at rest
 
   bool moves() const { return length > 0; }
   Pose pose_at(double s) const;
@@ -52,18 +60,36 @@ class PathKinematics {
 
   kinematics::Solve axes(const Pose& X_WT, machine::AxisArray& position) const;
   /// Positions at s (`position` holds a near one on entry: the branch) and d/ds of every channel.
-  kinematics::Solve evaluate(const PathSegment& segment, const Pose& X_WT, machine::AxisArray& position,
+  kinematics::Solve evaluate(const PathSegment& segment, double s, machine::AxisArray& position,
                              ChannelArray& slope) const;
-  /// InputError naming line, part, value and limit for the first pose that is out, the end first. The poses
-  /// are at most kCheckTravel and kCheckTurn apart.
-  void require_reachable(const PathSegment& segment, PoseCheck check, machine::AxisArray near) const;
+  /// InputError naming line, part, value and limit for the first pose that is out, the end first, and for an
+  /// axis that would have to leap. The poses are at most kCheckTravel and kCheckTurn apart. `position` is
+  /// near the segment's beginning on entry, and at its end afterwards. Sets fineness.
+  void require_reachable(PathSegment& segment, PoseCheck check, machine::AxisArray& position) const;
+  /// Where the segment begins in a pose that leaves an axis free, and its way needs that axis elsewhere: the
+  /// motion that brings it there first, with the tool at rest.
+  std::optional<PathSegment> self_motion_before(const PathSegment& segment,
+                                                const machine::AxisArray& position) const;
+  /// The angle axis that moves most from one to the other, and by how much [rad].
+  std::pair<int, double> largest_turn(const machine::AxisArray& from, const machine::AxisArray& to) const;
 
  private:
+  struct Walk {
+    double condition = 0;  ///< the largest on the way, where the mechanism may pass singular poses
+    double leap = 0;       ///< [rad], largest turn of an axis from one look to the next
+    int leaping_axis = 0;
+  };
+  Walk walk(const PathSegment& segment, PoseCheck check, machine::AxisArray& position) const;
+  kinematics::Solve evaluate_self_motion(const PathSegment& segment, double s, machine::AxisArray& position,
+                                         ChannelArray& slope) const;
+
   const kinematics::Mechanism& mechanism_;
   Pose X_BW_;
   int axis_count_;
 };
 
+/// An axis that turns farther between two such poses goes through a singular pose, not along a path.
+constexpr double kLeap = 0.7;            // [rad], 40 degrees
 constexpr double kCheckTravel = 0.5e-3;  // [m]; a strut's length between bends by 0.2 um at the most
 constexpr double kCheckTurn = 0.0175;    // [rad], 1 degree
 

@@ -1,19 +1,20 @@
 #include "kinematics/hexapod.h"
 
 #include <cmath>
+#include <limits>
+
+#include "kinematics/hexapod_numbers.h"
 
 namespace understudy::kinematics {
 
 Solve inverse(const HexapodGeometry& geometry, const Pose& X_BT, StrutLengths& lengths) {
-  if (!X_BT.matrix().allFinite()) return Solve::bad_input;
-  StrutLengths result;
-  for (std::size_t i = 0; i < kStruts; ++i) {
-    const Vec3 d = geometry.base_joint[i] - X_BT * geometry.platform_joint[i];
-    const double squared = d.squaredNorm() - geometry.deviation * geometry.deviation;
-    if (!(squared > 0)) return Solve::unreachable;
-    result[i] = std::sqrt(squared);
-  }
-  lengths = result;
+  lanes::Struts<double> struts;
+  lanes::find_struts(plain_numbers(geometry), plain_numbers(X_BT), struts);
+  bool all = true;
+  for (const double s : struts.squared) all = all && s > 0 && s < std::numeric_limits<double>::infinity();
+  // A number of the pose that is not finite is in every strut.
+  if (!all) return X_BT.matrix().allFinite() ? Solve::unreachable : Solve::bad_input;
+  for (std::size_t i = 0; i < kStruts; ++i) lengths[i] = lanes::root(struts.squared[i]);
   return Solve::ok;
 }
 

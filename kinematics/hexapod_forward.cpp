@@ -3,18 +3,18 @@
 #include <cmath>
 
 #include "kinematics/hexapod.h"
+#include "kinematics/hexapod_newton.h"
+#include "kinematics/hexapod_numbers.h"
+#include "kinematics/rigid_pose.h"
 
 namespace understudy::kinematics {
 namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kTurnMax = 0.6;        // [rad] per step; beyond it the linear model of a strut says little
-constexpr double kTravelMax = 0.5;      // per step, of the mean strut length
 constexpr double kSmallestStep = 1e-3;  // of the Newton step, before giving up
 constexpr double kPivotRatio =
     1e-10;  // of the scaled Jacobian; smaller leaves fewer than 6 digits of the step
-constexpr double kRigidTolerance = 1e-6;  // of R^T R - I in a seed
 
 // Everything that one iterate needs: residuals, and the factors of J with its angular columns scaled.
 struct Iterate {
@@ -39,12 +39,6 @@ void evaluate(const HexapodGeometry& geometry, const StrutLengths& target, doubl
   at.factors.compute(J);
   const Vec6 pivots = at.factors.matrixLU().diagonal().cwiseAbs();
   if (!(pivots.minCoeff() > kPivotRatio * pivots.maxCoeff())) at.status = Solve::singular;
-}
-
-bool is_rigid(const Pose& X) {
-  return X.matrix().allFinite() &&
-         (X.linear().transpose() * X.linear() - Mat3::Identity()).cwiseAbs().maxCoeff() < kRigidTolerance &&
-         X.linear().determinant() > 0;
 }
 
 Twist bounded_newton_step(const Iterate& at, double radius, double travel_max) {
@@ -83,27 +77,18 @@ Solve advance(const HexapodGeometry& geometry, const StrutLengths& target, doubl
 // back.
 Mat3 orthonormal(const Mat3& R) { return Quat(R).normalized().toRotationMatrix(); }
 
-}  // namespace
-
-ForwardResult forward(const HexapodGeometry& geometry, const StrutLengths& lengths, const Pose& seed,
-                      const ForwardOptions& options) {
-  ForwardResult result;
-  const auto usable = [](double l) { return std::isfinite(l) && l > 0; };
-  if (!is_rigid(seed) || !std::all_of(lengths.begin(), lengths.end(), usable)) {
-    result.status = Solve::bad_input;
-    if (is_rigid(seed)) result.X_BT = seed;
-    return result;
-  }
+/// Step by step with the brakes on: where whole steps do not do.
+void forward_with_care(const HexapodGeometry& geometry, const StrutLengths& lengths, const Pose& seed,
+                       const ForwardOptions& options, ForwardResult& result) {
+  const double radius = platform_radius(geometry);
   double mean_length = 0;
   for (const double l : lengths) mean_length += l / kStruts;
-  const double radius = platform_radius(geometry);
-
   Iterate at, trial;
   at.X_BT = make_pose(orthonormal(seed.linear()), seed.translation());
   evaluate(geometry, lengths, radius, at);
   result.X_BT = at.X_BT;
   result.status = at.status;
-  if (at.status == Solve::unreachable || at.status == Solve::bad_input) return result;
+  if (at.status == Solve::unreachable || at.status == Solve::bad_input) return;
   while (result.status == Solve::ok && at.worst() > options.tolerance) {
     if (result.iterations == options.max_iterations) {
       result.status = Solve::not_converged;
@@ -115,6 +100,25 @@ ForwardResult forward(const HexapodGeometry& geometry, const StrutLengths& lengt
   }
   result.X_BT = make_pose(orthonormal(at.X_BT.linear()), at.X_BT.translation());
   result.residual = at.worst();
+}
+
+}  // namespace
+
+ForwardResult forward(const HexapodGeometry& geometry, const StrutLengths& lengths, const Pose& seed,
+                      const ForwardOptions& options) {
+  const auto usable = [](double l) { return std::isfinite(l) && l > 0; };
+  if (!std::all_of(lengths.begin(), lengths.end(), usable))
+    return {Solve::bad_input, is_rigid(seed) ? seed : Pose::Identity()};
+  double target[kStruts];
+  std::copy(lengths.begin(), lengths.end(), target);
+  const auto quick =
+      lanes::newton(plain_numbers(geometry), target, plain_numbers(seed), newton_settings(options));
+  if (quick.ok) return {Solve::ok, pose_of(quick.X), static_cast<int>(quick.iterations), quick.residual};
+  ForwardResult result;
+  if (is_rigid(seed))
+    forward_with_care(geometry, lengths, seed, options, result);
+  else
+    result.status = Solve::bad_input;
   return result;
 }
 

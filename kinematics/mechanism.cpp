@@ -97,6 +97,8 @@ std::string to_string(const LimitViolation& violation) {
     case LimitKind::axis_acceleration:
       return violation.part + " accelerates at " + value + ", more than " + limit;
     case LimitKind::singularity:
+      if (violation.unit != "1")
+        return violation.part + " is " + value + " from a singular position, nearer than " + limit;
       return violation.part + " has condition number " + value + ", above " + limit;
     case LimitKind::unreachable:
       return violation.part + " spans " + value + (above ? ", more than " : ", less than ") + limit;

@@ -1,5 +1,6 @@
 // What every machine's kinematics offers to the rest: poses to axes and back, rates, limits.
-// Poses are X_BT: the tool in the machine's base frame. Axes are in SI (m or rad), in the machine's order.
+// Poses are X_BT: the tool seen from the frame B that the work stands in: the machine's base where the table
+// stands still, the table itself where axes move it. Axes are in SI (m or rad), in the machine's order.
 // No function here throws, allocates (but for `check`) or returns NaN: a Solve says why there is no answer.
 #pragma once
 
@@ -42,6 +43,11 @@ struct LimitViolation {
 /// "strut 3 is 241.7 mm, longer than 240.0 mm": in the units of reports.
 std::string to_string(const LimitViolation& violation);
 
+/// What an axis may take, without an end where infinite.
+struct AxisRange {
+  double lower = 0, upper = 0;  ///< [m] or [rad]
+};
+
 class Mechanism {
  public:
   virtual ~Mechanism() = default;
@@ -49,20 +55,29 @@ class Mechanism {
   virtual int axis_count() const = 0;
   virtual std::string axis_name(int axis) const = 0;  ///< as in CSV headers without unit: "l1", "j1", "x"
   virtual bool axis_is_angle(int axis) const = 0;
+  virtual AxisRange axis_range(int axis) const = 0;
   virtual Pose home() const = 0;  ///< X_BT
+  /// False where the tool's rotation about its own axis (z of T) is not the machine's to choose: inverse()
+  /// and axis_rates() then disregard it, and forward() tells the one that the axes make.
+  virtual bool follows_spin() const { return true; }
 
-  /// Axis positions for a pose; `previous` picks the branch where there are several.
+  /// Axis positions for a pose; `previous` picks the branch where there are several, and the turn of an axis
+  /// without end. Empty: home. A solution beyond an axis range is still a solution: check() says so.
   virtual Solve inverse(const Pose& X_BT, std::span<const double> previous, std::span<double> axes) const = 0;
   /// Tool pose for axis positions, on the branch of `seed`.
   virtual Solve forward(std::span<const double> axes, const Pose& seed, Pose& X_BT) const = 0;
-  /// d(axes)/d(twist): row per axis; twist = (velocity of the tip, angular velocity), both in B.
+  /// d(axes)/d(twist): row per axis; twist = (velocity of the tip, angular velocity), both in B. Of the
+  /// smallest norm where a twist leaves a choice. `singular`: rates are filled all the same, for the twists
+  /// that the machine can still follow.
   virtual Solve axis_rates(const Pose& X_BT, std::span<const double> axes,
                            Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 6>> rates) const = 0;
   /// Condition number of axis_rates with its angular columns divided by the tool's own size, so that both
   /// halves are lengths; kSingularCondition where it is singular or there is no solution.
   virtual double condition_number(const Pose& X_BT, std::span<const double> axes) const = 0;
-  /// Appends every limit that the pose breaks (lengths, joint angles, distances, conditioning).
-  virtual void check(const Pose& X_BT, std::vector<LimitViolation>& violations) const = 0;
+  /// Appends every limit that the pose breaks (lengths, joint angles, distances, conditioning). `axes` as
+  /// inverse() gave them, or empty where it has no solution.
+  virtual void check(const Pose& X_BT, std::span<const double> axes,
+                     std::vector<LimitViolation>& violations) const = 0;
 };
 
 }  // namespace understudy::kinematics

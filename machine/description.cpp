@@ -5,6 +5,8 @@
 #include "core/digest.h"
 #include "core/output_file.h"
 #include "core/units.h"
+#include "kinematics/chain_kind.h"
+#include "machine/chain_section.h"
 #include "machine/hexapod_section.h"
 #include "machine/model_files.h"
 #include "machine/optics_section.h"
@@ -14,17 +16,25 @@
 namespace understudy::machine {
 namespace {
 
-ToleranceSet read_tolerance_set(YamlMap& map) {
+ToleranceSet read_tolerance_set(YamlMap& map, bool chain) {
   ToleranceSet set;
-  set.joint_position = map.quantity("joint_position_mm", {0, 20});
-  set.length_offset = map.quantity("length_offset_mm", {0, 20});
+  if (chain) {
+    set.axis_position = map.quantity("axis_position_mm", {0, 20});
+    set.axis_direction = map.quantity("axis_direction_deg", {0, 5});
+    set.zero_length = map.quantity("zero_mm", {0, 20});
+    set.zero_angle = map.quantity("zero_deg", {0, 5});
+  } else {
+    set.joint_position = map.quantity("joint_position_mm", {0, 20});
+    set.length_offset = map.quantity("length_offset_mm", {0, 20});
+  }
   return set;
 }
 
-void read_tolerances(YamlMap& map, Tolerances& tolerances) {
-  map.section("manufactured", [&](YamlMap& set) { tolerances.manufactured = read_tolerance_set(set); });
+void read_tolerances(YamlMap& map, bool chain, Tolerances& tolerances) {
+  map.section("manufactured",
+              [&](YamlMap& set) { tolerances.manufactured = read_tolerance_set(set, chain); });
   map.section("after_calibration",
-              [&](YamlMap& set) { tolerances.after_calibration = read_tolerance_set(set); });
+              [&](YamlMap& set) { tolerances.after_calibration = read_tolerance_set(set, chain); });
 }
 
 void read_gap(YamlMap& map, GapLimits& gap) {
@@ -62,31 +72,36 @@ void read_motion(YamlMap& map, MachineDescription& machine) {
   machine.acceleration = map.quantity("acceleration_mm_per_s2", {1, 1e6});
 }
 
+std::vector<std::string> mechanism_words() {
+  std::vector<std::string> words{"hexapod"};
+  for (const kinematics::ChainKind& kind : kinematics::chain_kinds()) words.push_back(kind.name);
+  return words;
+}
+
 void read_machine(YamlMap& root, MachineDescription& m) {
   m.name = root.text("name");
-  m.mechanism = root.word("mechanism", {"hexapod"});
-  root.section("geometry", [&](YamlMap& map) { read_geometry(map, m); });
-  root.section("limits", [&](YamlMap& map) { read_limits(map, m); });
-  root.section("drive", [&](YamlMap& map) { read_drive(map, m.drive); });
-  root.section("play", [&](YamlMap& map) { read_play(map, m.play); });
-  root.section("masses", [&](YamlMap& map) { read_masses(map, m.masses); });
+  m.mechanism = root.word("mechanism", mechanism_words());
+  const bool chain = m.mechanism != "hexapod";
+  if (chain)
+    read_chain(root, m);
+  else
+    read_hexapod(root, m);
   root.section("tool", [&](YamlMap& map) { read_tool(map, m.tool); });
-  root.section("laser", [&](YamlMap& map) { read_laser(map, m.laser); });
-  root.section("microscope", [&](YamlMap& map) { read_microscope(map, m.microscope); });
-  root.section("tolerances", [&](YamlMap& map) { read_tolerances(map, m.tolerances); });
-  root.section("gap", [&](YamlMap& map) { read_gap(map, m.gap); });
+  m.has_microscope = !chain || root.has("laser") || root.has("microscope");
+  if (m.has_microscope) {
+    root.section("laser", [&](YamlMap& map) { read_laser(map, m.laser); });
+    root.section("microscope", [&](YamlMap& map) { read_microscope(map, m.microscope); });
+  }
+  root.section("tolerances", [&](YamlMap& map) { read_tolerances(map, chain, m.tolerances); });
+  if (m.tool.prints() || root.has("gap")) root.section("gap", [&](YamlMap& map) { read_gap(map, m.gap); });
   root.section("table", [&](YamlMap& map) { read_table(map, m.table); });
   root.section("motion", [&](YamlMap& map) { read_motion(map, m); });
   if (!root.complete()) return;
-  settle_home(root.place("geometry"), m);
-  check_optics(root, m);
+  if (!chain) settle_home(root.place("geometry"), m);
+  if (m.has_microscope) check_optics(root, m);
 }
 
 }  // namespace
-
-std::unique_ptr<kinematics::Mechanism> MachineDescription::make_mechanism() const {
-  return kinematics::make_hexapod(hexapod, joints, limits, X_BT_home);
-}
 
 MachineDescription load_machine(const std::string& name_or_path) {
   MachineDescription machine;

@@ -2,32 +2,44 @@
 // Everything here is SI; the file uses mm, degrees, mm/s and says so in its keys.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/image.h"
 #include "geometry/shape.h"
-#include "kinematics/hexapod.h"
+#include "kinematics/chain.h"
+#include "kinematics/hexapod_passive_rotation.h"
 
 namespace understudy::machine {
 
-/// A linear drive: stepper, screw and nut.
+/// A drive: stepper with a screw, belt or gear behind it. "Unit" is [m], or [rad] for an axis that turns.
 struct Drive {
-  double lead = 0;              ///< [m/turn]
+  double lead = 0;              ///< [unit/turn] of the motor
   int steps_per_turn = 0;       ///< full steps
   int microsteps = 0;           ///< per full step
-  double velocity_max = 0;      ///< [m/s]
-  double acceleration_max = 0;  ///< [m/s^2]
-  double step() const { return lead / (static_cast<double>(steps_per_turn) * microsteps); }  ///< [m]
+  double velocity_max = 0;      ///< [unit/s]
+  double acceleration_max = 0;  ///< [unit/s^2]
+  /// Rotor and load against the commanded field, as seen on the axis [N/m] or [N m/rad]; 0: the motor is
+  /// where it is commanded. With it, the rotor swings at `resonance` when the axis carries nothing else.
+  double stiffness = 0;
+  double resonance = 0;       ///< [Hz], of the bare motor; above 0 with a stiffness
+  double damping_ratio = 0;   ///< of that resonance
+  bool self_locking = false;  ///< keeps its place without current: a screw of small lead, a worm, a brake
+  double step() const { return lead / (static_cast<double>(steps_per_turn) * microsteps); }  ///< [unit]
+  /// Rotor's inertia as seen on the axis [kg] or [kg m^2]; 0 without a stiffness.
+  double rotor() const;
 };
 
 /// Total free travel between the two ends of each play [m]; the nominal values.
 struct Play {
   double screw_nut = 0;
   double ball_joint = 0;
+  double friction = 0;  ///< [N], along the strut, below which the parts of a strut stay where they touch
 };
 
 struct Masses {
@@ -38,11 +50,48 @@ struct Masses {
   Vec3 platform_inertia{0, 0, 0};   ///< [kg m^2], principal, about that centre along T's axes
 };
 
+/// Whether the joints turn the lead screws in their nuts, a lead of strut length per turn.
+enum class ScrewRotation {
+  guided,       ///< rails keep the screws from turning
+  free,         ///< they turn, and the controller does not know
+  compensated,  ///< they turn, and the controller's kinematics has it
+};
+
+/// A hanging platform on six screw struts (Song 2015).
+struct HexapodModel {
+  kinematics::HexapodGeometry geometry;
+  kinematics::HexapodJoints joints;
+  kinematics::HexapodLimits limits;
+  double strut_radius = 0;  ///< [m], body of a strut in collision checks and pictures
+  Play play;
+  Masses masses;
+  ScrewRotation screw_rotation = ScrewRotation::guided;
+};
+
+/// What an axis of an open chain carries: a rigid body, told in the chain's frame O with all axes at 0.
+struct Link {
+  double mass = 0;                      ///< [kg]
+  Vec3 centre_O{0, 0, 0};               ///< [m]
+  Mat3 inertia_O = Mat3::Zero();        ///< [kg m^2], about the centre, along O's axes
+  std::vector<geometry::Shape> bodies;  ///< poses in O
+};
+
+/// An open chain: arm, five-axis table, finishing stage, or any other tree of axes. Its frame O stands still
+/// and upright: gravity is along -z.
+struct ChainModel {
+  kinematics::ChainDescription kinematics;
+  std::vector<Link> links;                    ///< one an axis; the tool belongs to the last of its branch
+  std::vector<double> play;                   ///< [m] or [rad], total free travel of each axis; nominal
+  std::vector<double> friction;               ///< [N] or [N m], below which an axis stays within its play
+  std::vector<geometry::Shape> frame_bodies;  ///< what stands still; poses in O
+};
+
 struct Tool {
-  double nozzle_diameter = 0;           ///< [m], bore
-  double flat_diameter = 0;             ///< [m], flat ring around the bore
+  double nozzle_diameter = 0;           ///< [m], bore; 0: an end mill, which prints nothing
+  double flat_diameter = 0;             ///< [m], flat ring around the bore, or the end mill
   double filament_diameter = 0;         ///< [m]
   std::vector<geometry::Shape> bodies;  ///< nozzle cone, heater block, platform...; poses in T
+  bool prints() const { return nozzle_diameter > 0; }
 };
 
 /// Laser beam: X_TL z along the beam. Gaussian spot.
@@ -65,10 +114,16 @@ struct Microscope {
   double ambient_level = 0;  ///< grey levels
 };
 
-/// 1 sigma of the 42 parameters of a built machine about the description.
+/// 1 sigma of the parameters of a built machine about the description.
 struct ToleranceSet {
+  // Hexapod: the 42 parameters.
   double joint_position = 0;  ///< [m], each coordinate of b_i and a_i
   double length_offset = 0;   ///< [m], l_i0
+  // Open chain.
+  double axis_position = 0;   ///< [m], each coordinate of a point of a turning axis, and of the tool's mount
+  double axis_direction = 0;  ///< [rad], tilt of each axis about both directions across it
+  double zero_length = 0;     ///< [m], zero of a sliding axis
+  double zero_angle = 0;      ///< [rad], zero of a turning axis
 };
 struct Tolerances {
   ToleranceSet manufactured;       ///< before any calibration
@@ -85,22 +140,22 @@ struct GapLimits {
 
 struct MachineDescription {
   std::string name;
-  std::string mechanism;       ///< "hexapod"
+  std::string mechanism;       ///< "hexapod", or the name of a kinematics::ChainKind
   std::filesystem::path file;  ///< where it was read
   std::string sha256;          ///< of the file's bytes, hexadecimal
 
-  Pose X_WB = Pose::Identity();  ///< the base in the world
+  /// The mechanism's base B in the world. The world stands on the work: where axes move the table, W moves
+  /// with it and X_WB is the identity.
+  Pose X_WB = Pose::Identity();
   Pose X_BT_home = Pose::Identity();
 
-  kinematics::HexapodGeometry hexapod;
-  kinematics::HexapodJoints joints;
-  kinematics::HexapodLimits limits;
-  double strut_radius = 0;  ///< [m], body of a strut in collision checks and pictures
+  /// One of the two: the closed loops of a hexapod, or an open chain.
+  HexapodModel hexapod;
+  std::optional<ChainModel> chain;
 
-  Drive drive;
-  Play play;
-  Masses masses;
+  std::array<Drive, kinematics::kMaxAxes> drives{};  ///< one an axis
   Tool tool;
+  bool has_microscope = true;  ///< with its laser; without, there is no gap control
   Laser laser;
   Microscope microscope;
   Tolerances tolerances;
@@ -112,6 +167,12 @@ struct MachineDescription {
   double acceleration = 0;          ///< [m/s^2], of the tip along the path
 
   std::unique_ptr<kinematics::Mechanism> make_mechanism() const;
+  /// How the joints turn the screws of a hexapod; lead 0 where rails guide them.
+  kinematics::ScrewCoupling screw_coupling() const;
+  /// Axis positions at which the drives read 0: l_i0 of a strut, 0 of a chain's axis. [m] or [rad]
+  std::array<double, kinematics::kMaxAxes> drive_zero() const;
+  /// [m], at most, by which all play together may shift the tip near home along any direction.
+  double tip_play() const;
 };
 
 /// `name_or_path` is a folder name under the models folder or a path of a machine.yaml (or its folder).

@@ -6,8 +6,8 @@
 
 namespace understudy::machine {
 
-void read_geometry(YamlMap& map, MachineDescription& machine);
-void read_limits(YamlMap& map, MachineDescription& machine);
+/// geometry, limits, drive, play, masses.
+void read_hexapod(YamlMap& root, MachineDescription& machine);
 
 /// Throws InputError at `place` when joints coincide, a strut has no length or home breaks a limit. Fills the
 /// stud axes, which are defined by the home pose.

@@ -28,13 +28,13 @@ double hermite(double a, double va, double b, double vb, double h, double u) {
 }  // namespace
 
 LoopbackPort::LoopbackPort(const Options& options, FrameSource frames)
-    : options_(options), frames_(std::move(frames)) {
+    : options_(options), frames_(std::move(frames)), ring_(options.queue_capacity) {
   last_.position = options_.start;
 }
 
 AxisArray LoopbackPort::position_at(double queue_time) const {
-  if (queue_.empty()) return last_.position;
-  const Setpoint& next = queue_.front();
+  if (size_ == 0) return last_.position;
+  const Setpoint& next = front();
   const double h = next.time - last_.time;
   const double u = std::clamp((queue_time - last_.time) / h, 0.0, 1.0);
   AxisArray position{};
@@ -49,8 +49,8 @@ AxisState LoopbackPort::state() const {
   s.position = position_at(time_ - queue_lag_);
   s.accepted = accepted_;
   s.executed = executed_;
-  s.free_slots = options_.queue_capacity - queue_.size();
-  s.moving = !queue_.empty() && !held_;
+  s.free_slots = ring_.size() - size_;
+  s.moving = size_ > 0 && !held_;
   s.fault = fault_;
   return s;
 }
@@ -58,14 +58,14 @@ AxisState LoopbackPort::state() const {
 Status LoopbackPort::submit(std::span<const Setpoint> setpoints, double deadline) {
   if (fault_ != Fault::none) return Status::faulted;
   if (time_ > deadline) return Status::deadline_exceeded;
-  double time = queue_.empty() ? time_ - queue_lag_ : queue_.back().time;
+  double time = size_ == 0 ? time_ - queue_lag_ : back().time;
   for (const Setpoint& s : setpoints) {
     if (!finite(s, options_.axis_count) || !(s.time > time)) return Status::rejected;
     time = s.time;
   }
-  if (setpoints.size() > options_.queue_capacity - queue_.size()) return Status::queue_full;
-  if (queue_.empty()) last_.time = time_ - queue_lag_;  // the axes have rested at `last_` until now
-  queue_.insert(queue_.end(), setpoints.begin(), setpoints.end());
+  if (setpoints.size() > ring_.size() - size_) return Status::queue_full;
+  if (size_ == 0) last_.time = time_ - queue_lag_;  // the axes have rested at `last_` until now
+  for (const Setpoint& s : setpoints) ring_[(head_ + size_++) % ring_.size()] = s;
   accepted_ += setpoints.size();
   return Status::ok;
 }
@@ -74,7 +74,7 @@ void LoopbackPort::rest_at(const AxisArray& position) {
   last_.position = position;
   last_.velocity = {};
   last_.time = time_;
-  queue_.clear();
+  size_ = 0;
   queue_lag_ = 0;
   held_ = false;
 }
@@ -90,12 +90,13 @@ void LoopbackPort::execute_until(double time) {
     time_ = time;
     return;
   }
-  while (!queue_.empty() && queue_.front().time + queue_lag_ <= time) {
-    last_ = queue_.front();
-    queue_.pop_front();
+  while (size_ > 0 && front().time + queue_lag_ <= time) {
+    last_ = front();
+    head_ = (head_ + 1) % ring_.size();
+    --size_;
     ++executed_;
-    history_.push_back(last_);
-    if (queue_.empty() && !resting(last_)) {
+    if (options_.history) history_.push_back(last_);
+    if (size_ == 0 && !resting(last_)) {
       time_ = last_.time + queue_lag_;
       return raise(Fault::underrun);
     }

@@ -2,7 +2,6 @@
 // everything that speaks to a MachinePort, and for dry runs.
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -18,6 +17,7 @@ class LoopbackPort : public MachinePort {
     std::size_t queue_capacity = 4096;
     AxisArray start{};
     double frame_time = 0.02;  ///< [s], exposure plus transfer
+    bool history = true;       ///< keep every executed setpoint, which allocates
   };
   /// Fills the image for the axis positions at a time; false: no frame.
   using FrameSource = std::function<bool(const AxisState&, const Region&, Image&)>;
@@ -37,20 +37,23 @@ class LoopbackPort : public MachinePort {
   void inject_fault(Fault fault, double time = 0);
   void repeat_frames(bool on) { repeat_frames_ = on; }  ///< deliver the last frame again: stale
   const Outputs& outputs() const { return outputs_; }
-  /// Every setpoint that was executed, in order (tests only).
+  /// Every setpoint that was executed, in order.
   const std::vector<Setpoint>& history() const { return history_; }
 
  private:
   AxisArray position_at(double queue_time) const;
   void rest_at(const AxisArray& position);
   void execute_until(double time);
+  const Setpoint& front() const { return ring_[head_]; }
+  const Setpoint& back() const { return ring_[(head_ + size_ - 1) % ring_.size()]; }
   void raise(Fault fault);
 
   Options options_;
   FrameSource frames_;
   double time_ = 0;
-  Setpoint last_;  ///< executed last; where the axes rest when the queue is empty
-  std::deque<Setpoint> queue_;
+  Setpoint last_;               ///< executed last; where the axes rest when the queue is empty
+  std::vector<Setpoint> ring_;  ///< fixed storage of the queue
+  std::size_t head_ = 0, size_ = 0;
   double queue_lag_ = 0;  ///< [s], port clock minus the queue's; grows while held
   bool held_ = false;
   std::uint64_t accepted_ = 0, executed_ = 0, frame_number_ = 0;

@@ -32,6 +32,8 @@ const char* to_string(Fault f) {
       return "limit switch";
     case Fault::drive:
       return "drive fault";
+    case Fault::power:
+      return "power cut";
     case Fault::emergency_stop:
       return "emergency stop";
     case Fault::engine:

@@ -28,7 +28,7 @@ enum class Status {
 const char* to_string(Status s);
 
 /// Sticky until clear_fault(): a port with a fault takes no setpoints.
-enum class Fault { none, following_error, underrun, limit_switch, drive, emergency_stop, engine };
+enum class Fault { none, following_error, underrun, limit_switch, drive, emergency_stop, power, engine };
 const char* to_string(Fault f);
 
 /// Where the axes shall be at a time. Between setpoints the port interpolates with position and velocity.

@@ -22,6 +22,10 @@ struct Unit {
 
 // A suffix that ends in another stands before it.
 constexpr std::array kUnits{
+    Unit{"_n_per_um", " N/um", 1 / kMicrometre},
+    Unit{"_nm_per_rad", " N m/rad", 1},
+    Unit{"_newton_metre", " N m", 1},
+    Unit{"_deg_per_s2", " deg/s^2", kDegree},
     Unit{"_mm_per_s2", " mm/s^2", kMillimetre},
     Unit{"_mm_per_s", " mm/s", kMillimetre},
     Unit{"_deg_per_s", " deg/s", kDegree},
@@ -30,7 +34,10 @@ constexpr std::array kUnits{
     Unit{"_mm", " mm", kMillimetre},
     Unit{"_um", " um", kMicrometre},
     Unit{"_nm", " nm", 1e-9},
+    Unit{"_arcmin", " arcmin", kDegree / 60},
     Unit{"_deg", " deg", kDegree},
+    Unit{"_hz", " Hz", 1},
+    Unit{"_n", " N", 1},
     Unit{"_kg", " kg", 1},
     Unit{"_ms", " ms", 1e-3},
     Unit{"_px", " px", 1},
@@ -139,6 +146,11 @@ double YamlMap::number(const YAML::Node& node, const std::string& key, Bounds bo
     throw InputError(place, fmt::format("{} is {}{}, outside {} to {}{}", path(key), value, unit.name,
                                         bounds.low, bounds.high, unit.name));
   return value;
+}
+
+bool YamlMap::has(const std::string& key) {
+  known_.push_back(key);
+  return values_.contains(key);
 }
 
 double YamlMap::quantity(const std::string& key, Bounds bounds) {

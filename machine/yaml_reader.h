@@ -33,6 +33,8 @@ class YamlMap {
   /// Calls `read` for the file's map and checks afterwards that every key was asked for.
   static void read_text(const std::string& text, const std::string& file, const Read& read);
 
+  /// True when the file has the key: for what may be left out. It then counts as asked for.
+  bool has(const std::string& key);
   double quantity(const std::string& key, Bounds bounds);  ///< SI
   std::vector<double> quantities(const std::string& key, std::size_t count, Bounds bounds);
   Vec3 vector(const std::string& key, Bounds bounds);  ///< SI, each component within the bounds

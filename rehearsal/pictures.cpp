@@ -48,14 +48,15 @@ void add_path(const toolpath::Program& program, renderer::PictureScene& scene) {
   if (!line.points.empty()) scene.polylines.push_back(line);
 }
 
-renderer::PictureScene build_scene(const Stage& stage, const Pose& X_WT) {
+renderer::PictureScene build_scene(const Stage& stage, const sim::Posture& posture) {
   renderer::PictureScene scene;
   const auto& machine = stage.machine;
-  for (auto& shape : sim::machine_bodies(machine, stage.as_built.hexapod, X_WT))
+  for (auto& shape : sim::machine_bodies(machine, stage.as_built, posture))
     scene.shapes.push_back({shape, colour_of(shape.name)});
   // The base has no part in collisions: a ring of joints tells where the struts hang.
   for (const Vec3& p_BB : stage.as_built.hexapod.base_joint) {
-    geometry::Shape joint{"base joint", geometry::Sphere{1.6 * machine.strut_radius}};
+    if (machine.chain) break;
+    geometry::Shape joint{"base joint", geometry::Sphere{1.6 * machine.hexapod.strut_radius}};
     joint.X_FS.translation() = machine.X_WB * p_BB;
     scene.shapes.push_back({joint, kMetal});
   }
@@ -65,16 +66,36 @@ renderer::PictureScene build_scene(const Stage& stage, const Pose& X_WT) {
   return scene;
 }
 
+struct Ball {
+  Vec3 centre;
+  double radius;
+};
+
+/// Of the middles of all bodies, and the table's corners.
+Ball enclose(const renderer::PictureScene& scene) {
+  Eigen::AlignedBox3d box;
+  for (const auto& shape : scene.shapes) box.extend(Vec3(shape.shape.X_FS.translation()));
+  box.extend(Vec3(-0.08, -0.08, 0)).extend(Vec3(0.08, 0.08, 0));
+  return {box.center(), 0.5 * box.diagonal().norm()};
+}
+
+machine::AxisArray home_axes(const machine::MachineDescription& machine) {
+  machine::AxisArray axes{};
+  const auto mechanism = machine.make_mechanism();
+  (void)mechanism->inverse(machine.X_BT_home, {}, axes);
+  return axes;
+}
+
 }  // namespace
 
 void add_pictures(const Stage& stage, Record& record) {
   const TracePoint* point = middle_of_print(record);
   const Pose X_WT = point ? point->X_WT : Pose(stage.machine.X_WB * stage.machine.X_BT_home);
-  renderer::PictureScene scene = build_scene(stage, X_WT);
-  const double top = stage.machine.X_WB.translation().z() + stage.machine.hexapod.base_joint[0].z();
-
-  scene.target_W = Vec3(0, 0, 0.42 * top);
-  scene.eye_W = scene.target_W + Vec3(0.42, -0.50, 0.16);
+  const sim::Posture posture{X_WT, point ? point->axes : home_axes(stage.machine)};
+  renderer::PictureScene scene = build_scene(stage, posture);
+  const Ball around = enclose(scene);
+  scene.target_W = around.centre;
+  scene.eye_W = around.centre + 3.1 * around.radius * Vec3(0.62, -0.74, 0.24).normalized();
   scene.field_of_view = from_deg(30);
   record.pictures.push_back(renderer::render_picture(scene));
   record.picture_captions.push_back(point ? "Machine and part at the middle of the print"

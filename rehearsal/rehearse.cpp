@@ -17,21 +17,27 @@
 #include "rehearsal/pictures.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/version.h"
+#include "sim/as_built/as_built_file.h"
 #include "toolpath/gcode.h"
 
 namespace understudy::rehearsal {
 namespace fs = std::filesystem;
 namespace {
 
-control::GapControl gap_control_of(const std::string& word) {
-  if (word == "off") return control::GapControl::off;
-  if (word == "start") return control::GapControl::start;
+control::GapControl gap_control_of(const std::string& word, const machine::MachineDescription& machine) {
+  if (word == "off" || (word.empty() && !machine.has_microscope)) return control::GapControl::off;
+  if (word.empty() || word == "start") {
+    if (machine.has_microscope) return control::GapControl::start;
+    throw InputError(
+        fmt::format("gap control '{}' needs a laser and a microscope; {} has none: off", word, machine.name));
+  }
   throw InputError("gap control '" + word + "': one of off, start");
 }
 
 Stage prepare(const RehearsalRequest& request) {
-  if (request.engine != "mujoco")
-    throw InputError("unknown engine '" + request.engine + "': known is mujoco");
+  const auto& engines = engine_names();
+  if (std::find(engines.begin(), engines.end(), request.engine) == engines.end())
+    throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   Stage stage;
   stage.machine = machine::load_machine(request.machine);
   toolpath::GcodeOptions gcode;
@@ -41,23 +47,33 @@ Stage prepare(const RehearsalRequest& request) {
   stage.as_built = sim::make_as_built(stage.machine, request.as_built, request.seed);
   stage.engine = request.engine;
   stage.seed = request.seed;
+  stage.faults = resolve_faults(request.faults, stage.machine);
   return stage;
 }
 
-Record describe(const RehearsalRequest& request, const Stage& stage) {
+Record describe_run(const RehearsalRequest& request, const Stage& stage, control::GapControl mode) {
   Record record;
   record.program_name = fs::path(request.program).filename().string();
   record.machine_name = stage.machine.name;
   record.fixture_name = request.fixture.empty() ? "" : fs::path(request.fixture).filename().string();
-  record.gap_control = request.gap_control;
+  record.gap_control = mode == control::GapControl::off ? "off" : "start";
+  record.as_built = sim::write_as_built(stage.as_built);
+  for (const sim::FaultEvent& event : stage.faults) record.faults.push_back(describe(event, stage.machine));
   record.title = record.program_name + " on " + record.machine_name;
   record.gap_accepted_min_mm = to_mm(stage.machine.gap.accepted_min);
   record.gap_accepted_max_mm = to_mm(stage.machine.gap.accepted_max);
   record.gap_aim_mm = to_mm(stage.machine.gap.aim);
   const auto mechanism = stage.machine.make_mechanism();
-  for (int i = 0; i < mechanism->axis_count(); ++i)
-    record.axes.push_back({mechanism->axis_name(i) + (mechanism->axis_is_angle(i) ? "_deg" : "_mm"),
-                           stage.machine.limits.strut_min, stage.machine.limits.strut_max});
+  for (int i = 0; i < mechanism->axis_count(); ++i) {
+    // The tip has columns x, y and z of its own.
+    const std::string name = mechanism->axis_name(i);
+    const bool taken = name == "x" || name == "y" || name == "z";
+    AxisColumn column{(taken ? "axis_" : "") + name + (mechanism->axis_is_angle(i) ? "_deg" : "_mm"), {}, {}};
+    const kinematics::AxisRange range = mechanism->axis_range(i);
+    if (std::isfinite(range.lower)) column.min = range.lower;
+    if (std::isfinite(range.upper)) column.max = range.upper;
+    record.axes.push_back(column);
+  }
   record.provenance = {kVersion,     stage.machine.sha256, stage.program.sha256,
                        request.seed, request.as_built,     request.command};
   return record;
@@ -97,7 +113,8 @@ bool any_extrusion(const std::vector<TracePoint>& trace) {
 std::optional<GapFigures> gap_of(const TwinRun& run, const TwinRun* without,
                                  const machine::MachineDescription& machine) {
   const auto& laid = run.deposition;
-  if (!(laid.length > 0) || !std::isfinite(laid.gap_max) || !std::isfinite(laid.start_gap)) return std::nullopt;
+  if (!(laid.length > 0) || !std::isfinite(laid.gap_max) || !std::isfinite(laid.start_gap))
+    return std::nullopt;
   GapFigures gap;
   gap.commanded_mm = to_mm(machine.gap.aim);
   if (without && without->deposition.length > 0 && std::isfinite(without->deposition.start_gap))
@@ -113,6 +130,7 @@ std::optional<GapFigures> gap_of(const TwinRun& run, const TwinRun* without,
 
 /// Volume of bead, told as length of the filament it came from.
 double as_filament_mm(double volume, const machine::MachineDescription& machine) {
+  if (!machine.tool.prints()) return 0;
   const double d = machine.tool.filament_diameter;
   return to_mm(volume / (0.25 * std::numbers::pi * d * d));
 }
@@ -186,10 +204,10 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   const auto report = [&](double share, const std::string& what) {
     if (progress) progress(share, what);
   };
-  const control::GapControl mode = gap_control_of(request.gap_control);
   report(0, "reading");
   const Stage stage = prepare(request);
-  Record record = describe(request, stage);
+  const control::GapControl mode = gap_control_of(request.gap_control, stage.machine);
+  Record record = describe_run(request, stage, mode);
 
   report(0.02, "checking limits");
   const auto constraints = control::check_constraints(stage.program, stage.machine);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rehearsal/record.h"
+#include "rehearsal/scenario_faults.h"
 
 namespace understudy::rehearsal {
 
@@ -16,9 +17,10 @@ struct RehearsalRequest {
   std::string fixture;               ///< STL path, a name under models/parts, or empty: only the table
   std::string as_built = "sampled";  ///< nominal, sampled, manufactured
   std::uint64_t seed = 1;
-  std::string gap_control = "start";  ///< off, start
-  std::string command;                ///< for the record: how a user repeats this
-  bool pictures = true;               ///< draw the scene; sweeps leave it out
+  std::string gap_control;           ///< off, start; empty: start on a machine that sees, off on any other
+  std::vector<FaultRequest> faults;  ///< what goes wrong on the way
+  std::string command;               ///< for the record: how a user repeats this
+  bool pictures = true;              ///< draw the scene; sweeps leave it out
   bool compare_without_gap_control =
       true;  ///< run the print again with gap control off, for open-loop figures
 };

@@ -51,6 +51,7 @@ RehearsalRequest request_of(const Scenario& scenario) {
   request.as_built = scenario.as_built;
   request.seed = scenario.seed;
   request.gap_control = scenario.gap_control;
+  request.faults = scenario.faults;
   request.command = "understudy scenario run " + scenario.file.filename().string();
   return request;
 }

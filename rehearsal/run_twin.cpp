@@ -5,6 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "core/error.h"
 #include "core/units.h"
 #include "sim/plant/plant.h"
@@ -92,19 +95,28 @@ std::vector<FrameRecord> pair_with_truth(const control::PrintResult& result,
 
 std::unique_ptr<sim::Plant> make_plant(const Stage& stage) {
   if (stage.engine == "mujoco") return sim::make_mujoco_plant(stage.machine, stage.as_built);
-  throw InputError("unknown engine " + stage.engine + ": known is mujoco");
+  if (stage.engine == "bullet") return sim::make_bullet_plant(stage.machine, stage.as_built);
+  if (stage.engine == "quasistatic") return sim::make_quasistatic_plant(stage.machine, stage.as_built);
+  throw InputError(
+      fmt::format("unknown engine {}: one of {}", stage.engine, fmt::join(engine_names(), ", ")));
 }
 
 }  // namespace
 
+const std::vector<std::string>& engine_names() {
+  static const std::vector<std::string> names{"mujoco", "bullet", "quasistatic"};
+  return names;
+}
+
 TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& progress) {
   const auto started = std::chrono::steady_clock::now();
   const auto plant = make_plant(stage);
-  sim::Microscope microscope(stage.machine, stage.part, stage.seed);
+  std::optional<sim::Microscope> microscope;
+  if (stage.machine.has_microscope) microscope.emplace(stage.machine, stage.part, stage.seed);
   std::map<std::uint64_t, ExposureTruth> truth;
   const auto expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
-    truth[number] = {sim::true_gap(stage.part.get(), X_WT), microscope.true_dot(X_WT)};
-    return microscope.expose(X_WT, region, number);
+    truth[number] = {sim::true_gap(stage.part.get(), X_WT), microscope->true_dot(X_WT)};
+    return microscope->expose(X_WT, region, number);
   };
 
   TraceObserver trace(stage.part);
@@ -112,7 +124,10 @@ TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& 
   sim::CollisionObserver collision(stage.machine, stage.as_built, stage.part, {});
   std::vector<sim::Observer*> observers{&trace, &deposition};
   if (options.watch_collisions) observers.push_back(&collision);
-  sim::SimulatedPort port(stage.machine, *plant, expose, observers);
+  sim::TwinOptions twin;
+  twin.faults = stage.faults;
+  sim::SimulatedPort port(stage.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
+                          observers, twin);
 
   control::PrintOptions print_options;
   print_options.gap_control = options.gap_control;

@@ -23,6 +23,7 @@ struct Stage {
   sim::AsBuilt as_built;
   std::string engine;
   std::uint64_t seed = 0;
+  std::vector<sim::FaultEvent> faults;
 };
 
 struct TwinRun {
@@ -40,6 +41,9 @@ struct RunOptions {
   control::GapControl gap_control = control::GapControl::start;
   bool watch_collisions = true;
 };
+
+/// Words of `--engine` and of scenarios.
+const std::vector<std::string>& engine_names();
 
 /// Throws MachineError when the engine fails, Interrupted.
 TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& progress);

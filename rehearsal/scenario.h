@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rehearsal/metrics.h"
+#include "rehearsal/scenario_faults.h"
 
 namespace understudy::rehearsal {
 
@@ -45,6 +46,7 @@ struct Scenario {
   std::string as_built;  ///< nominal, sampled, manufactured or a path
   std::uint64_t seed = 0;
   std::string gap_control, engine;
+  std::vector<FaultRequest> faults;
   std::vector<Expectation> expect;  ///< of the run with `seed`
   std::optional<MachineSeries> machines;
 };

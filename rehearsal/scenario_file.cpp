@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/output_file.h"
+#include "rehearsal/run_twin.h"
 #include "rehearsal/scenario.h"
 #include "rehearsal/strict_yaml.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 const std::vector<std::string> kAsBuilt{"nominal", "sampled", "manufactured"};
 const std::vector<std::string> kGapControls{"off", "start"};
-const std::vector<std::string> kEngines{"mujoco"};
 const std::vector<std::string> kStatistics{"min", "max", "mean", "median", "p95", "fraction_within"};
 constexpr std::uint64_t kMachinesMax = 1'000'000;  // beyond it a range of seeds is a slip of the pen
 
@@ -174,7 +174,8 @@ Scenario load_scenario(const fs::path& path) {
                                                              : map.word("as_built", kAsBuilt);
   scenario.seed = map.whole_number("seed");
   scenario.gap_control = map.word("gap_control", kGapControls);
-  scenario.engine = map.word("engine", kEngines);
+  scenario.engine = map.word("engine", engine_names());
+  scenario.faults = read_faults(map);
   scenario.expect = read_expectations(map, false);
   if (map.has("machines")) scenario.machines = read_machines(map.map("machines", "machines"));
   map.close();

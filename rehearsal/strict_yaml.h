@@ -34,6 +34,7 @@ class StrictMap {
   void close() const;
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;  ///< at the key's line
   int line() const;
+  Place place() const { return {file_, line(), 0}; }
 
  private:
   YAML::Node required(const std::string& key);

@@ -53,6 +53,7 @@ void write_frames(const std::vector<FrameRecord>& frames, const fs::path& folder
 void write_results(const Record& record, const fs::path& folder) {
   write_file(folder / "summary.json", summary_json(record));
   write_file(folder / "report.html", report_html(record));
+  if (!record.as_built.empty()) write_file(folder / "as-built.yaml", record.as_built);
   if (!record.trace.empty()) write_file(folder / "trace.csv", trace_csv(record));
   if (!record.frames.empty()) write_frames(record.frames, folder / "frames");
   if (record.pictures.empty()) return;

@@ -12,7 +12,8 @@ struct Snapshot {
   Pose X_WT = Pose::Identity();          ///< true tool pose
   Pose X_WT_commanded = Pose::Identity();///< what the axes command means to the nominal geometry
   machine::AxisArray axes_commanded{};   ///< SI, controller's geometry
-  machine::AxisArray axes{};             ///< SI, as measured by the drives
+  machine::AxisArray axes{};             ///< SI, as the port tells the controller
+  machine::AxisArray axes_reached{};     ///< SI, where the drives are, whatever the port tells
   double filament = 0;                   ///< [m], fed since the start
   double fan = 0;
   double nozzle_temperature = 0;         ///< [K]

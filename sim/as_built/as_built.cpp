@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "sim/as_built/as_built_file.h"
 
 namespace understudy::sim {
 namespace {
@@ -13,7 +14,7 @@ Vec3 normal_vector(Random& random, double sigma) {
   return sigma * Vec3(x, y, z);
 }
 
-void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
+void add_strut_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
   for (int i = 0; i < kinematics::kStruts; ++i) {
     const auto s = static_cast<std::size_t>(i);
     Random random(built.seed, fmt::format("as-built/{}/strut {}", built.source, i + 1));
@@ -23,22 +24,53 @@ void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
   }
 }
 
+void add_axis_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
+  for (std::size_t i = 0; i < built.chain.axes.size(); ++i) {
+    kinematics::ChainAxis& axis = built.chain.axes[i];
+    Random random(built.seed, fmt::format("as-built/{}/axis {}", built.source, axis.name));
+    // The part of a tilt along the axis itself is a turn about it: nothing.
+    axis.direction =
+        (exp_rotation(normal_vector(random, tolerance.axis_direction)) * axis.direction).normalized();
+    axis.point += normal_vector(random, tolerance.axis_position);
+    built.axis_zero[i] = (axis.angle ? tolerance.zero_angle : tolerance.zero_length) * random.normal();
+  }
+  Random random(built.seed, fmt::format("as-built/{}/tool", built.source));
+  built.chain.X_OT_zero.translation() += normal_vector(random, tolerance.axis_position);
+}
+
+void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
+  if (built.chain.axes.empty())
+    add_strut_errors(tolerance, built);
+  else
+    add_axis_errors(tolerance, built);
+}
+
+AsBuilt nominal(const machine::MachineDescription& machine) {
+  AsBuilt built;
+  if (!machine.chain) {
+    built.hexapod = machine.hexapod.geometry;
+    built.nut_play.fill(machine.hexapod.play.screw_nut);
+    built.ball_play.fill(machine.hexapod.play.ball_joint);
+    return built;
+  }
+  built.chain = machine.chain->kinematics.chain;
+  for (std::size_t i = 0; i < built.chain.axes.size(); ++i) built.axis_play[i] = machine.chain->play[i];
+  return built;
+}
+
 }  // namespace
 
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set,
                       std::uint64_t seed) {
-  AsBuilt built;
+  AsBuilt built = nominal(machine);
   built.source = set;
   built.seed = seed;
-  built.hexapod = machine.hexapod;
-  built.nut_play.fill(machine.play.screw_nut);
-  built.ball_play.fill(machine.play.ball_joint);
   if (set == "sampled") {
     add_errors(machine.tolerances.after_calibration, built);
   } else if (set == "manufactured") {
     add_errors(machine.tolerances.manufactured, built);
   } else if (set != "nominal") {
-    throw InputError(fmt::format("as-built \"{}\" is not one of nominal, sampled, manufactured", set));
+    read_as_built(set, built);
   }
   return built;
 }

@@ -10,15 +10,21 @@
 namespace understudy::sim {
 
 struct AsBuilt {
-  std::string source;                       ///< "nominal", "sampled", "manufactured"
+  std::string source;  ///< "nominal", "sampled", "manufactured", or the file it was read from
   std::uint64_t seed = 0;
-  kinematics::HexapodGeometry hexapod;      ///< true 42 parameters and dev
-  std::array<double, kinematics::kStruts> nut_play{};    ///< [m], total free travel
-  std::array<double, kinematics::kStruts> ball_play{};   ///< [m]
+  // Hexapod.
+  kinematics::HexapodGeometry hexapod;                  ///< true 42 parameters and dev
+  std::array<double, kinematics::kStruts> nut_play{};   ///< [m], total free travel
+  std::array<double, kinematics::kStruts> ball_play{};  ///< [m]
+  // Open chain.
+  kinematics::Chain chain;                               ///< true screws and tool mount; empty for a hexapod
+  std::array<double, kinematics::kMaxAxes> axis_play{};  ///< [m] or [rad], total free travel
+  std::array<double, kinematics::kMaxAxes>
+      axis_zero{};  ///< [m] or [rad], true position where a drive reads 0
 };
 
-/// `set` is nominal, sampled (tolerances left after calibration) or manufactured. Throws InputError for
-/// another word.
+/// `set` is nominal, sampled (tolerances left after calibration), manufactured, or an as-built file
+/// (as_built_file.h). Throws InputError for another word.
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set, std::uint64_t seed);
 
 }  // namespace understudy::sim

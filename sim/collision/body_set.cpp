@@ -22,13 +22,20 @@ double reach_of(const geometry::Shape& shape) {
 
 }  // namespace
 
-BodySet::BodySet(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
                  std::shared_ptr<const geometry::Mesh> part)
-    : X_WB_(machine.X_WB), geometry_(geometry) {
-  const std::size_t tools = machine.tool.bodies.size();
-  const auto at_home = machine_bodies(machine, geometry, machine.X_WB * machine.X_BT_home);
+    : X_WB_(machine.X_WB),
+      geometry_(as_built.hexapod),
+      links_(machine, as_built),
+      is_chain_(machine.chain.has_value()) {
   for (const geometry::Shape& shape : machine.tool.bodies) add_body(shape, Owner::tool, 0);
-  for (std::size_t i = 0; i < kinematics::kStruts; ++i) add_body(at_home[tools + i], Owner::strut, i);
+  if (is_chain_) {
+    for (std::size_t i = 0; i < links_.items().size(); ++i) add_body(links_.items()[i].shape, Owner::link, i);
+  } else {
+    const std::size_t tools = machine.tool.bodies.size();
+    const auto at_home = hexapod_bodies(machine, geometry_, machine.X_WB * machine.X_BT_home);
+    for (std::size_t i = 0; i < kinematics::kStruts; ++i) add_body(at_home[tools + i], Owner::strut, i);
+  }
   if (part) {
     part_ = std::make_unique<MeshClearance>(part);
     part_body_ = bodies_.size();
@@ -37,19 +44,19 @@ BodySet::BodySet(const machine::MachineDescription& machine, const kinematics::H
   geometry::Shape table = machine.table;
   table.name = "table";
   add_body(table, Owner::world, 0);
-  add_pairs(machine.strut_radius);
+  add_pairs(machine.hexapod.strut_radius);
 }
 
-void BodySet::add_body(const geometry::Shape& shape, Owner owner, std::size_t strut) {
+void BodySet::add_body(const geometry::Shape& shape, Owner owner, std::size_t index) {
   Body body;
   body.shape = shape;
   body.owner = owner;
   body.solid = convex_solid(shape);
-  body.strut = strut;
+  body.index = index;
   body.nozzle = owner == Owner::tool && is_nozzle(shape.name);
   if (owner == Owner::tool) body.lever = reach_of(shape);
   // A strut turns about its base joint: no point of it moves farther than its ball joint.
-  if (owner == Owner::strut) body.lever = geometry_.platform_joint[strut].norm();
+  if (owner == Owner::strut) body.lever = geometry_.platform_joint[index].norm();
   body.fcl = world_.add(shape);
   bodies_.push_back(std::move(body));
 }
@@ -60,25 +67,41 @@ bool BodySet::carries_joint(const Body& tool, std::size_t strut, double strut_ra
   return tool.solid ? signed_distance(*tool.solid, p) <= strut_radius : contains(tool.shape, p);
 }
 
+/// Axis that carries a body of a chain; the table and the part stand on the work's.
+int BodySet::axis_of(const Body& body) const {
+  if (body.owner == Owner::tool) return links_.tool_axis();
+  return body.owner == Owner::world ? links_.work_axis() : links_.items()[body.index].axis;
+}
+
+bool BodySet::joined(const Body& a, const Body& b, double strut_radius) const {
+  if (is_chain_)
+    return (a.owner == Owner::link || b.owner == Owner::link) && links_.joined(axis_of(a), axis_of(b));
+  return b.owner == Owner::tool && carries_joint(b, a.index, strut_radius);
+}
+
 void BodySet::add_pairs(double strut_radius) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     for (std::size_t j = 0; j < bodies_.size(); ++j) {
       const Body &body = bodies_[i], &obstacle = bodies_[j];
       if (body.owner == Owner::world || (i == j)) continue;
       const bool tool_again = obstacle.owner == Owner::tool && body.owner == Owner::tool;
-      const bool other_way_round = obstacle.owner == Owner::strut && (body.owner == Owner::tool || j < i);
-      if (tool_again || other_way_round) continue;
-      if (obstacle.owner == Owner::tool && carries_joint(obstacle, body.strut, strut_radius)) continue;
+      const bool of_machine = obstacle.owner == Owner::strut || obstacle.owner == Owner::link;
+      const bool other_way_round = of_machine && (body.owner == Owner::tool || j < i);
+      if (tool_again || other_way_round || joined(body, obstacle, strut_radius)) continue;
       const bool at_work = body.nozzle && obstacle.owner == Owner::world;
       pairs_.push_back({i, j, at_work, at_work && (!part_ || j == part_body_)});
     }
   }
 }
 
-double BodySet::motion(const BodyPair& pair, double path, double turn) const {
+double BodySet::motion(const BodyPair& pair, const Travel& travel) const {
   double sum = 0;
   for (const std::size_t i : {pair.body, pair.obstacle}) {
-    if (bodies_[i].owner != Owner::world) sum += path + turn * bodies_[i].lever;
+    const Body& body = bodies_[i];
+    if (body.owner == Owner::link)
+      sum += links_.motion(body.index, travel.axes);
+    else if (body.owner != Owner::world)
+      sum += travel.path + travel.turn * body.lever;
   }
   return sum;
 }
@@ -86,8 +109,9 @@ double BodySet::motion(const BodyPair& pair, double path, double turn) const {
 Pose BodySet::place(Body& body, const Pose& X_WT) {
   if (body.owner == Owner::world) return body.shape.X_FS;
   if (body.owner == Owner::tool) return X_WT * body.shape.X_FS;
-  const Vec3 base = X_WB_ * geometry_.base_joint[body.strut],
-             ball = X_WT * geometry_.platform_joint[body.strut];
+  if (body.owner == Owner::link) return links_.place(body.index);
+  const Vec3 base = X_WB_ * geometry_.base_joint[body.index],
+             ball = X_WT * geometry_.platform_joint[body.index];
   const double length = (ball - base).norm();
   std::get<geometry::Capsule>(body.shape.form).length = length;
   std::get<SegmentCore>(body.solid->core).half = length / 2;
@@ -101,9 +125,10 @@ Separation BodySet::surfaces(const Body& body, const Pose& X_W1, const Body& obs
   return world_.distance(body.fcl, X_W1, obstacle.fcl, X_W2);
 }
 
-Separation BodySet::separation(const BodyPair& pair, const Pose& X_WT, bool check_inside) {
+Separation BodySet::separation(const BodyPair& pair, const Posture& posture, bool check_inside) {
   Body &body = bodies_[pair.body], &obstacle = bodies_[pair.obstacle];
-  const Pose X_W1 = place(body, X_WT), X_W2 = place(obstacle, X_WT);
+  if (body.owner == Owner::link || obstacle.owner == Owner::link) links_.pose(posture.axes);
+  const Pose X_W1 = place(body, posture.X_WT), X_W2 = place(obstacle, posture.X_WT);
   Separation result = surfaces(body, X_W1, obstacle, X_W2);
   bool overlap = result.distance <= 0;
   if (!overlap && check_inside) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/collision/chain_bodies.h"
 #include "sim/collision/collision.h"
 #include "sim/collision/convex_solid.h"
 #include "sim/collision/fcl_world.h"
@@ -21,42 +22,51 @@ struct BodyPair {
 
 class BodySet {
  public:
-  /// The part may be null. Struts have the as-built geometry.
-  BodySet(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+  /// The part may be null. Struts and links have the as-built geometry.
+  BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
           std::shared_ptr<const geometry::Mesh> part);
 
-  /// Tool bodies and struts against part and table, struts against each other and against the tool bodies
-  /// that do not carry their ball joint.
+  /// Tool bodies, struts and links against part and table, struts and links against each other and against
+  /// the tool bodies; without those that a joint holds together.
   const std::vector<BodyPair>& pairs() const { return pairs_; }
   const std::string& name(std::size_t body) const { return bodies_[body].shape.name; }
 
-  /// [m], at most, by which the two can approach while the tip moves `path` [m] and the tool turns by
-  /// `turn` [rad].
-  double motion(const BodyPair& pair, double path, double turn) const;
+  /// How much a machine moves from one posture to another.
+  struct Travel {
+    double path = 0;            ///< [m], of the tip
+    double turn = 0;            ///< [rad], of the tool
+    machine::AxisArray axes{};  ///< [m] or [rad], without sign
+  };
+  /// [m], at most, by which the two can approach.
+  double motion(const BodyPair& pair, const Travel& travel) const;
 
   /// Distance of the two surfaces at a pose of the tool; where they overlap, minus the depth. `check_inside`
   /// also finds a body that lies wholly inside a closed part, which no surface shows.
-  Separation separation(const BodyPair& pair, const Pose& X_WT, bool check_inside);
+  Separation separation(const BodyPair& pair, const Posture& posture, bool check_inside);
 
  private:
-  enum class Owner { tool, strut, world };
+  enum class Owner { tool, strut, link, world };
   struct Body {
     geometry::Shape shape;  // X_FS in T for the tool's, in W for the world's
     Owner owner = Owner::world;
     std::optional<ConvexSolid> solid;  // nothing for a mesh
-    std::size_t strut = 0;
+    std::size_t index = 0;             // of the strut or link
     bool nozzle = false;
     double lever = 0;  // [m], from the tip to the farthest point that turns with the tool
     int fcl = -1;
   };
-  void add_body(const geometry::Shape& shape, Owner owner, std::size_t strut);
+  void add_body(const geometry::Shape& shape, Owner owner, std::size_t index);
   void add_pairs(double strut_radius);
   bool carries_joint(const Body& tool, std::size_t strut, double strut_radius) const;
+  bool joined(const Body& a, const Body& b, double strut_radius) const;
+  int axis_of(const Body& body) const;
   Pose place(Body& body, const Pose& X_WT);
   Separation surfaces(const Body& body, const Pose& X_W1, const Body& obstacle, const Pose& X_W2) const;
 
   Pose X_WB_;
   kinematics::HexapodGeometry geometry_;
+  ChainBodies links_;
+  bool is_chain_ = false;
   std::unique_ptr<MeshClearance> part_;
   std::size_t part_body_ = 0;
   FclWorld world_;

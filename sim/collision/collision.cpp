@@ -18,6 +18,22 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastAccuracy = 0.05e-3;  // [m], of min_clearance()
 constexpr double kNozzleFineness = 4;  // the nozzle works a few margins from the part: looked at more often
 
+Posture posture_between(const Snapshot& from, const Snapshot& to, double t) {
+  Posture posture{interpolate(from.X_WT, to.X_WT, t), from.axes_reached};
+  for (std::size_t i = 0; i < posture.axes.size(); ++i)
+    posture.axes[i] += t * (to.axes_reached[i] - from.axes_reached[i]);
+  return posture;
+}
+
+BodySet::Travel travel_between(const Snapshot& from, const Snapshot& to) {
+  BodySet::Travel travel;
+  travel.path = (to.X_WT.translation() - from.X_WT.translation()).norm();
+  travel.turn = angle_between(from.X_WT.linear(), to.X_WT.linear());
+  for (std::size_t i = 0; i < travel.axes.size(); ++i)
+    travel.axes[i] = std::abs(to.axes_reached[i] - from.axes_reached[i]);
+  return travel;
+}
+
 }  // namespace
 
 struct CollisionObserver::State {
@@ -43,12 +59,12 @@ struct CollisionObserver::State {
     return pair.nozzle_at_work ? options.nozzle_contact : options.near;
   }
 
-  void look(std::size_t index, const Pose& X_WT, double time, int line) {
+  void look(std::size_t index, const Posture& posture, double time, int line) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
     // Motion is continuous: a body that was outside gets inside only through a contact that is seen.
     const bool check_inside = !last || at.clearance <= 0;
-    const Separation seen = bodies.separation(pair, X_WT, check_inside);
+    const Separation seen = bodies.separation(pair, posture, check_inside);
     ++checks;
     at.clearance = seen.distance;
     record(index,
@@ -86,16 +102,16 @@ struct CollisionObserver::State {
   }
 
   // Looks wherever on the way from the last snapshot the pair's budget is used up.
-  void advance(std::size_t index, const Snapshot& to, double path, double turn) {
+  void advance(std::size_t index, const Snapshot& to, const BodySet::Travel& travel) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
     if (to.line != last->line && at.clearance <= near_level(pair)) at.budget = 0;  // each line has its record
-    const double motion = bodies.motion(pair, path, turn);
+    const double motion = bodies.motion(pair, travel);
     double left = motion;
     while (at.budget < left) {
       left -= at.budget;
       const double t = 1 - left / motion;
-      look(index, interpolate(last->X_WT, to.X_WT, t), last->time + t * (to.time - last->time), to.line);
+      look(index, posture_between(*last, to, t), last->time + t * (to.time - last->time), to.line);
     }
     at.budget -= left;
   }
@@ -104,8 +120,8 @@ struct CollisionObserver::State {
 CollisionObserver::CollisionObserver(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                      std::shared_ptr<const geometry::Mesh> part,
                                      const CollisionOptions& options)
-    : state_(new State{
-          BodySet(machine, as_built.hexapod, std::move(part)), options, {}, {}, 0, kInfinity, {}, {}, {}}) {
+    : state_(
+          new State{BodySet(machine, as_built, std::move(part)), options, {}, {}, 0, kInfinity, {}, {}, {}}) {
   if (!(options.margin > 0))
     throw InputError("collision margin is " + std::to_string(options.margin) + " m, must be above 0");
   state_->looks.resize(state_->bodies.pairs().size());
@@ -121,11 +137,11 @@ void CollisionObserver::observe(const Snapshot& snapshot) {
   }
   const std::size_t pairs = s.looks.size();
   if (!s.last) {
-    for (std::size_t i = 0; i < pairs; ++i) s.look(i, snapshot.X_WT, snapshot.time, snapshot.line);
+    for (std::size_t i = 0; i < pairs; ++i)
+      s.look(i, {snapshot.X_WT, snapshot.axes_reached}, snapshot.time, snapshot.line);
   } else {
-    const double path = (snapshot.X_WT.translation() - s.last->X_WT.translation()).norm();
-    const double turn = angle_between(s.last->X_WT.linear(), snapshot.X_WT.linear());
-    for (std::size_t i = 0; i < pairs; ++i) s.advance(i, snapshot, path, turn);
+    const BodySet::Travel travel = travel_between(*s.last, snapshot);
+    for (std::size_t i = 0; i < pairs; ++i) s.advance(i, snapshot, travel);
   }
   s.last = snapshot;
 }

@@ -8,13 +8,17 @@
 #include "geometry/mesh.h"
 #include "machine/description.h"
 #include "sim/as_built/as_built.h"
+#include "sim/collision/posture.h"
 #include "sim/observer.h"
 
 namespace understudy::sim {
 
-/// The bodies of a hexapod at a pose: tool bodies and platform in W, six strut capsules from base joint to
-/// ball joint. Shared by collision checks and pictures. Each shape's X_FS is its pose in W.
+/// The bodies of a machine: those of the tool, and the struts of a hexapod or the links of a chain. Shared by
+/// collision checks and pictures. Each shape's X_FS is its pose in W.
 std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& machine,
+                                            const AsBuilt& as_built, const Posture& posture);
+/// Tool bodies and platform, six strut capsules from base joint to ball joint.
+std::vector<geometry::Shape> hexapod_bodies(const machine::MachineDescription& machine,
                                             const kinematics::HexapodGeometry& geometry, const Pose& X_WT);
 
 struct Contact {

@@ -1,6 +1,7 @@
-// The MJCF of a hexapod: names that the plant looks up, and constants that both sides share.
+// The MJCF of machines: names that the plants look up, and constants that both sides share.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "sim/plant/plant.h"
@@ -15,8 +16,39 @@ constexpr double kConstraintSteps = 2.0;
 /// "strut 3 screw": joints, equalities and bodies are named after the strut that they belong to.
 std::string strut_part(int strut, const char* part);
 
+/// Joint clearances are greasy: damping of a play slide (reference I).
+constexpr double kPlayDamping = 2.0;  // [N s/m]
+
 constexpr const char* kPlatformBody = "platform";
 constexpr const char* kScrewPart = "screw";   ///< slide joint, and the equality that drives it
 constexpr const char* kClosurePart = "ball";  ///< equality that closes the loop
+constexpr const char* kNutPlayPart = "nut play";
+constexpr const char* kBallPlayPart = "ball play z";  ///< along the strut
+
+/// Slide of a strut's screw, hinge or slide of a chain's axis, without and with an elastic drive.
+std::string driven_joint(const std::string& name, const std::string& type, const Vec3& axis,
+                         const machine::Drive& drive);
+/// A limited joint of `travel` in all, with the stops' damping left to the defaults of the model.
+std::string play_joint(const std::string& name, const std::string& type, const Vec3& axis, double travel,
+                       double damping, double friction);
+/// The equality that moves it; empty for an elastic drive, which is a spring.
+std::string drive_equality(const std::string& name, const machine::Drive& drive);
+/// "x y z" and "w x y z".
+std::string mjcf_text(const Vec3& v);
+std::string mjcf_text(const Mat3& R);
+/// Everything about constraints and integration that does not depend on the machine.
+std::string mjcf_settings(const MujocoOptions& options, int rows);
+
+std::string write_hexapod_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                               const Pose& X_WT, const MujocoOptions& options);
+/// All axes at 0; gravity along -z of the chain's frame, which is the model's world.
+std::string write_chain_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                             const MujocoOptions& options);
+std::string chain_play(const std::string& axis);  ///< name of the axis' play joint
+
+std::unique_ptr<Plant> make_mujoco_hexapod(const machine::MachineDescription& machine,
+                                           const AsBuilt& as_built, const MujocoOptions& options);
+std::unique_ptr<Plant> make_mujoco_chain(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                                         const MujocoOptions& options);
 
 }  // namespace understudy::sim

@@ -18,6 +18,13 @@ struct DriveCommand {
   machine::AxisArray velocity{};  ///< [m/s or rad/s], feed-forward
 };
 
+/// What has happened to an axis since it was built.
+struct AxisCondition {
+  double play_added = 0;  ///< [m] or [rad], more total free travel: a nut or gear that has come loose
+  double growth = 0;  ///< [m] or [rad], true position beyond what the drive reads: a strut that has warmed
+  bool released = false;  ///< the motor has no torque: a self-locking drive stays, any other follows its load
+};
+
 class Plant {
  public:
   virtual ~Plant() = default;
@@ -31,6 +38,9 @@ class Plant {
   virtual void reset(const machine::AxisArray& displacement) = 0;
   /// One timestep. Throws MachineError when the integration diverges: a result is never made up.
   virtual void step(const DriveCommand& command) = 0;
+  /// From the next step on. A change of growth or play may be stepwise; the state stays continuous. Throws
+  /// MachineError for what an engine cannot play.
+  virtual void set_condition(int axis, const AxisCondition& condition) = 0;
 
   virtual Pose tool_pose() const = 0;                   ///< X_WT, true
   virtual machine::AxisArray displacement() const = 0;  ///< motor side, as encoders would see it
@@ -51,8 +61,32 @@ struct MujocoOptions {
   bool play_across_struts = false;
   double platform_drag = 0;  ///< [N s/m] and [N m s/rad], of cables and filament on the platform
 };
+/// All machines.
 std::unique_ptr<Plant> make_mujoco_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const MujocoOptions& options = {});
+
+struct BulletOptions {
+  double timestep = 0.5e-3;  ///< [s]
+  bool gravity = true;
+  bool play = true;
+  int iterations = 200;  ///< of the projected Gauss-Seidel solver; play needs 200 (reference I)
+};
+/// Hexapods and serial arms; built from the description, not from the MJCF. Throws InputError for others.
+std::unique_ptr<Plant> make_bullet_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                                         const BulletOptions& options = {});
+
+struct QuasistaticOptions {
+  double timestep = 2e-3;  ///< [s], between poses: path resolution, not stability
+  bool gravity = true;
+  bool inertia = true;  ///< accelerations of the command load the drives
+  bool play = true;
+  Vec3 nozzle_force_T{0, 0, 0};  ///< [N], on the tip
+};
+/// Tool pose from axis displacements and as-built geometry, each play pushed to the side that its force
+/// chooses; all machines. It does not integrate: what swings or bounces is not seen.
+std::unique_ptr<Plant> make_quasistatic_plant(const machine::MachineDescription& machine,
+                                              const AsBuilt& as_built,
+                                              const QuasistaticOptions& options = {});
 
 /// The MJCF of the as-built machine, assembled at X_WT; what `understudy export mjcf` writes.
 std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built, const Pose& X_WT,

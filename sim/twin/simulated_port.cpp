@@ -17,10 +17,13 @@ namespace {
 /// A hold brings the axes to rest in this time: at full speed (60 mm/s) well below the drives' acceleration.
 constexpr double kHoldTime = 0.1;  // [s]
 
+/// Long enough to see where the tool goes when no motor holds it: free fall is 1.2 m.
+constexpr double kCoastTime = 0.5;  // [s]
+
 /// Rest means slower than one microstep a second: what is left cannot be seen by the drives.
-bool at_rest(const Setpoint& s, int axes, double step) {
-  for (int i = 0; i < axes; ++i)
-    if (std::abs(s.velocity[static_cast<std::size_t>(i)]) > step) return false;
+bool at_rest(const Setpoint& s, std::size_t axes, const machine::MachineDescription& machine) {
+  for (std::size_t i = 0; i < axes; ++i)
+    if (std::abs(s.velocity[i]) > machine.drives[i].step()) return false;
   return true;
 }
 
@@ -55,16 +58,18 @@ SimulatedPort::SimulatedPort(const machine::MachineDescription& machine, Plant& 
       exposure_(std::move(exposure)),
       observers_(std::move(observers)),
       options_(options),
+      drive_zero_(machine.drive_zero()),
+      drives_(machine, options.faults),
       ring_(options.queue_capacity),
       X_BT_commanded_(machine.X_BT_home) {
   const int axes = mechanism_->axis_count();
+  for (int i = 0; i < axes; ++i) ranges_.push_back(mechanism_->axis_range(i));
   const auto solved = mechanism_->inverse(machine.X_BT_home, {},
                                           std::span(last_.position).first(static_cast<std::size_t>(axes)));
   if (solved != kinematics::Solve::ok)
     throw InputError(machine.file.string() + ": the home pose cannot be reached: " + to_string(solved));
   AxisArray displacement{};
-  for (std::size_t i = 0; i < kinematics::kStruts; ++i)
-    displacement[i] = last_.position[i] - machine.hexapod.length_offset[i];
+  for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = last_.position[i] - drive_zero_[i];
   plant_.reset(displacement);
   last_.time = plant_.time();
   steps_per_observation_ =
@@ -80,7 +85,8 @@ machine::AxisState SimulatedPort::state() const {
   machine::AxisState s;
   s.time = s.sampled_at = plant_.time();
   s.position = plant_.displacement();
-  for (std::size_t i = 0; i < kinematics::kStruts; ++i) s.position[i] += machine_.hexapod.length_offset[i];
+  for (std::size_t i = 0; i < s.position.size(); ++i)
+    s.position[i] = drives_.counts_only(static_cast<int>(i)) ? asked_[i] : s.position[i] + drive_zero_[i];
   s.accepted = accepted_;
   s.executed = executed_;
   s.free_slots = ring_.size() - size_;
@@ -100,7 +106,7 @@ Status SimulatedPort::submit(std::span<const Setpoint> setpoints, double deadlin
     for (int i = 0; i < axis_count(); ++i) {
       const auto axis = static_cast<std::size_t>(i);
       if (!std::isfinite(s.position[axis]) || !std::isfinite(s.velocity[axis])) return Status::rejected;
-      if (s.position[axis] < machine_.limits.strut_min || s.position[axis] > machine_.limits.strut_max)
+      if (s.position[axis] < ranges_[axis].lower || s.position[axis] > ranges_[axis].upper)
         return Status::rejected;
     }
     time = s.time;
@@ -124,7 +130,7 @@ SimulatedPort::Target SimulatedPort::target_at_queue_clock() {
   target.filament = last_.filament;
   if (size_ == 0) {
     target.position = last_.position;
-    if (!at_rest(last_, axis_count(), machine_.drive.step())) fault_ = Fault::underrun;
+    if (!at_rest(last_, ranges_.size(), machine_)) fault_ = Fault::underrun;
     return target;
   }
   const Setpoint& next = ring_[head_];
@@ -139,19 +145,22 @@ SimulatedPort::Target SimulatedPort::target_at_queue_clock() {
 void SimulatedPort::advance() {
   const Target target = target_at_queue_clock();
   DriveCommand command;
-  for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
-    double displacement = target.position[i] - machine_.hexapod.length_offset[i];
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    double displacement = target.position[i] - drive_zero_[i];
     if (options_.quantise_steps) {
-      const double step = machine_.drive.step();
+      const double step = machine_.drives[i].step();
       displacement = std::round(displacement / step) * step;
     }
     command.position[i] = displacement;
     command.velocity[i] = target.velocity[i];
+    asked_[i] = displacement + drive_zero_[i];
   }
+  drives_.apply(plant_.time(), command, plant_);
   if (steps_ % static_cast<std::uint64_t>(steps_per_observation_) == 0) observe(target);
   plant_.step(command);
   ++steps_;
   closure_max_ = std::max(closure_max_, plant_.closure_error());
+  if (drives_.power_is_cut()) return coast(target, command);
 
   const double dt = plant_.timestep();
   if (rate_slope_ != 0) {
@@ -160,6 +169,19 @@ void SimulatedPort::advance() {
     if (queue_rate_ == 0 && drop_when_held_) return drop_queue(target);
   }
   queue_lag_ += (1 - queue_rate_) * dt;
+}
+
+/// The controller is gone with the power; the machine goes on moving as its load wants.
+void SimulatedPort::coast(const Target& target, DriveCommand command) {
+  command.velocity = {};
+  const double end = plant_.time() + kCoastTime;
+  while (plant_.time() < end) {
+    if (steps_ % static_cast<std::uint64_t>(steps_per_observation_) == 0) observe(target);
+    plant_.step(command);
+    ++steps_;
+  }
+  outputs_ = {};
+  fault_ = Fault::power;
 }
 
 void SimulatedPort::drop_queue(const Target& target) {
@@ -184,6 +206,8 @@ void SimulatedPort::observe(const Target& target) {
   s.X_WT_commanded = machine_.X_WB * X_BT_commanded_;
   s.axes_commanded = target.position;
   s.axes = state().position;
+  s.axes_reached = plant_.displacement();
+  for (std::size_t i = 0; i < s.axes_reached.size(); ++i) s.axes_reached[i] += drive_zero_[i];
   s.filament = target.filament;
   s.fan = outputs_.fan;
   s.nozzle_temperature = outputs_.nozzle_temperature;
@@ -218,8 +242,8 @@ Status SimulatedPort::urgent(machine::UrgentCommand command) {
       rate_slope_ = drop_when_held_ ? rate_slope_ : 1 / kHoldTime;
       return Status::ok;
     case machine::UrgentCommand::clear_fault:
-      if (fault_ == Fault::engine)
-        return Status::faulted;  // an engine that diverged has no state to go on from
+      if (fault_ == Fault::engine || fault_ == Fault::power)
+        return Status::faulted;  // no state to go on from: it diverged, or must be homed again
       fault_ = Fault::none;
       last_.velocity = {};
       return Status::ok;

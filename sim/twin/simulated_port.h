@@ -9,6 +9,7 @@
 
 #include "machine/description.h"
 #include "machine/port.h"
+#include "sim/faults/faults.h"
 #include "sim/observer.h"
 #include "sim/plant/plant.h"
 
@@ -21,6 +22,7 @@ struct TwinOptions {
   double observation_period = 2e-3;  ///< [s], between snapshots
   bool quantise_steps = true;        ///< drives move in whole microsteps
   std::size_t queue_capacity = 4096;
+  std::vector<FaultEvent> faults;
 };
 
 /// Converts strut lengths of the controller's geometry to drive displacements (length minus nominal l_i0):
@@ -50,6 +52,7 @@ class SimulatedPort : public machine::MachinePort {
   struct Target;
   Target target_at_queue_clock();
   void advance();
+  void coast(const Target& target, DriveCommand command);
   void drop_queue(const Target& target);
   void observe(const Target& target);
 
@@ -59,6 +62,10 @@ class SimulatedPort : public machine::MachinePort {
   Exposure exposure_;
   std::vector<Observer*> observers_;
   TwinOptions options_;
+  machine::AxisArray drive_zero_;
+  std::vector<kinematics::AxisRange> ranges_;  ///< one an axis
+  FaultyDrives drives_;
+  machine::AxisArray asked_{};  ///< [m] or [rad], axis positions that the drives were last asked for
 
   std::vector<machine::Setpoint> ring_;  ///< fixed storage of the queue
   std::size_t head_ = 0, size_ = 0;

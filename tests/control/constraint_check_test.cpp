@@ -73,7 +73,7 @@ TEST(ConstraintCheck, StrutTooLongIsFoundAtItsLineWithValueLimitAndTime) {
     EXPECT_EQ(found[k].line, 12);
     EXPECT_EQ(found[k + 6].line, 13);
     EXPECT_NEAR(found[k].violation.value, strut_below_home(0.056), 1e-9);  // the worst of the line is its end
-    EXPECT_EQ(found[k].violation.limit, hexapod.machine.limits.strut_max);
+    EXPECT_EQ(found[k].violation.limit, hexapod.machine.hexapod.limits.strut_max);
     EXPECT_NEAR(found[k].time, 0.056 / 0.02 + 0.02, 3e-3);  // d/v and two ramps, to cycles
     EXPECT_EQ(found[k].reduced_feed, 0);
     parts.insert(found[k].violation.part);
@@ -106,7 +106,7 @@ TEST(ConstraintCheck, JointAngleIsFound) {
 
 TEST(ConstraintCheck, ScrewsTooNearAreFound) {
   HexapodForTest hexapod;
-  hexapod.machine.limits.screw_distance_min = 0.018;
+  hexapod.machine.hexapod.limits.screw_distance_min = 0.018;
   const auto report =
       check_constraints(program_of({hexapod.print_to(hexapod.at({1e-4, 0, 0}), 0.01, 4)}), hexapod.machine);
   std::set<std::string> parts;
@@ -123,7 +123,7 @@ TEST(ConstraintCheck, ScrewsTooNearAreFound) {
 
 TEST(ConstraintCheck, BadConditioningIsFound) {
   HexapodForTest hexapod;
-  hexapod.machine.limits.condition_max = 6.0;  // home has 6.1, reference A
+  hexapod.machine.hexapod.limits.condition_max = 6.0;  // home has 6.1, reference A
   const auto report =
       check_constraints(program_of({hexapod.print_to(hexapod.at({1e-4, 0, 0}), 0.01, 5)}), hexapod.machine);
   const auto found = of_kind(report, LimitKind::singularity);
@@ -136,7 +136,7 @@ TEST(ConstraintCheck, BadConditioningIsFound) {
 // See the planner's test of the same turn: half-way three struts are 187.45 mm.
 TEST(ConstraintCheck, PosesBetweenProgrammedPointsAreChecked) {
   HexapodForTest hexapod;
-  hexapod.machine.limits = limits_of_turning(0.188);
+  hexapod.machine.hexapod.limits = limits_of_turning(0.188);
   const auto report = check_constraints(
       program_of({hexapod.print_to(hexapod.at(Vec3::Zero(), {0, 0, from_deg(52)}), 0.01, 9)}),
       hexapod.machine);
@@ -175,7 +175,7 @@ TEST(ConstraintCheck, FeedThatAnAxisCutsBelowHalfIsAWarningWithTheSpeedItNeeds) 
 TEST(ConstraintCheck, PathThroughNoSolutionGivesFindingsAndGoesOn) {
   const HexapodForTest hexapod;
   // Ball joint 3 at base joint 3: nearer than dev, no strut length exists.
-  const auto& g = hexapod.machine.hexapod;
+  const auto& g = hexapod.machine.hexapod.geometry;
   const Pose X_WT =
       hexapod.machine.X_WB * make_pose(Mat3(Mat3::Identity()), g.base_joint[2] - g.platform_joint[2]);
   ConstraintReport report;

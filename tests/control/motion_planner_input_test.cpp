@@ -86,8 +86,8 @@ TEST(MotionPlannerInput, LimitsThatAllowNoMotionAreRefused) {
 TEST(MotionPlannerInput, LimitsComeFromTheMachine) {
   const HexapodForTest hexapod;
   const MotionLimits limits = motion_limits(hexapod.machine);
-  EXPECT_EQ(limits.axis_velocity[5], hexapod.machine.drive.velocity_max);
-  EXPECT_EQ(limits.axis_acceleration[0], hexapod.machine.drive.acceleration_max);
+  EXPECT_EQ(limits.axis_velocity[5], hexapod.machine.drives[0].velocity_max);
+  EXPECT_EQ(limits.axis_acceleration[0], hexapod.machine.drives[0].acceleration_max);
   EXPECT_EQ(limits.tip_acceleration, hexapod.machine.acceleration);
   EXPECT_EQ(limits.travel_velocity, hexapod.machine.travel_velocity);
   EXPECT_EQ(limits.orientation_velocity, hexapod.machine.orientation_velocity);

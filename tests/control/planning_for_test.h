@@ -14,8 +14,10 @@ namespace understudy::control {
 /// product must not move them.
 inline machine::MachineDescription hexapod_of_known_dynamics() {
   machine::MachineDescription m = machine::load_machine("hexapod");
-  m.drive.velocity_max = 0.060;
-  m.drive.acceleration_max = 2.0;
+  for (machine::Drive& drive : m.drives) {
+    drive.velocity_max = 0.060;
+    drive.acceleration_max = 2.0;
+  }
   m.acceleration = 1.0;
   m.travel_velocity = 0.050;
   m.orientation_velocity = from_deg(60);
@@ -35,7 +37,7 @@ struct HexapodForTest {
   }
 
   std::unique_ptr<kinematics::Mechanism> with_limits(const kinematics::HexapodLimits& l) const {
-    return kinematics::make_hexapod(machine.hexapod, machine.joints, l, machine.X_BT_home);
+    return kinematics::make_hexapod(machine.hexapod.geometry, machine.hexapod.joints, l, machine.X_BT_home);
   }
 
   toolpath::Step step(toolpath::StepKind kind, const Pose& X_WT, double feed, int line) const {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/random.h"
-#include "tests/kinematics/allocation_counter.h"
+#include "tests/guard/cycle_guard.h"
 #include "tests/kinematics/g4.h"
 
 namespace understudy::kinematics {

@@ -30,12 +30,16 @@ class RigidPlant : public Plant {
     time_ += timestep();
     commands.push_back(command);
   }
+  void set_condition(int axis, const AxisCondition& condition) override {
+    conditions.emplace_back(axis, condition);
+  }
   Pose tool_pose() const override { return Pose(Eigen::Translation3d(time_, displacement_[0], 0)); }
   AxisArray displacement() const override { return displacement_; }
   AxisArray drive_force() const override { return {}; }
   double closure_error() const override { return 0; }
 
   std::vector<DriveCommand> commands;
+  std::vector<std::pair<int, AxisCondition>> conditions;
   double diverge_at = std::numeric_limits<double>::infinity();
 
  private:
@@ -82,7 +86,8 @@ class SimulatedPortTest : public ::testing::Test {
 
 TEST_F(SimulatedPortTest, StartsAtRestAtHome) {
   kinematics::StrutLengths lengths{};
-  ASSERT_EQ(kinematics::inverse(machine_.hexapod, machine_.X_BT_home, lengths), kinematics::Solve::ok);
+  ASSERT_EQ(kinematics::inverse(machine_.hexapod.geometry, machine_.X_BT_home, lengths),
+            kinematics::Solve::ok);
   for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_NEAR(home_[i], lengths[i], 1e-12);
   EXPECT_FALSE(port_.state().moving);
 }
@@ -95,13 +100,13 @@ TEST_F(SimulatedPortTest, AcceptedIsNotExecuted) {
   ASSERT_EQ(port_.wait_until(0.2), Status::ok);
   EXPECT_EQ(port_.state().executed, 100u);
   // Whole microsteps: half a step is the largest error.
-  EXPECT_NEAR(port_.state().position[0], home_[0] + 0.01 * 0.1, 0.5 * machine_.drive.step() + 1e-12);
+  EXPECT_NEAR(port_.state().position[0], home_[0] + 0.01 * 0.1, 0.5 * machine_.drives[0].step() + 1e-12);
 }
 
 TEST_F(SimulatedPortTest, DrivesMoveInWholeMicrosteps) {
   ASSERT_EQ(port_.submit(ramp(0.003, 200, true), 1), Status::ok);
   ASSERT_EQ(port_.wait_until(0.25), Status::ok);
-  const double step = machine_.drive.step();
+  const double step = machine_.drives[0].step();
   for (const auto& command : plant_.commands) {
     const double steps = command.position[0] / step;
     ASSERT_NEAR(steps, std::round(steps), 1e-6);
@@ -116,7 +121,7 @@ TEST_F(SimulatedPortTest, RefusesWhatCannotBe) {
   nan[2].position[4] = std::nan("");
   EXPECT_EQ(port_.submit(nan, 1), Status::rejected);
   auto far = ramp(0.01, 3, true);
-  far[2].position[4] = machine_.limits.strut_max + 1e-6;
+  far[2].position[4] = machine_.hexapod.limits.strut_max + 1e-6;
   EXPECT_EQ(port_.submit(far, 1), Status::rejected);
   EXPECT_EQ(port_.submit(ramp(0.0, 5000, true), 10), Status::queue_full);
   EXPECT_EQ(port_.submit(ramp(0.01, 3, true), -1), Status::deadline_exceeded);
@@ -144,7 +149,7 @@ TEST_F(SimulatedPortTest, StopDeceleratesAndDropsTheQueue) {
   // Once at speed, no step is longer than at full speed; the first setpoint starts from rest and overshoots.
   for (std::size_t i = 10; i < plant_.commands.size(); ++i) {
     const double step = plant_.commands[i].position[0] - plant_.commands[i - 1].position[0];
-    ASSERT_LE(step, 0.02 * 0.5e-3 + machine_.drive.step());
+    ASSERT_LE(step, 0.02 * 0.5e-3 + machine_.drives[0].step());
     ASSERT_GE(step, -1e-12);
   }
   // And it takes orders again from where it rests.
@@ -160,7 +165,7 @@ TEST_F(SimulatedPortTest, HoldKeepsTheQueueAndResumeGoesOn) {
   EXPECT_NEAR(port_.state().position[0] - home_[0], 3e-3, 0.05e-3);
   ASSERT_EQ(port_.urgent(machine::UrgentCommand::resume), Status::ok);
   ASSERT_EQ(port_.wait_until(2.0), Status::ok);
-  EXPECT_NEAR(port_.state().position[0] - home_[0], 10e-3, machine_.drive.step());
+  EXPECT_NEAR(port_.state().position[0] - home_[0], 10e-3, machine_.drives[0].step());
   EXPECT_EQ(port_.state().executed, 500u);
 }
 

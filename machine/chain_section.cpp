@@ -1,0 +1,252 @@
+#include "machine/chain_section.h"
+
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/digest.h"
+#include "core/output_file.h"
+#include "core/units.h"
+#include "kinematics/chain_kind.h"
+#include "machine/tool_section.h"
+#include "machine/urdf_chain.h"
+
+namespace understudy::machine {
+namespace {
+
+using kinematics::Chain;
+using kinematics::ChainAxis;
+using kinematics::ChainKind;
+
+constexpr Bounds kPlace{-5000, 5000};
+constexpr double kSameLine = 1e-6;  // [m] or [rad]; two turning axes nearer than this are one
+
+Vec3 read_direction(YamlMap& map, const std::string& key) {
+  const Vec3 direction = map.vector(key, {-1, 1});
+  if (!map.complete()) return Vec3::UnitZ();
+  if (direction.norm() < 0.1)
+    throw InputError(map.place(key),
+                     fmt::format("{} has length {:g}: no direction", map.path(key), direction.norm()));
+  return direction.normalized();
+}
+
+/// The name of an axis, or "frame", as a key of the file gives it.
+struct Carrier {
+  std::string name, path;
+  Place place;
+};
+
+Carrier read_carrier(YamlMap& map, const std::string& key) {
+  return {map.text(key), map.path(key), map.place(key)};
+}
+
+int find_axis(const Chain& chain, const Carrier& carrier) {
+  if (carrier.name == "frame" || carrier.name.empty()) return -1;  // a key that is missing is told at the end
+  std::string known = "frame";
+  for (int i = 0; i < chain.size(); ++i) {
+    const std::string& axis = chain.axes[static_cast<std::size_t>(i)].name;
+    if (axis == carrier.name) return i;
+    known += ", " + axis;
+  }
+  throw InputError(carrier.place,
+                   fmt::format("{} is '{}', not one of {}", carrier.path, carrier.name, known));
+}
+
+/// Axes are told apart by name, in other programs' files as well: letters, digits, and what joins them.
+void check_name(const YamlMap& map, const Chain& chain, const std::string& name) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(map.place("name"), fmt::format("{} is '{}', {}", map.path("name"), name, why));
+  };
+  for (int i = 0; i < chain.size(); ++i)
+    if (chain.axes[static_cast<std::size_t>(i)].name == name) refuse(fmt::format("as axis {} is", i + 1));
+  for (const char* taken : {"frame", "work", "tool", "tip", "world"})
+    if (name == taken) refuse("which means something else");
+  for (const char c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != ' ' && c != '_' && c != '-')
+      refuse("where letters, digits, spaces, - and _ are allowed");
+}
+
+/// Of a kind whose file lists its axes: where the axis is.
+ChainAxis read_line(YamlMap& map, const Chain& chain) {
+  ChainAxis axis;
+  axis.name = map.text("name");
+  check_name(map, chain, axis.name);
+  axis.angle = map.word("moves", {"turns", "slides"}) == "turns";
+  axis.direction = read_direction(map, "direction");
+  if (axis.angle) axis.point = map.vector("point_mm", kPlace);
+  axis.parent = find_axis(chain, read_carrier(map, "carried_by"));
+  return axis;
+}
+
+void read_range(YamlMap& map, ChainAxis& axis) {
+  const bool given = std::isfinite(axis.lower) && std::isfinite(axis.upper);  // by a URDF
+  if (given && !map.has(axis.angle ? "range_deg" : "range_mm")) return;
+  if (axis.angle && map.has("endless")) {
+    if (map.word("endless", {"yes", "no"}) == "yes") return;
+  }
+  const std::string key = axis.angle ? "range_deg" : "range_mm";
+  const auto range = map.quantities(key, 2, axis.angle ? Bounds{-3600, 3600} : kPlace);
+  if (!map.complete()) return;
+  axis.lower = range[0];
+  axis.upper = range[1];
+  const double unit = axis.angle ? kDegree : kMillimetre;
+  if (axis.lower >= axis.upper)
+    throw InputError(map.place(key),
+                     fmt::format("{} begins at {:g} and ends at {:g} {}, not above it", map.path(key),
+                                 axis.lower / unit, axis.upper / unit, axis.angle ? "deg" : "mm"));
+}
+
+double read_home(YamlMap& map, const ChainAxis& axis) {
+  const std::string key = axis.angle ? "home_deg" : "home_mm";
+  const double home = map.quantity(key, axis.angle ? Bounds{-3600, 3600} : kPlace);
+  if (!map.complete() || (home >= axis.lower && home <= axis.upper)) return home;
+  const double unit = axis.angle ? kDegree : kMillimetre;
+  throw InputError(map.place(key),
+                   fmt::format("{} is {:g} {}, outside the axis' range of {:g} to {:g}", map.path(key),
+                               home / unit, axis.angle ? "deg" : "mm", axis.lower / unit, axis.upper / unit));
+}
+
+Link read_link(YamlMap& map) {
+  Link link;
+  link.mass = map.quantity("mass_kg", {1e-4, 1e4});
+  link.centre_O = map.vector("centre_mm", kPlace);
+  link.inertia_O = read_inertia(map, "inertia_kg_mm2").asDiagonal();
+  if (map.has("bodies")) read_bodies(map, link.bodies);
+  return link;
+}
+
+/// Two turning axes on one line, one carried by the other, are a single joint to any load.
+void check_apart(const YamlMap& map, const Chain& chain, std::size_t index) {
+  const ChainAxis& axis = chain.axes[index];
+  if (axis.parent < 0 || !axis.angle) return;
+  const ChainAxis& parent = chain.axes[static_cast<std::size_t>(axis.parent)];
+  if (!parent.angle || axis.direction.cross(parent.direction).norm() > kSameLine) return;
+  const double distance = axis.direction.cross(axis.point - parent.point).norm();
+  if (distance <= kSameLine)
+    throw InputError(map.place(), fmt::format("axes {} and {} coincide: their lines are {:.4f} mm apart",
+                                              parent.name, axis.name, to_mm(distance)));
+}
+
+void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription& machine) {
+  ChainModel& model = *machine.chain;
+  Chain& chain = model.kinematics.chain;
+  if (listed) {
+    if (index >= kinematics::kMaxAxes)
+      throw InputError(map.place(), fmt::format("more than {} axes", kinematics::kMaxAxes));
+    chain.axes.push_back(read_line(map, chain));
+  } else if (index >= chain.axes.size()) {
+    throw InputError(map.place(), fmt::format("{} axes are given, '{}' has {}", index + 1,
+                                              model.kinematics.kind, chain.axes.size()));
+  } else if (const std::string name = map.text("name"); name != chain.axes[index].name && map.complete()) {
+    throw InputError(map.place("name"),
+                     fmt::format("{} is '{}', where axis {} of '{}' is '{}'", map.path("name"), name,
+                                 index + 1, model.kinematics.kind, chain.axes[index].name));
+  }
+  ChainAxis& axis = chain.axes[index];
+  read_range(map, axis);
+  model.kinematics.home.push_back(read_home(map, axis));
+  map.section("drive", [&](YamlMap& drive) { read_drive(drive, axis.angle, machine.drives[index]); });
+  model.play.push_back(axis.angle ? map.quantity("play_arcmin", {0, 600})
+                                  : map.quantity("play_um", {0, 2000}));
+  const std::string friction = axis.angle ? "friction_newton_metre" : "friction_n";
+  model.friction.push_back(map.has(friction) ? map.quantity(friction, {0, 1000}) : 0.0);
+  // A link that a URDF has told may be told anew.
+  const bool told = index < model.links.size() && model.links[index].mass > 0;
+  if (index >= model.links.size()) model.links.emplace_back();
+  if (!told || map.has("link"))
+    map.section("link", [&](YamlMap& link) { model.links[index] = read_link(link); });
+  if (map.complete()) check_apart(map, chain, index);
+}
+
+/// The tool at zero, for chains that list their axes.
+Pose read_tool_mount(YamlMap& map) {
+  const Vec3 tip = map.vector("tip_mm", kPlace);
+  return make_pose(shortest_arc_from_z(read_direction(map, "tool_direction")), tip);
+}
+
+/// The body that a URDF's links on one axis make together.
+Link rigid_body(const UrdfArm& arm, int axis) {
+  Link body;
+  Vec3 moment = Vec3::Zero();
+  for (const LinkMass& part : arm.links) {
+    if (part.axis != axis) continue;
+    body.mass += part.mass;
+    moment += part.mass * part.centre_O;
+  }
+  if (!(body.mass > 0)) return body;
+  body.centre_O = moment / body.mass;
+  for (const LinkMass& part : arm.links) {
+    if (part.axis != axis) continue;
+    const Vec3 r = part.centre_O - body.centre_O;
+    body.inertia_O += part.inertia_O + part.mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  return body;
+}
+
+/// Axes, links and the tool's mount from a URDF beside the machine file.
+void read_urdf_chain(YamlMap& map, MachineDescription& machine) {
+  ChainModel& model = *machine.chain;
+  const std::string file = map.text("urdf"), base = map.text("base_link"), tool = map.text("tool_link");
+  const Pose X_LT = read_tool_mount(map);
+  if (!map.complete()) return;
+  const auto path = machine.file.parent_path() / file;
+  const UrdfArm arm = read_urdf(path, base, tool);
+  machine.sha256 = sha256_hex(machine.sha256 + sha256_hex(read_file(path)));  // the machine is both files
+  model.kinematics.chain = arm.chain;
+  model.kinematics.chain.X_OT_zero = arm.chain.X_OT_zero * X_LT;
+  for (int i = 0; i < arm.chain.size(); ++i) model.links.push_back(rigid_body(arm, i));
+}
+
+void read_base(YamlMap& map, MachineDescription& machine) {
+  const Vec3 base = map.vector("base_mm", kPlace);
+  const double turn = map.quantity("base_turn_deg", {-360, 360});
+  machine.X_WB = make_pose(Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ())), base);
+}
+
+}  // namespace
+
+void read_chain(YamlMap& root, MachineDescription& machine) {
+  ChainModel& model = machine.chain.emplace();
+  model.kinematics.kind = machine.mechanism;
+  const ChainKind& kind = *kinematics::find_chain_kind(machine.mechanism);
+  Chain& chain = model.kinematics.chain;
+  bool listed = kind.chain == nullptr;
+  Carrier tool, work;
+  root.section("geometry", [&](YamlMap& map) {
+    for (const auto& parameter : kind.parameters)
+      model.kinematics.parameters.push_back(map.quantity(parameter.key, {parameter.low, parameter.high}));
+    if (map.has("base_mm")) read_base(map, machine);
+    if (!listed) {
+      if (map.complete()) chain = kind.chain(model.kinematics.parameters);
+      return;
+    }
+    if (map.has("urdf")) {
+      read_urdf_chain(map, machine);
+      listed = false;
+      return;
+    }
+    tool = read_carrier(map, "tool_carried_by");
+    work = read_carrier(map, "work_carried_by");
+    chain.X_OT_zero = read_tool_mount(map);
+  });
+  root.section("conditioning", [&](YamlMap& map) {
+    model.kinematics.length_scale = map.quantity("length_scale_mm", {1, 5000});
+    if (map.has("condition_max")) model.kinematics.condition_max = map.quantity("condition_max", {1, 1e6});
+  });
+  std::size_t index = 0;
+  root.list("axes", [&](YamlMap& map) { read_axis(map, listed, index++, machine); });
+  if (root.has("frame")) root.section("frame", [&](YamlMap& map) { read_bodies(map, model.frame_bodies); });
+  if (!root.complete()) return;
+  if (index < chain.axes.size())
+    throw InputError(root.place("axes"), fmt::format("axes lists {}, '{}' has {}", index,
+                                                     model.kinematics.kind, chain.axes.size()));
+  if (listed) {
+    chain.tool_axis = find_axis(chain, tool);
+    chain.work_axis = find_axis(chain, work);
+  }
+  if (chain.work_axis >= 0) machine.X_WB = Pose::Identity();
+  machine.X_BT_home = kinematics::forward(chain, model.kinematics.home);
+}
+
+}  // namespace understudy::machine

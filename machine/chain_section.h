@@ -1,0 +1,14 @@
+// The part of machine.yaml about open chains: geometry by the kind's parameters, and a list of axes, each
+// with its range, drive, play and the body that it carries.
+#pragma once
+
+#include "machine/description.h"
+#include "machine/yaml_reader.h"
+
+namespace understudy::machine {
+
+/// Fills chain, drives, X_WB and the home pose. Throws InputError naming key, value and limit for what cannot
+/// be built: contradictory ranges, home outside them, axes that coincide, an unknown parent.
+void read_chain(YamlMap& root, MachineDescription& machine);
+
+}  // namespace understudy::machine

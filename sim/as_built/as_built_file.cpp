@@ -1,0 +1,131 @@
+#include "sim/as_built/as_built_file.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "core/output_file.h"
+#include "core/units.h"
+#include "machine/yaml_reader.h"
+
+namespace understudy::sim {
+namespace {
+
+using machine::Bounds;
+using machine::YamlMap;
+
+constexpr Bounds kPlace{-5000, 5000};
+constexpr double kUnitTolerance = 1e-6;  // of a direction's length, as the file's digits leave it
+
+template <typename Value>
+void read_if_given(YamlMap& map, const std::string& key, Bounds bounds, Value& value) {
+  if (!map.has(key)) return;
+  if constexpr (std::is_same_v<Value, Vec3>)
+    value = map.vector(key, bounds);
+  else
+    value = map.quantity(key, bounds);
+}
+
+/// Without the part's name nothing else can be read.
+void require(const YamlMap& map, const std::string& key) {
+  if (!map.complete()) throw InputError(map.place(), fmt::format("key '{}' is missing", map.path(key)));
+}
+
+/// A part of the machine may be told once.
+using Told = std::array<bool, kinematics::kMaxAxes>;
+
+void tell(const YamlMap& map, const std::string& key, std::size_t index, Told& told) {
+  if (told[index])
+    throw InputError(map.place(key), fmt::format("{} names a part that was told before", map.path(key)));
+  told[index] = true;
+}
+
+void read_strut(YamlMap& map, Told& told, AsBuilt& built) {
+  const int number = map.integer("strut", 1, kinematics::kStruts);
+  require(map, "strut");
+  const auto s = static_cast<std::size_t>(number - 1);
+  tell(map, "strut", s, told);
+  read_if_given(map, "base_joint_mm", kPlace, built.hexapod.base_joint[s]);
+  read_if_given(map, "platform_joint_mm", kPlace, built.hexapod.platform_joint[s]);
+  read_if_given(map, "length_offset_mm", kPlace, built.hexapod.length_offset[s]);
+  read_if_given(map, "nut_play_um", {0, 2000}, built.nut_play[s]);
+  read_if_given(map, "ball_play_um", {0, 2000}, built.ball_play[s]);
+}
+
+void read_axis(YamlMap& map, Told& told, AsBuilt& built) {
+  std::vector<std::string> names;
+  for (const auto& axis : built.chain.axes) names.push_back(axis.name);
+  const std::string name = map.word("axis", names);
+  require(map, "axis");
+  const auto i = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  tell(map, "axis", i, told);
+  kinematics::ChainAxis& axis = built.chain.axes[i];
+  read_if_given(map, "point_mm", kPlace, axis.point);
+  read_if_given(map, "direction", {-1, 1}, axis.direction);
+  if (std::abs(axis.direction.norm() - 1) > kUnitTolerance)
+    throw InputError(map.place("direction"), fmt::format("{} has length {:.7f}, not 1", map.path("direction"),
+                                                         axis.direction.norm()));
+  axis.direction.normalize();
+  if (axis.angle) {
+    read_if_given(map, "zero_deg", {-360, 360}, built.axis_zero[i]);
+    read_if_given(map, "play_arcmin", {0, 600}, built.axis_play[i]);
+  } else {
+    read_if_given(map, "zero_mm", kPlace, built.axis_zero[i]);
+    read_if_given(map, "play_um", {0, 2000}, built.axis_play[i]);
+  }
+}
+
+std::string text(const Vec3& v, double unit) {
+  return fmt::format("[{}, {}, {}]", v.x() / unit, v.y() / unit, v.z() / unit);
+}
+
+}  // namespace
+
+void read_as_built(const std::string& file, AsBuilt& built) {
+  if (!std::filesystem::is_regular_file(file))
+    throw InputError(
+        fmt::format("as-built \"{}\" is not one of nominal, sampled, manufactured, nor a file", file));
+  YamlMap::read_text(read_file(file), file, [&built](YamlMap& root) {
+    Told told{};
+    if (built.chain.axes.empty()) {
+      read_if_given(root, "deviation_mm", {0, 500}, built.hexapod.deviation);
+      if (root.has("struts")) root.list("struts", [&](YamlMap& strut) { read_strut(strut, told, built); });
+    } else {
+      Vec3 tip = built.chain.X_OT_zero.translation();
+      read_if_given(root, "tip_mm", kPlace, tip);
+      built.chain.X_OT_zero.translation() = tip;
+      if (root.has("axes")) root.list("axes", [&](YamlMap& axis) { read_axis(axis, told, built); });
+    }
+  });
+}
+
+std::string write_as_built(const AsBuilt& built) {
+  std::string out = fmt::format("# As built: {}, seed {}. Every parameter that the plant uses.\n",
+                                built.source, built.seed);
+  if (built.chain.axes.empty()) {
+    out += fmt::format("deviation_mm: {}\nstruts:\n", to_mm(built.hexapod.deviation));
+    for (std::size_t s = 0; s < kinematics::kStruts; ++s)
+      out += fmt::format(
+          "  - {{strut: {}, base_joint_mm: {}, platform_joint_mm: {}, length_offset_mm: {}, nut_play_um: {}, "
+          "ball_play_um: {}}}\n",
+          s + 1, text(built.hexapod.base_joint[s], kMillimetre),
+          text(built.hexapod.platform_joint[s], kMillimetre), to_mm(built.hexapod.length_offset[s]),
+          to_um(built.nut_play[s]), to_um(built.ball_play[s]));
+    return out;
+  }
+  out += fmt::format("tip_mm: {}\naxes:\n", text(built.chain.X_OT_zero.translation(), kMillimetre));
+  for (std::size_t i = 0; i < built.chain.axes.size(); ++i) {
+    const kinematics::ChainAxis& axis = built.chain.axes[i];
+    out += fmt::format("  - {{axis: {}, direction: {}, point_mm: {}, ", axis.name, text(axis.direction, 1),
+                       text(axis.point, kMillimetre));
+    out += axis.angle ? fmt::format("zero_deg: {}, play_arcmin: {}}}\n", to_deg(built.axis_zero[i]),
+                                    60 * to_deg(built.axis_play[i]))
+                      : fmt::format("zero_mm: {}, play_um: {}}}\n", to_mm(built.axis_zero[i]),
+                                    to_um(built.axis_play[i]));
+  }
+  return out;
+}
+
+}  // namespace understudy::sim

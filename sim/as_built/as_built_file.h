@@ -1,0 +1,17 @@
+// A built machine in a file: the parameters that differ from the description, as YAML.
+#pragma once
+
+#include <string>
+
+#include "sim/as_built/as_built.h"
+
+namespace understudy::sim {
+
+/// Puts what the file tells into `built`, which holds the nominal machine. Throws InputError with file, line,
+/// key and limit; a name that is no file is answered with the words that are known.
+void read_as_built(const std::string& file, AsBuilt& built);
+
+/// The same file back: every parameter.
+std::string write_as_built(const AsBuilt& built);
+
+}  // namespace understudy::sim

@@ -1,0 +1,91 @@
+#include "sim/collision/chain_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/collision/convex_solid.h"
+
+namespace understudy::sim {
+namespace {
+
+/// [m], that a slide can put between what it carries and where it was at 0. An endless slide has no bound.
+double slide_travel(const kinematics::ChainAxis& axis) {
+  return axis.angle ? 0 : std::max(std::abs(axis.lower), std::abs(axis.upper));
+}
+
+}  // namespace
+
+ChainBodies::ChainBodies(const machine::MachineDescription& machine, const AsBuilt& as_built)
+    : chain_(as_built.chain), zero_(as_built.axis_zero), X_WB_(machine.X_WB) {
+  if (!machine.chain) return;
+  for (const geometry::Shape& shape : machine.chain->frame_bodies) items_.push_back({shape, -1});
+  for (int i = 0; i < chain_.size(); ++i)
+    for (const geometry::Shape& shape : machine.chain->links[static_cast<std::size_t>(i)].bodies)
+      items_.push_back({shape, i});
+  X_OL_.resize(chain_.axes.size(), Pose::Identity());
+  for (const Item& item : items_) {
+    machine::AxisArray lever{};
+    const auto add = [&](int last, bool work) {
+      for (int i = last; i >= 0; i = axis(i).parent)
+        lever[static_cast<std::size_t>(i)] +=
+            axis(i).angle ? reach_from(work ? -1 : i, item) + (work ? way_to(i) : 0) : 1;
+    };
+    add(item.axis, false);
+    add(chain_.work_axis, true);  // seen from the work, everything else moves when the work does
+    levers_.push_back(lever);
+  }
+}
+
+/// Of the item's farthest point from a point of the axis (-1: from the frame's origin), in any posture: along
+/// the chain between them.
+double ChainBodies::reach_from(int from, const Item& item) const {
+  const auto solid = convex_solid(item.shape);
+  const Vec3 anchor = item.axis < 0 ? Vec3(0, 0, 0) : axis(item.axis).point;
+  Pose X_AF = item.shape.X_FS;
+  X_AF.translation() -= anchor;
+  double length = solid ? reach(*solid, X_AF) : X_AF.translation().norm();
+  for (int i = item.axis; i >= 0 && i != from; i = axis(i).parent) {
+    const Vec3 parent = axis(i).parent < 0 ? Vec3(0, 0, 0) : axis(axis(i).parent).point;
+    length += (axis(i).point - parent).norm() + slide_travel(axis(i));
+  }
+  return length;
+}
+
+/// From the frame's origin to a point of the axis, in any posture of what carries it.
+double ChainBodies::way_to(int last) const {
+  double length = 0;
+  for (int i = last; i >= 0; i = axis(i).parent) {
+    const Vec3 parent = axis(i).parent < 0 ? Vec3(0, 0, 0) : axis(axis(i).parent).point;
+    length += (axis(i).point - parent).norm() + slide_travel(axis(i));
+  }
+  return length;
+}
+
+void ChainBodies::pose(const machine::AxisArray& axes) {
+  if (chain_.axes.empty()) return;
+  machine::AxisArray built = axes;
+  for (std::size_t i = 0; i < built.size(); ++i) built[i] += zero_[i];
+  kinematics::link_poses(chain_, built, X_OL_);
+  X_WO_ = chain_.work_axis < 0
+              ? Pose(X_WB_ * chain_.X_OS_zero.inverse())
+              : Pose((X_OL_[static_cast<std::size_t>(chain_.work_axis)] * chain_.X_OS_zero).inverse());
+}
+
+Pose ChainBodies::place(std::size_t item) const {
+  const Item& body = items_[item];
+  const Pose X_WL = body.axis < 0 ? X_WO_ : Pose(X_WO_ * X_OL_[static_cast<std::size_t>(body.axis)]);
+  return X_WL * body.shape.X_FS;
+}
+
+double ChainBodies::motion(std::size_t item, const machine::AxisArray& travel) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < travel.size(); ++i) sum += levers_[item][i] * travel[i];
+  return sum;
+}
+
+bool ChainBodies::joined(int a, int b) const {
+  if (a == b) return true;
+  return (a >= 0 && axis(a).parent == b) || (b >= 0 && axis(b).parent == a);
+}
+
+}  // namespace understudy::sim

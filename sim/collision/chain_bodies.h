@@ -1,0 +1,48 @@
+// The links of an open chain as rigid bodies in W, and how far each can move.
+#pragma once
+
+#include <vector>
+
+#include "geometry/shape.h"
+#include "sim/as_built/as_built.h"
+#include "sim/collision/posture.h"
+
+namespace understudy::sim {
+
+class ChainBodies {
+ public:
+  struct Item {
+    geometry::Shape shape;  ///< X_FS in O with all axes at 0
+    int axis = -1;          ///< that carries it; -1: the frame
+  };
+
+  /// Empty for a machine that is no chain.
+  ChainBodies(const machine::MachineDescription& machine, const AsBuilt& as_built);
+
+  const std::vector<Item>& items() const { return items_; }
+  /// Poses every link for these axes.
+  void pose(const machine::AxisArray& axes);
+  /// Of the shape's own frame, as last posed.
+  Pose place(std::size_t item) const;
+  /// [m], at most, by which any point of the item moves in W while each axis moves by at most `travel`.
+  double motion(std::size_t item, const machine::AxisArray& travel) const;
+  /// Whether the two are one body or meet in a joint, where nearness means nothing.
+  bool joined(int axis, int other) const;
+  int tool_axis() const { return chain_.tool_axis; }
+  int work_axis() const { return chain_.work_axis; }
+
+ private:
+  const kinematics::ChainAxis& axis(int i) const { return chain_.axes[static_cast<std::size_t>(i)]; }
+  double reach_from(int axis, const Item& item) const;
+  double way_to(int axis) const;
+
+  kinematics::Chain chain_;
+  machine::AxisArray zero_{};
+  Pose X_WB_;
+  std::vector<Item> items_;
+  std::vector<machine::AxisArray> levers_;  ///< [m per unit], of each item against each axis
+  std::vector<Pose> X_OL_;
+  Pose X_WO_ = Pose::Identity();
+};
+
+}  // namespace understudy::sim

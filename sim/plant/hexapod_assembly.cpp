@@ -1,0 +1,50 @@
+#include "sim/plant/hexapod_assembly.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "core/error.h"
+#include "core/units.h"
+
+namespace understudy::sim {
+
+using kinematics::kStruts;
+
+ScrewTurning::ScrewTurning(const machine::MachineDescription& machine, const AsBuilt& as_built)
+    : geometry_(as_built.hexapod), coupling_(machine.screw_coupling()), X_BW_(machine.X_WB.inverse()) {}
+
+double ScrewTurning::growth(const Pose& X_WT, int strut) const {
+  if (coupling_.lead == 0) return 0;
+  double angle = 0;
+  if (kinematics::passive_rotation(geometry_, coupling_, X_BW_ * X_WT, strut, angle) != kinematics::Solve::ok)
+    throw MachineError(fmt::format(
+        "strut {} lies along one of its joints: the turn of its screw is not defined", strut + 1));
+  return coupling_.lead / (2 * std::numbers::pi) * angle;
+}
+
+Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                      const machine::AxisArray& displacement) {
+  kinematics::StrutLengths lengths{};
+  for (std::size_t i = 0; i < kStruts; ++i) lengths[i] = displacement[i] + as_built.hexapod.length_offset[i];
+  const auto found =
+      kinematics::forward(as_built.hexapod, machine.screw_coupling(), lengths, machine.X_BT_home);
+  if (found.status != kinematics::Solve::ok)
+    throw MachineError(fmt::format(
+        "the loops cannot be closed for strut lengths {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} mm: {}",
+        to_mm(lengths[0]), to_mm(lengths[1]), to_mm(lengths[2]), to_mm(lengths[3]), to_mm(lengths[4]),
+        to_mm(lengths[5]), kinematics::to_string(found.status)));
+  return machine.X_WB * found.X_BT;
+}
+
+machine::AxisArray home_displacement(const machine::MachineDescription& machine, const AsBuilt& as_built) {
+  kinematics::StrutLengths lengths{};
+  if (kinematics::inverse(as_built.hexapod, machine.screw_coupling(), machine.X_BT_home, lengths) !=
+      kinematics::Solve::ok)
+    throw MachineError("the as-built machine does not reach its home pose");
+  machine::AxisArray displacement{};
+  for (std::size_t i = 0; i < kStruts; ++i) displacement[i] = lengths[i] - as_built.hexapod.length_offset[i];
+  return displacement;
+}
+
+}  // namespace understudy::sim

@@ -1,0 +1,30 @@
+// Where a hexapod's tool is for given drive displacements, before any engine has moved it.
+#pragma once
+
+#include "machine/port.h"
+#include "sim/as_built/as_built.h"
+
+namespace understudy::sim {
+
+/// What the screws' turning adds to the struts as the joints swing; nothing where rails guide them.
+class ScrewTurning {
+ public:
+  ScrewTurning(const machine::MachineDescription& machine, const AsBuilt& as_built);
+  /// [m], of the strut at a pose of the tool. Throws MachineError where a joint is stretched out.
+  double growth(const Pose& X_WT, int strut) const;
+  const kinematics::ScrewCoupling& coupling() const { return coupling_; }
+
+ private:
+  kinematics::HexapodGeometry geometry_;
+  kinematics::ScrewCoupling coupling_;
+  Pose X_BW_;
+};
+
+/// X_WT on the branch of home. Throws MachineError, with the strut lengths, when the loops cannot be closed.
+Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                      const machine::AxisArray& displacement);
+
+/// Drive displacements at home. Throws MachineError when the as-built machine does not reach it.
+machine::AxisArray home_displacement(const machine::MachineDescription& machine, const AsBuilt& as_built);
+
+}  // namespace understudy::sim

@@ -1,0 +1,159 @@
+// What the controller does in a cycle: kinematics, the planner's next point, a port's calls, and the reading
+// of a gap once the dot is measured.
+//
+// Not control-cycle code, and not watched here: MotionPlanner::push() and finish(), which run ahead of the
+// port's queue and grow the lookahead; Feeder, which calls them; close_gap() and vision::measure_dot(), which
+// run while the axes rest, on a frame that owns its pixels, and keep every look for the report.
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "control/gap_reading.h"
+#include "control/motion_planner.h"
+#include "core/random.h"
+#include "core/units.h"
+#include "machine/description.h"
+#include "machine/loopback_port.h"
+#include "tests/guard/cycle_guard.h"
+
+namespace understudy::control {
+namespace {
+
+using kinematics::Solve;
+using machine::Setpoint;
+using machine::Status;
+
+class CycleOf : public testing::TestWithParam<const char*> {
+ protected:
+  machine::MachineDescription machine_ = machine::load_machine(GetParam());
+  std::unique_ptr<kinematics::Mechanism> mechanism_ = machine_.make_mechanism();
+  std::size_t axes_ = static_cast<std::size_t>(mechanism_->axis_count());
+
+  Pose near_home(Random& random, double shift, double turn) const {
+    Pose X = mechanism_->home();
+    const Vec3 a(random.uniform(-turn, turn), random.uniform(-turn, turn), random.uniform(-turn, turn));
+    const Vec3 p(random.uniform(-shift, shift), random.uniform(-shift, shift), random.uniform(-shift, shift));
+    X.linear() = exp_rotation(a) * X.linear();
+    X.translation() += p;
+    return X;
+  }
+};
+
+TEST_P(CycleOf, KinematicsNeitherAllocatesNorLocksNorTouchesFiles) {
+  Random random(61, "kinematics cycle");
+  std::vector<Pose> poses;
+  for (int i = 0; i < 200; ++i) poses.push_back(near_home(random, 0.01, 0.1));
+  for (int i = 0; i < 50; ++i) poses.push_back(near_home(random, 2.0, 3.0));  // out of reach, mostly
+  Pose nan = Pose::Identity();
+  nan.translation().x() = std::nan("");
+  poses.push_back(nan);
+  std::array<double, kinematics::kMaxAxes> home{}, axes{};
+  ASSERT_EQ(mechanism_->inverse(mechanism_->home(), {}, std::span(home).first(axes_)), Solve::ok);
+  Eigen::Matrix<double, Eigen::Dynamic, 6> rates(static_cast<Eigen::Index>(axes_), 6);
+  int solved = 0;
+  double condition = 0;
+  const Calls made = calls_of([&] {
+    for (const Pose& X_BT : poses) {
+      axes = home;
+      const std::span<double> found(axes.data(), axes_);
+      const Solve status = mechanism_->inverse(X_BT, found, found);
+      Pose X_back;
+      static_cast<void>(mechanism_->forward(found, mechanism_->home(), X_back));
+      static_cast<void>(mechanism_->axis_rates(X_BT, found, rates));
+      condition += mechanism_->condition_number(X_BT, found);
+      solved += status == Solve::ok ? 1 : 0;
+    }
+  });
+  EXPECT_EQ(made, Calls{});
+  EXPECT_GE(solved, 150);  // the poses near home: what was watched is what a cycle does
+  EXPECT_TRUE(std::isfinite(condition));
+}
+
+TEST_P(CycleOf, TheNextPlannedPointCostsNothing) {
+  const Pose X_WT_home = machine_.X_WB * mechanism_->home();
+  MotionPlanner planner(*mechanism_, machine_.X_WB, motion_limits(machine_), X_WT_home, 0);
+  Random random(62, "planned cycle");
+  for (int i = 0; i < 40; ++i) {
+    toolpath::Step step;
+    step.kind = toolpath::StepKind::print;
+    step.line = i + 1;
+    step.feed = 0.02;
+    step.filament = 1e-4;
+    step.X_WT = machine_.X_WB * near_home(random, 2e-3, 0.02);
+    planner.push(step);
+  }
+  planner.finish();
+  PlannedPoint point;
+  for (int warm = 0; warm < 10; ++warm) ASSERT_TRUE(planner.next(point));
+  int points = 0;
+  const Calls made = calls_of([&] {
+    while (planner.next(point)) ++points;
+  });
+  EXPECT_EQ(made, Calls{});
+  EXPECT_GT(points, 1000);  // 40 moves of about 2 mm at 20 mm/s at most
+}
+
+INSTANTIATE_TEST_SUITE_P(Machines, CycleOf, testing::Values("hexapod", "arm", "five-axis", "finishing"),
+                         [](const auto& one) {
+                           std::string name = one.param;
+                           for (char& c : name) c = c == '-' ? '_' : c;
+                           return name;
+                         });
+
+TEST(LoopbackCycle, CallsNeitherAllocateNorLockNorTouchFiles) {
+  machine::LoopbackPort::Options options;
+  options.history = false;  // of tests, and without end
+  machine::LoopbackPort port(options);
+  std::vector<Setpoint> setpoints;
+  for (int i = 1; i <= 3000; ++i) {
+    Setpoint s;
+    s.time = 1e-3 * i;
+    s.position[0] = 1e-4 * std::sin(1e-2 * i);
+    s.velocity[0] = i == 3000 ? 0 : 1e-3 * std::cos(1e-2 * i);
+    setpoints.push_back(s);
+  }
+  Status last = Status::faulted;
+  const Calls made = calls_of([&] {
+    static_cast<void>(port.submit(std::span<const Setpoint>(setpoints).first(100), 10));
+    for (std::size_t k = 0; k < 30; ++k) {
+      if (k < 29) last = port.submit(std::span<const Setpoint>(setpoints).subspan(100 * (k + 1), 100), 10);
+      for (int cycle = 1; cycle <= 100; ++cycle) {
+        static_cast<void>(port.wait_until(1e-3 * (100 * static_cast<double>(k) + cycle)));
+        static_cast<void>(port.state());
+      }
+    }
+    static_cast<void>(port.set_outputs({500, 1}, 10));
+    static_cast<void>(port.urgent(machine::UrgentCommand::stop));
+  });
+  EXPECT_EQ(made, Calls{});
+  EXPECT_EQ(last, Status::ok);
+  EXPECT_EQ(port.state().executed, 3000U);
+}
+
+TEST(GapCycle, ReadingAGapFromAMeasuredDotNeitherAllocatesNorLocks) {
+  const auto machine = machine::load_machine("hexapod");
+  const LocalSurface flat;
+  int read = 0, width = 0;
+  const Calls made = calls_of([&] {
+    for (int k = 0; k < 100; ++k) {
+      const double gap = 0.1e-3 + 2e-5 * k;
+      Vec2 dot_px;
+      if (!predict_dot(machine, flat, gap, dot_px)) continue;
+      vision::DotMeasurement dot;
+      dot.status = vision::DotStatus::ok;
+      dot.position_px = dot_px;
+      dot.covariance_px2 = 0.01 * Eigen::Matrix2d::Identity();
+      GapReading reading;
+      if (read_gap(machine, flat, dot, reading)) ++read;
+      width += region_for_gap(machine, flat, gap, 1e-4, 1e-4, 40).width;
+    }
+  });
+  EXPECT_EQ(made, Calls{});
+  EXPECT_EQ(read, 100);
+  EXPECT_GT(width, 0);
+}
+
+}  // namespace
+}  // namespace understudy::control

@@ -1,0 +1,39 @@
+// A plant without mechanics that remembers what its drives and axes were told.
+#pragma once
+
+#include <vector>
+
+#include "sim/plant/plant.h"
+
+namespace understudy::sim {
+
+class StillPlant : public Plant {
+ public:
+  std::string engine() const override { return "still 1"; }
+  double timestep() const override { return 1e-3; }
+  double time() const override { return time_; }
+  void reset(const machine::AxisArray& displacement) override { displacement_ = displacement; }
+  void step(const DriveCommand& command) override {
+    displacement_ = command.position;
+    commands.push_back(command);
+    time_ += timestep();
+  }
+  void set_condition(int axis, const AxisCondition& condition) override {
+    conditions[static_cast<std::size_t>(axis)] = condition;
+    ++changes;
+  }
+  Pose tool_pose() const override { return Pose::Identity(); }
+  machine::AxisArray displacement() const override { return displacement_; }
+  machine::AxisArray drive_force() const override { return {}; }
+  double closure_error() const override { return 0; }
+
+  std::vector<DriveCommand> commands;
+  std::array<AxisCondition, kinematics::kMaxAxes> conditions{};
+  int changes = 0;
+
+ private:
+  double time_ = 0;
+  machine::AxisArray displacement_{};
+};
+
+}  // namespace understudy::sim
