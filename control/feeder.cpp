@@ -14,6 +14,7 @@ constexpr std::size_t kBatch = 256;  // setpoints handed over at once, or half o
 constexpr double kPatience = 30.0;   // [s], port clock: a call that takes longer has failed
 constexpr double kLead = 0.05;       // [s], a stretch begins this far ahead: time to plan its first batch
 constexpr double kSlice = 0.25;      // [s], between looks at the interrupt flag
+constexpr double kLook = 0.01;       // [s], between looks whether the last setpoint was executed
 
 }  // namespace
 
@@ -55,7 +56,7 @@ Status Feeder::come_to_rest() {
   const double deadline = end_time_ + kPatience;
   while (port_.state().executed < port_.state().accepted) {
     if (port_.now() > deadline) return Status::deadline_exceeded;
-    if (const Status s = wait_until(port_.now() + kSlice); s != Status::ok) return s;
+    if (const Status s = wait_until(port_.now() + kLook); s != Status::ok) return s;
   }
   return Status::ok;
 }

@@ -213,10 +213,14 @@ void read_chain(YamlMap& root, MachineDescription& machine) {
   Chain& chain = model.kinematics.chain;
   bool listed = kind.chain == nullptr;
   Carrier tool, work;
+  Place base;
+  bool based = false;
   root.section("geometry", [&](YamlMap& map) {
     for (const auto& parameter : kind.parameters)
       model.kinematics.parameters.push_back(map.quantity(parameter.key, {parameter.low, parameter.high}));
+    base = map.place("base_mm");
     if (map.has("base_mm")) read_base(map, machine);
+    based = map.has("base_mm");
     if (!listed) {
       if (map.complete()) chain = kind.chain(model.kinematics.parameters);
       return;
@@ -245,7 +249,9 @@ void read_chain(YamlMap& root, MachineDescription& machine) {
     chain.tool_axis = find_axis(chain, tool);
     chain.work_axis = find_axis(chain, work);
   }
-  if (chain.work_axis >= 0) machine.X_WB = Pose::Identity();
+  if (chain.work_axis >= 0 && based)
+    throw InputError(
+        base, "geometry.base_mm is given, but axes carry the work: the world stands on it, not on the frame");
   machine.X_BT_home = kinematics::forward(chain, model.kinematics.home);
 }
 

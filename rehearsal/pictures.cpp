@@ -95,7 +95,7 @@ void add_pictures(const Stage& stage, Record& record) {
   renderer::PictureScene scene = build_scene(stage, posture);
   const Ball around = enclose(scene);
   scene.target_W = around.centre;
-  scene.eye_W = around.centre + 3.1 * around.radius * Vec3(0.62, -0.74, 0.24).normalized();
+  scene.eye_W = around.centre + 3.5 * around.radius * Vec3(0.62, -0.74, 0.24).normalized();
   scene.field_of_view = from_deg(30);
   record.pictures.push_back(renderer::render_picture(scene));
   record.picture_captions.push_back(point ? "Machine and part at the middle of the print"

@@ -58,6 +58,7 @@ struct Provenance {
   std::string version, machine_sha256, program_sha256;
   std::uint64_t seed = 0;
   std::string as_built, command;
+  std::vector<std::string> faults = {};  ///< what was made to go wrong, in words
 };
 
 /// One instant of the run, truth beside command.
@@ -101,9 +102,8 @@ struct Record {
   std::optional<EngineFigures> engine;
   Provenance provenance;
 
-  std::string as_built;             ///< every true parameter, as the file that --as-built reads
-  std::vector<std::string> faults;  ///< what was made to go wrong
-  std::vector<AxisColumn> axes;     ///< the first entries of TracePoint::axes, in order
+  std::string as_built;          ///< every true parameter, as the file that --as-built reads
+  std::vector<AxisColumn> axes;  ///< the first entries of TracePoint::axes, in order
   double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
   std::vector<TracePoint> trace;
   std::vector<TracePoint> trace_without_gap_control;  ///< empty when the run itself had none

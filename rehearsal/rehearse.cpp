@@ -58,7 +58,6 @@ Record describe_run(const RehearsalRequest& request, const Stage& stage, control
   record.fixture_name = request.fixture.empty() ? "" : fs::path(request.fixture).filename().string();
   record.gap_control = mode == control::GapControl::off ? "off" : "start";
   record.as_built = sim::write_as_built(stage.as_built);
-  for (const sim::FaultEvent& event : stage.faults) record.faults.push_back(describe(event, stage.machine));
   record.title = record.program_name + " on " + record.machine_name;
   record.gap_accepted_min_mm = to_mm(stage.machine.gap.accepted_min);
   record.gap_accepted_max_mm = to_mm(stage.machine.gap.accepted_max);
@@ -76,6 +75,8 @@ Record describe_run(const RehearsalRequest& request, const Stage& stage, control
   }
   record.provenance = {kVersion,     stage.machine.sha256, stage.program.sha256,
                        request.seed, request.as_built,     request.command};
+  for (const sim::FaultEvent& event : stage.faults)
+    record.provenance.faults.push_back(describe(event, stage.machine));
   return record;
 }
 

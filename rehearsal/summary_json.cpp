@@ -87,6 +87,7 @@ Json provenance_value(const Provenance& provenance) {
   object["program_sha256"] = provenance.program_sha256;
   object["seed"] = provenance.seed;
   object["as_built"] = provenance.as_built;
+  if (!provenance.faults.empty()) object["faults"] = provenance.faults;
   object["command"] = provenance.command;
   return object;
 }

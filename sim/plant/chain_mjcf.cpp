@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "sim/plant/joint_constants.h"
 #include "sim/plant/mjcf.h"
 
 namespace understudy::sim {

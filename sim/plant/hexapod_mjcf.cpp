@@ -1,3 +1,4 @@
+#include "sim/plant/joint_constants.h"
 #include "sim/plant/mjcf.h"
 
 #include <fmt/format.h>
@@ -11,16 +12,8 @@
 namespace understudy::sim {
 namespace {
 
-// Of the universal joints, small beside gravity: 1 rad/s costs a strut 0.5 mN at its ball.
-constexpr double kHingeDamping = 1e-4;  // [N m s/rad]
-// Share of the nut-and-rod mass that sits beyond the ball joint's play.
-constexpr double kRodEndShare = 0.5;
-// Motor and rod are taken for solid cubes of this density: the description states only their masses.
-constexpr double kSteelDensity = 7850;  // [kg/m^3]
-
 std::string inertial(double mass, const Vec3& centre) {
-  const double side = std::cbrt(mass / kSteelDensity);
-  const double moment = mass * side * side / 6;
+  const double moment = cube_moment(mass);
   return fmt::format(R"(<inertial pos="{}" mass="{}" diaginertia="{} {} {}"/>)", mjcf_text(centre), mass,
                      moment, moment, moment);
 }

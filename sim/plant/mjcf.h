@@ -16,9 +16,6 @@ constexpr double kConstraintSteps = 2.0;
 /// "strut 3 screw": joints, equalities and bodies are named after the strut that they belong to.
 std::string strut_part(int strut, const char* part);
 
-/// Joint clearances are greasy: damping of a play slide (reference I).
-constexpr double kPlayDamping = 2.0;  // [N s/m]
-
 constexpr const char* kPlatformBody = "platform";
 constexpr const char* kScrewPart = "screw";   ///< slide joint, and the equality that drives it
 constexpr const char* kClosurePart = "ball";  ///< equality that closes the loop

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "sim/plant/hexapod_assembly.h"
+#include "sim/plant/joint_constants.h"
 #include "sim/plant/mjcf.h"
 #include "sim/plant/mujoco_rig.h"
 
@@ -14,10 +15,6 @@ namespace {
 
 using kinematics::kStruts;
 using machine::AxisArray;
-
-// A closed joint that has come this far apart is an integration that no longer follows the machine: a hard
-// stop from full speed opens a joint by a tenth of it.
-constexpr double kClosureLimit = 0.1e-3;  // [m]
 
 class MujocoHexapod final : public MujocoRig {
  public:

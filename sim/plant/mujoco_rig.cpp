@@ -8,22 +8,13 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "sim/plant/joint_constants.h"
 #include "sim/plant/mjcf.h"
 
 namespace understudy::sim {
 namespace {
 
 using machine::AxisArray;
-
-// A drive this far from its command is an integration that no longer follows the machine.
-constexpr double kFollowingLimit = 0.5e-3;  // [m] or [rad]
-
-constexpr double kSettledSpeed = 1e-6;  // [m/s] and [rad/s], of every joint
-constexpr double kSettledTime = 0.02;   // [s] that it has to last
-constexpr double kSettleCap = 2.0;      // [s]
-// A pose in which a strut carries next to nothing lets the platform float in that strut's play for long: at
-// the cap that is rest. Free fall through a play of 0.2 mm ends at 60 mm/s, so beyond this it is not.
-constexpr double kFloatingSpeed = 0.06;  // [m/s] and [rad/s]
 
 // Rotor of a drive that has let go, of the inertia that it carries: light, but no mass matrix is singular.
 constexpr double kReleasedRotor = 1e-3;

@@ -69,7 +69,7 @@ struct BulletOptions {
   double timestep = 0.5e-3;  ///< [s]
   bool gravity = true;
   bool play = true;
-  int iterations = 200;  ///< of the projected Gauss-Seidel solver; play needs 200 (reference I)
+  int iterations = 200;  ///< changes of the set of stops in touch, at most, in a step's direct solution
 };
 /// Hexapods and serial arms; built from the description, not from the MJCF. Throws InputError for others.
 std::unique_ptr<Plant> make_bullet_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,

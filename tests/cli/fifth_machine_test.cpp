@@ -50,7 +50,7 @@ TEST_F(FifthMachine, HasAxesAndPoses) {
               AllOf(HasSubstr("shoulder_deg,elbow_deg,wrist_deg,quill_mm,status\n"), HasSubstr("\n40.0000"),
                     HasSubstr(",-80.0000"), HasSubstr(",-50.000000,ok\n"), HasSubstr("nan,nan,nan,nan,")));
   const auto table =
-      folder_.write("axes.csv", "shoulder_deg,elbow_deg,wrist_deg,quill_mm\n0,90,-90,-100\n10,0,0,0\n");
+      folder_.write("axes.csv", "shoulder_deg,elbow_deg,wrist_deg,quill_mm\n0,90,-90,-110\n10,0,0,0\n");
   const Outcome back = understudy("poses --machine scara <" + table);
   ASSERT_EQ(back.status, 0) << back.err;
   EXPECT_THAT(back.out, AllOf(HasSubstr("\nnan,"), HasSubstr("\n143.923101,69.459271,100.000000,")));

@@ -25,7 +25,7 @@ TEST_F(ChainInput, ARangeThatEndsBeforeItBegins) {
   EXPECT_THAT(arm("- name: j2", "range_deg: [-45, 150]", "range_deg: [150, -45]"),
               AllOf(HasSubstr(kInThatLine),
                     HasSubstr("axes[2].range_deg begins at 150 and ends at -45 deg, not above it")));
-  EXPECT_THAT(scara("- name: quill", "range_mm: [-95, 60]", "range_mm: [60, 60]"),
+  EXPECT_THAT(scara("- name: quill", "range_mm: [-105, 60]", "range_mm: [60, 60]"),
               AllOf(HasSubstr(kInThatLine), HasSubstr("axes[4].range_mm begins at 60 and ends at 60 mm")));
 }
 
@@ -34,7 +34,7 @@ TEST_F(ChainInput, AHomeOutsideItsRange) {
               AllOf(HasSubstr(kInThatLine),
                     HasSubstr("axes[3].home_deg is 71 deg, outside the axis' range of -190 to 70")));
   EXPECT_THAT(scara("- name: quill", "home_mm: -50", "home_mm: 61"),
-              HasSubstr("axes[4].home_mm is 61 mm, outside the axis' range of -95 to 60"));
+              HasSubstr("axes[4].home_mm is 61 mm, outside the axis' range of -105 to 60"));
 }
 
 TEST_F(ChainInput, AxesThatCoincide) {

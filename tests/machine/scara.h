@@ -53,7 +53,7 @@ axes:
     moves: slides
     direction: [0, 0, 1]
     carried_by: wrist
-    range_mm: [-95, 60]
+    range_mm: [-105, 60]
     home_mm: -50
     drive: {lead_mm: 8, steps_per_turn: 200, microsteps: 16, velocity_max_mm_per_s: 100, acceleration_max_mm_per_s2: 2000, self_locking: yes}
     play_um: 20

@@ -81,6 +81,7 @@ function drawProvenance(report) {
     ['Fixture', report.names.fixture],
     ['Gap control', report.names.gap_control],
     ['As built', provenance.as_built],
+    ['Made to go wrong', (provenance.faults || []).join('; ')],
     ['Seed', report.names.seed],
     ['Understudy', provenance.version],
     ['Command', provenance.command],

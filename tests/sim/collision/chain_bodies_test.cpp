@@ -116,7 +116,7 @@ TEST_P(LinkMotion, IsNeverMoreThanItsBound) {
     }
   }
   EXPECT_GT(moved, 1000);
-  EXPECT_GT(tightest, 0.4);  // and it is a bound to work with
+  EXPECT_GT(tightest, 0.2);  // and it is a bound to work with
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, LinkMotion, testing::Values("arm", "five-axis"), [](const auto& one) {
