@@ -106,10 +106,14 @@ TEST_F(ListedChain, StandsAsItsLinesSay) {
 }
 
 TEST_F(ListedChain, ToolAndWorkMayBeCarriedByAnyAxisOrTheFrame) {
-  const auto m =
-      load_machine(write(edited(kScara, "geometry", "work_carried_by: frame", "work_carried_by: shoulder")));
+  const std::string moved = edited(kScara, "geometry", "work_carried_by: frame", "work_carried_by: shoulder");
+  const std::string base = "base_mm: [-250, 0, 0]\n  base_turn_deg: 0\n  ";
+  const auto m = load_machine(write(edited(moved, "geometry", base, "")));
   EXPECT_EQ(m.chain->kinematics.chain.work_axis, 0);
   EXPECT_TRUE(m.X_WB.isApprox(Pose::Identity(), 0));  // what moves the work carries W
+  EXPECT_THAT([&] { load_machine(write(moved)); },
+              ::testing::ThrowsMessage<InputError>(
+                  ::testing::AllOf(::testing::HasSubstr(":4:"), ::testing::HasSubstr("geometry.base_mm"))));
 }
 
 TEST_F(ListedChain, AnElasticDriveKnowsItsRotor) {
