@@ -14,7 +14,9 @@ namespace {
 static_assert(sizeof(Pose) == 16 * sizeof(double) && sizeof(StrutLengths) == kStruts * sizeof(double));
 
 constexpr long kBlock = 64;           // answers kept at a time
-constexpr long kWorthAThread = 1024;  // poses; fewer take less time than a thread's start
+// Poses; fewer take less time than some starts of a thread.
+constexpr long kInverseWorthAThread = 8192;
+constexpr long kForwardWorthAThread = 1024;
 
 using TwoLanes [[gnu::vector_size(16)]] = double;
 
@@ -42,9 +44,9 @@ lanes::ForwardMany forward_many() {
 
 /// work(begin, end) for parts of [0, count), on as many threads as are worth it.
 template <typename Work>
-void in_parts(long count, int threads, const Work& work) {
+void in_parts(long count, long worth_a_thread, int threads, const Work& work) {
   const long wanted = threads > 0 ? threads : static_cast<long>(std::thread::hardware_concurrency());
-  const long parts = std::clamp(wanted, 1L, std::max(1L, count / kWorthAThread));
+  const long parts = std::clamp(wanted, 1L, std::max(1L, count / worth_a_thread));
   std::vector<std::thread> others;
   for (long n = 1; n < parts; ++n)
     others.emplace_back([&, n] { work(count * n / parts, count * (n + 1) / parts); });
@@ -59,7 +61,7 @@ void inverse_batch(const HexapodGeometry& geometry, std::span<const Pose> X_BT,
   const auto count = static_cast<long>(std::min({X_BT.size(), lengths.size(), status.size()}));
   const lanes::Hexapod g = plain_numbers(geometry);
   const lanes::InverseMany many = inverse_many();
-  in_parts(count, threads, [&](long begin, long end) {
+  in_parts(count, kInverseWorthAThread, threads, [&](long begin, long end) {
     std::array<bool, kBlock> ok;
     for (long at = begin; at < end; at += kBlock) {
       const long size = std::min(kBlock, end - at);
@@ -81,7 +83,7 @@ void forward_batch(const HexapodGeometry& geometry, std::span<const StrutLengths
   const lanes::Hexapod g = plain_numbers(geometry);
   const lanes::ForwardMany many = forward_many();
   const lanes::NewtonSettings settings = newton_settings(options);
-  in_parts(count, threads, [&](long begin, long end) {
+  in_parts(count, kForwardWorthAThread, threads, [&](long begin, long end) {
     std::array<lanes::Answer, kBlock> answers;
     for (long at = begin; at < end; at += kBlock) {
       const long size = std::min(kBlock, end - at);
