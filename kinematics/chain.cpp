@@ -25,6 +25,21 @@ void add_screw(const ChainAxis& axis, const Pose& X_OL, const Vec3& p_O, Vec3& v
 
 }  // namespace
 
+ChainAxis sliding_axis(const std::string& name, const Vec3& direction, int parent) {
+  ChainAxis axis = turning_axis(name, direction, Vec3::Zero(), parent);
+  axis.angle = false;
+  return axis;
+}
+
+ChainAxis turning_axis(const std::string& name, const Vec3& direction, const Vec3& point, int parent) {
+  ChainAxis axis;
+  axis.name = name;
+  axis.direction = direction;
+  axis.point = point;
+  axis.parent = parent;
+  return axis;
+}
+
 Pose screw_motion(const ChainAxis& axis, double q) {
   Pose X = Pose::Identity();
   if (axis.angle) {

@@ -37,6 +37,10 @@ struct Chain {
   int size() const { return static_cast<int>(axes.size()); }
 };
 
+/// Without limits; `direction` is of unit length.
+ChainAxis sliding_axis(const std::string& name, const Vec3& direction, int parent);
+ChainAxis turning_axis(const std::string& name, const Vec3& direction, const Vec3& point, int parent);
+
 /// Columns: twist of the tool seen from the work per unit of each axis: (velocity of the tip, angular), in S.
 using ChainJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxAxes>;
 

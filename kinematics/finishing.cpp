@@ -97,22 +97,13 @@ class Finishing final : public ChainMechanism {
 
 Chain finishing_chain(const FinishingGeometry& geometry) {
   Chain chain;
-  const auto add = [&](const char* name, bool angle, const Vec3& direction, const Vec3& point, int parent) {
-    ChainAxis axis;
-    axis.name = name;
-    axis.angle = angle;
-    axis.direction = direction;
-    axis.point = point;
-    axis.parent = parent;
-    chain.axes.push_back(axis);
-  };
   const Vec3 wrist(-geometry.l3, 0, 0);
-  add("z", false, -Vec3::UnitZ(), Vec3::Zero(), -1);
-  add("c", true, -Vec3::UnitZ(), Vec3::Zero(), 0);
-  add("x", false, Vec3::UnitX(), Vec3::Zero(), -1);
-  add("y", false, Vec3::UnitY(), Vec3::Zero(), 2);
-  add("yaw", true, Vec3::UnitZ(), wrist, 3);
-  add("pitch", true, Vec3::UnitY(), wrist, 4);
+  chain.axes.push_back(sliding_axis("z", -Vec3::UnitZ(), -1));
+  chain.axes.push_back(turning_axis("c", -Vec3::UnitZ(), Vec3::Zero(), 0));
+  chain.axes.push_back(sliding_axis("x", Vec3::UnitX(), -1));
+  chain.axes.push_back(sliding_axis("y", Vec3::UnitY(), 2));
+  chain.axes.push_back(turning_axis("yaw", Vec3::UnitZ(), wrist, 3));
+  chain.axes.push_back(turning_axis("pitch", Vec3::UnitY(), wrist, 4));
   chain.work_axis = 1;
   chain.tool_axis = 5;
   Mat3 R_bT;

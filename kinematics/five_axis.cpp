@@ -93,20 +93,11 @@ class FiveAxis final : public ChainMechanism {
 
 Chain five_axis_chain(const FiveAxisGeometry& geometry) {
   Chain chain;
-  const auto add = [&](const char* name, bool angle, const Vec3& direction, const Vec3& point, int parent) {
-    ChainAxis axis;
-    axis.name = name;
-    axis.angle = angle;
-    axis.direction = direction;
-    axis.point = point;
-    axis.parent = parent;
-    chain.axes.push_back(axis);
-  };
-  add("x", false, Vec3::UnitX(), Vec3::Zero(), -1);
-  add("y", false, Vec3::UnitY(), Vec3::Zero(), 0);
-  add("z", false, Vec3::UnitZ(), Vec3::Zero(), 1);
-  add("b", true, -Vec3::UnitY(), on_b_axis(geometry), -1);
-  add("c", true, -Vec3::UnitZ(), on_c_axis(geometry), 3);
+  chain.axes.push_back(sliding_axis("x", Vec3::UnitX(), -1));
+  chain.axes.push_back(sliding_axis("y", Vec3::UnitY(), 0));
+  chain.axes.push_back(sliding_axis("z", Vec3::UnitZ(), 1));
+  chain.axes.push_back(turning_axis("b", -Vec3::UnitY(), on_b_axis(geometry), -1));
+  chain.axes.push_back(turning_axis("c", -Vec3::UnitZ(), on_c_axis(geometry), 3));
   chain.tool_axis = 2;
   chain.work_axis = 4;
   return chain;

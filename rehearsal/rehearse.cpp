@@ -15,6 +15,7 @@
 #include "core/units.h"
 #include "rehearsal/findings.h"
 #include "rehearsal/pictures.h"
+#include "rehearsal/rotary_words.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/version.h"
 #include "sim/as_built/as_built_file.h"
@@ -42,6 +43,7 @@ Stage prepare(const RehearsalRequest& request) {
   stage.machine = machine::load_machine(request.machine);
   toolpath::GcodeOptions gcode;
   gcode.X_WT_home = stage.machine.X_WB * stage.machine.X_BT_home;
+  gcode.rotary = rotary_words(stage.machine);
   stage.program = toolpath::read_gcode(request.program, gcode);
   if (!request.fixture.empty()) stage.part = geometry::read_stl(find_fixture(request.fixture));
   stage.as_built = sim::make_as_built(stage.machine, request.as_built, request.seed);

@@ -1,5 +1,7 @@
 #include "rehearsal/scenario_faults.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,10 +25,18 @@ FaultKind read_kind(StrictMap& map) {
   return FaultKind::stall;  // word() has thrown
 }
 
+constexpr std::uint64_t kMostSteps = 1'000'000;  // far beyond the travel of any drive
+
 double not_negative(StrictMap& map, const std::string& key) {
   const double value = map.number(key);
   if (value < 0) map.fail(key, fmt::format("{} is {}, below 0", key, value));
   return value;
+}
+
+int read_steps(StrictMap& map) {
+  const std::uint64_t steps = map.whole_number("steps");
+  if (steps > kMostSteps) map.fail("steps", fmt::format("steps is {}, above {}", steps, kMostSteps));
+  return static_cast<int>(steps);
 }
 
 /// In um of a slide or arcmin of a turn.
@@ -44,7 +54,7 @@ FaultRequest read_fault(StrictMap& map) {
   if (request.event.kind != FaultKind::power_cut) request.axis = map.text("axis");
   switch (request.event.kind) {
     case FaultKind::lost_steps:
-      request.event.steps = static_cast<int>(std::min<std::uint64_t>(map.whole_number("steps"), 1'000'000));
+      request.event.steps = read_steps(map);
       break;
     case FaultKind::stall:
       request.event.duration = not_negative(map, "for_s");

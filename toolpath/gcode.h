@@ -2,10 +2,13 @@
 //
 // Words: G0 G1 G4 G20 G21 G28 G90 G91 G92 G93 G94, M82 M83 M104 M109 M106 M107 M30, modal, with ; and ( )
 // comments, E for filament length. Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K alone,
-// the tool axis. Lengths mm (or inch under G20), feeds mm/min.
+// the tool axis; or B C, the turning axes of a machine that has them, with G43.4 and G49. Lengths mm (or inch
+// under G20), angles degrees, feeds mm/min.
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +16,26 @@
 
 namespace understudy::toolpath {
 
+/// What B and C mean on a machine that has such axes. Angles in [rad], of any number of turns.
+struct RotaryWords {
+  enum class Coordinates {
+    tip,      ///< X Y Z is p_WT (tool-centre-point coordinates, G43.4)
+    machine,  ///< X Y Z are the slides (G49)
+  };
+  Coordinates coordinates = Coordinates::tip;  ///< before the program says which
+  double b_home = 0, c_home = 0;               ///< at X_WT_home
+  /// X_WT of a tip at p_WT.
+  std::function<Pose(const Vec3& p_WT, double b, double c)> tip_pose;
+  /// X_WT of slides at X Y Z [m].
+  std::function<Pose(const Vec3& slides, double b, double c)> slides_pose;
+  /// The slides [m] that hold the tip at p_WT.
+  std::function<Vec3(const Vec3& p_WT, double b, double c)> slides;
+};
+
 struct GcodeOptions {
   Pose X_WT_home = Pose::Identity();  ///< where the tool starts and where G28 takes it
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
+  std::optional<RotaryWords> rotary = std::nullopt;  ///< without it B and C are errors
 };
 
 /// Throws InputError with file, line and column for an unknown word, a malformed or non-finite number, a

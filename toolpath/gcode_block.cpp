@@ -11,11 +11,11 @@ namespace understudy::toolpath {
 namespace {
 
 // Commands of one group exclude each other on a line (the modal groups of RS-274, and the S word's users).
-enum class Group { motion, units, distance, feed_mode, extrusion, process, end };
+enum class Group { motion, units, coordinates, distance, feed_mode, extrusion, process, end };
 
 struct Meaning {
   char letter;
-  int number;
+  double number;
   Command command;
   Group group;
 };
@@ -27,6 +27,8 @@ constexpr Meaning kMeanings[] = {
     {'G', 20, Command::inches, Group::units},
     {'G', 21, Command::millimetres, Group::units},
     {'G', 28, Command::home, Group::motion},
+    {'G', 43.4, Command::tip_coordinates, Group::coordinates},
+    {'G', 49, Command::machine_coordinates, Group::coordinates},
     {'G', 90, Command::absolute, Group::distance},
     {'G', 91, Command::relative, Group::distance},
     {'G', 92, Command::set_position, Group::motion},
@@ -40,7 +42,7 @@ constexpr Meaning kMeanings[] = {
     {'M', 107, Command::fan_off, Group::process},
     {'M', 30, Command::end, Group::end},
 };
-constexpr const char* kParameters = "XYZEFWIJKPS";
+constexpr const char* kParameters = "XYZBCEFWIJKPS";
 
 const Meaning* meaning_of(const Word& word) {
   for (const Meaning& m : kMeanings)
@@ -56,7 +58,8 @@ Group group_of(Command command) {
 
 }  // namespace
 
-Block::Block(std::vector<Word> words, std::string file, int line) : file_(std::move(file)), line_(line) {
+Block::Block(std::vector<Word> words, std::string file, int line, bool with_rotary_words)
+    : file_(std::move(file)), line_(line), with_rotary_words_(with_rotary_words) {
   words_.reserve(words.size());
   for (const Word& word : words) add(word, &word == words.data());
   check_groups();
@@ -70,16 +73,23 @@ void Block::add(const Word& word, bool first) {
     words_.push_back({word, true, meaning->command, false});
     return;
   }
-  if (std::strchr("ABC", word.letter) != nullptr)
-    fail(word,
-         fmt::format("'{}': this machine has no rotary axes; orientation is W I J K (quaternion) or I J K "
-                     "(tool axis)",
-                     word.text));
+  check_rotary(word);
   if (std::strchr(kParameters, word.letter) == nullptr)
     fail(word, fmt::format("unknown word '{}'", word.text));
   if (find(word.letter) != nullptr)
     fail(word, fmt::format("'{}': the line has a second {}", word.text, word.letter));
   words_.push_back({word, false, {}, false});
+}
+
+void Block::check_rotary(const Word& word) const {
+  if (std::strchr("ABC", word.letter) == nullptr) return;
+  if (!with_rotary_words_)
+    fail(word,
+         fmt::format("'{}': this machine has no rotary axes; orientation is W I J K (quaternion) or I J K "
+                     "(tool axis)",
+                     word.text));
+  if (word.letter == 'A')
+    fail(word, fmt::format("'{}': the rotary axes of this machine are B and C", word.text));
 }
 
 void Block::check_groups() const {

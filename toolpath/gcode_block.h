@@ -10,31 +10,33 @@ namespace understudy::toolpath {
 
 /// What G and M words the dialect knows.
 enum class Command {
-  rapid,               // G0
-  linear,              // G1
-  dwell,               // G4
-  inches,              // G20
-  millimetres,         // G21
-  home,                // G28
-  absolute,            // G90
-  relative,            // G91
-  set_position,        // G92
-  inverse_time,        // G93
-  per_minute,          // G94
-  absolute_extrusion,  // M82
-  relative_extrusion,  // M83
-  heat,                // M104
-  heat_and_wait,       // M109
-  fan_on,              // M106
-  fan_off,             // M107
-  end,                 // M30
+  rapid,                // G0
+  linear,               // G1
+  dwell,                // G4
+  inches,               // G20
+  millimetres,          // G21
+  home,                 // G28
+  tip_coordinates,      // G43.4
+  machine_coordinates,  // G49
+  absolute,             // G90
+  relative,             // G91
+  set_position,         // G92
+  inverse_time,         // G93
+  per_minute,           // G94
+  absolute_extrusion,   // M82
+  relative_extrusion,   // M83
+  heat,                 // M104
+  heat_and_wait,        // M109
+  fan_on,               // M106
+  fan_off,              // M107
+  end,                  // M30
 };
 
 class Block {
  public:
   /// Throws InputError for a word that the dialect does not know, a letter given twice, or two commands that
-  /// exclude each other.
-  Block(std::vector<Word> words, std::string file, int line);
+  /// exclude each other. B and C are known to a machine `with_rotary_words`.
+  Block(std::vector<Word> words, std::string file, int line, bool with_rotary_words);
 
   bool empty() const { return words_.empty(); }
   int line() const { return line_; }
@@ -59,11 +61,13 @@ class Block {
     bool taken = false;
   };
   void add(const Word& word, bool first);
+  void check_rotary(const Word& word) const;
   void check_groups() const;
 
   std::vector<Entry> words_;
   std::string file_;
   int line_;
+  bool with_rotary_words_;
 };
 
 }  // namespace understudy::toolpath

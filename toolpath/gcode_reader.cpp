@@ -19,7 +19,7 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // byte order mark of some editors
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = rest.find('\n');
-    Block block(lex_line(rest.substr(0, end), file, line), file, line);
+    Block block(lex_line(rest.substr(0, end), file, line), file, line, options.rotary.has_value());
     state.run(block, program.steps);
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
   }

@@ -8,18 +8,17 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr const char* kMotionWords = "XYZEWIJK";
-// No machine is larger and no spool longer; keeps sums finite.
-constexpr double kLargestCoordinate = 100;  // [m]
-constexpr double kLargestExtruder = 1e6;    // [m]
-constexpr double kLongestDwell = 86400;     // [s]
-constexpr double kCelsius = 273.15;         // [K]
+constexpr const char* kMotionWords = "XYZBCEWIJK";
+// No spool is longer; keeps sums finite.
+constexpr double kLargestExtruder = 1e6;  // [m]
+constexpr double kLongestDwell = 86400;   // [s]
+constexpr double kCelsius = 273.15;       // [K]
 
 bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
 
 }  // namespace
 
-GcodeState::GcodeState(const GcodeOptions& options) : options_(options), X_WT_(options.X_WT_home) {}
+GcodeState::GcodeState(const GcodeOptions& options) : position_(options) {}
 
 void GcodeState::run(Block& block, std::vector<Step>& steps) {
   if (block.empty()) return;
@@ -48,6 +47,7 @@ void GcodeState::set_modes(const Block& block) {
   // A feed does not survive a change of what it means.
   if (block.find(Command::inverse_time) != nullptr) feed_.reset();
   if (block.find(Command::per_minute) != nullptr) inverse_time_ = false;
+  position_.set_coordinates(block);
 }
 
 void GcodeState::set_feed(Block& block) {
@@ -120,30 +120,29 @@ void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
 }
 
 void GcodeState::home(std::vector<Step>& steps, int line) {
-  X_WT_ = options_.X_WT_home;
-  origin_.setZero();
+  position_.go_home();
   steps.push_back(step(StepKind::home, line));
 }
 
 void GcodeState::set_position(Block& block) {
   const Word& code = *block.find(Command::set_position);
-  if (block.find_any("XYZE") == nullptr) block.fail(code, "G92 names none of X Y Z E");
-  for (int i = 0; i < 3; ++i)
-    if (const Word* word = block.take("XYZ"[i])) origin_[i] = X_WT_.translation()[i] - length(block, *word);
-  if (const Word* word = block.take('E')) extruder_ = length(block, *word);
+  if (block.find_any("XYZBCE") == nullptr)
+    block.fail(code, fmt::format("G92 names none of X Y Z {}E", position_.has_rotary_words() ? "B C " : ""));
+  position_.rename(block, unit_);
+  if (const Word* word = block.take('E')) extruder_ = length_of(block, *word, unit_);
 }
 
 void GcodeState::move(Block& block, std::vector<Step>& steps) {
   const Word* extrusion = block.find('E');
   if (motion_ == Motion::rapid && extrusion != nullptr)
     block.fail(*extrusion, fmt::format("'{}': G0 feeds no filament, use G1", extrusion->text));
-  const Pose from = X_WT_;
-  X_WT_ = target(block);
+  const Pose from = position_.X_WT();
+  position_.move(block, unit_, relative_);
   Step next = step(motion_ == Motion::rapid ? StepKind::travel : StepKind::move, block.line());
   next.filament = fed_filament(block);
   if (next.filament > 0) next.kind = StepKind::print;
   if (motion_ == Motion::linear) set_pace(block, next);
-  if (next.filament != 0 && next.duration == 0 && !tip_moves(from, X_WT_)) {
+  if (next.filament != 0 && next.duration == 0 && !tip_moves(from, position_.X_WT())) {
     next.duration = std::abs(next.filament) / next.feed;
     next.feed = 0;
   }
@@ -157,43 +156,10 @@ void GcodeState::set_pace(const Block& block, Step& step) const {
   step.feed = inverse_time_ ? 0 : *feed_;
 }
 
-Pose GcodeState::target(Block& block) const {
-  Vec3 p = X_WT_.translation();
-  for (int i = 0; i < 3; ++i) {
-    const Word* word = block.take("XYZ"[i]);
-    if (word == nullptr) continue;
-    p[i] = (relative_ ? p[i] : origin_[i]) + length(block, *word);
-    if (std::abs(p[i]) > kLargestCoordinate)
-      block.fail(*word, fmt::format("'{}' leads to {:.6g} mm, beyond {:.6g} mm", word->text, to_mm(p[i]),
-                                    to_mm(kLargestCoordinate)));
-  }
-  const std::optional<Quat> turn = orientation(block);
-  return turn ? make_pose(*turn, p) : make_pose(Mat3(X_WT_.linear()), p);
-}
-
-std::optional<Quat> GcodeState::orientation(Block& block) const {
-  const Word* first = block.find_any("WIJK");
-  if (first == nullptr) return std::nullopt;
-  const Word* w = block.take('W');
-  const Word* vector[3] = {block.take('I'), block.take('J'), block.take('K')};
-  for (int i = 0; i < 3; ++i)
-    if (vector[i] == nullptr)
-      block.fail(*first, fmt::format("orientation without {}: give W I J K (quaternion) or I J K (tool axis)",
-                                     "IJK"[i]));
-  const Vec3 v(vector[0]->value, vector[1]->value, vector[2]->value);
-  const double norm = w != nullptr ? std::hypot(w->value, v.stableNorm()) : v.stableNorm();
-  if (!(std::abs(norm - 1) <= options_.unit_tolerance))
-    block.fail(*first, fmt::format("the {} has length {:.6g}, farther than {:g} from 1",
-                                   w != nullptr ? "quaternion W I J K" : "tool axis I J K", norm,
-                                   options_.unit_tolerance));
-  if (w != nullptr) return Quat(w->value, v.x(), v.y(), v.z()).normalized();
-  return shortest_arc_from_z(v.normalized());
-}
-
 double GcodeState::fed_filament(Block& block) {
   const Word* word = block.take('E');
   if (word == nullptr) return 0;
-  const double value = length(block, *word);
+  const double value = length_of(block, *word, unit_);
   const double before = extruder_;
   extruder_ = relative_extrusion_ ? before + value : value;
   if (std::abs(extruder_) > kLargestExtruder)
@@ -202,18 +168,10 @@ double GcodeState::fed_filament(Block& block) {
   return relative_extrusion_ ? value : value - before;
 }
 
-double GcodeState::length(const Block& block, const Word& word) const {
-  const double value = word.value * unit_;
-  if (std::abs(value) > kLargestExtruder)
-    block.fail(word, fmt::format("'{}' is {:.6g} mm, beyond {:.6g} mm", word.text, to_mm(value),
-                                 to_mm(kLargestExtruder)));
-  return value;
-}
-
 Step GcodeState::step(StepKind kind, int line) const {
   Step step;
   step.kind = kind;
-  step.X_WT = X_WT_;
+  step.X_WT = position_.X_WT();
   step.line = line;
   return step;
 }

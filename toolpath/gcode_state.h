@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "toolpath/gcode.h"
 #include "toolpath/gcode_block.h"
+#include "toolpath/gcode_position.h"
 
 namespace understudy::toolpath {
 
@@ -31,17 +32,12 @@ class GcodeState {
   void move(Block& block, std::vector<Step>& steps);
   void set_pace(const Block& block, Step& step) const;
 
-  Pose target(Block& block) const;
-  std::optional<Quat> orientation(Block& block) const;
   double fed_filament(Block& block);
-  double length(const Block& block, const Word& word) const;
   Step step(StepKind kind, int line) const;
 
-  GcodeOptions options_;
-  Pose X_WT_;                   // where the tool is
-  Vec3 origin_ = Vec3::Zero();  // [m], coordinates + origin = world (G92)
-  double extruder_ = 0;         // [m], reading of E
-  double unit_ = kMillimetre;   // [m]
+  GcodePosition position_;
+  double extruder_ = 0;        // [m], reading of E
+  double unit_ = kMillimetre;  // [m]
   bool relative_ = false;
   bool relative_extrusion_ = false;
   bool inverse_time_ = false;

@@ -33,18 +33,9 @@ std::unique_ptr<btMultiBody> make_rotor(double inertia, double position) {
 
 BulletRig::BulletRig(const machine::MachineDescription& machine, const BulletOptions& options)
     : machine_(machine), options_(options) {
-  if (!(options.timestep > 0 && std::isfinite(options.timestep)))
-    throw InputError(fmt::format("timestep is {} s, not above 0", options.timestep));
+  check_timestep(machine, options.timestep);
   if (options.iterations < 1)
     throw InputError(fmt::format("iterations of the solver are {}, not above 0", options.iterations));
-  for (const machine::Drive& drive : machine.drives) {
-    // A semi-implicit step of a spring is stable below 2 radians and true well below 1.
-    const double phase = 2 * std::numbers::pi * drive.resonance * options.timestep;
-    if (drive.stiffness > 0 && phase > 1)
-      throw InputError(fmt::format(
-          "timestep is {} ms, too long for a drive that swings at {} Hz: at most {:.3f} ms",
-          1e3 * options.timestep, drive.resonance, 1e3 / (2 * std::numbers::pi * drive.resonance)));
-  }
 }
 
 std::string BulletRig::engine() const {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "machine/description.h"
+
 namespace understudy::sim {
 
 /// Joint clearances are greasy: damping of a play that slides (reference I). A play that turns has it at the
@@ -21,6 +23,10 @@ inline double cube_moment(double mass) {
   const double side = std::cbrt(mass / kSteelDensity);
   return mass * side * side / 6;
 }
+
+/// Throws InputError for a timestep that is not positive, or too long for an elastic drive: a semi-implicit
+/// step of a spring is stable below 2 radians and true well below 1.
+void check_timestep(const machine::MachineDescription& machine, double timestep);
 
 // Being at rest, and being lost.
 constexpr double kSettledSpeed = 1e-6;  // [m/s] and [rad/s], of every joint

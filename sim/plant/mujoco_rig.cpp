@@ -25,16 +25,7 @@ const char* unit_name(bool angle) { return angle ? "mrad" : "mm"; }
 
 MujocoRig::MujocoRig(const machine::MachineDescription& machine, const MujocoOptions& options)
     : machine_(machine), options_(options) {
-  if (!(options.timestep > 0 && std::isfinite(options.timestep)))
-    throw InputError(fmt::format("timestep is {} s, not above 0", options.timestep));
-  for (const machine::Drive& drive : machine.drives) {
-    // A semi-implicit step of a spring is stable below 2 radians and true well below 1.
-    const double phase = 2 * std::numbers::pi * drive.resonance * options.timestep;
-    if (drive.stiffness > 0 && phase > 1)
-      throw InputError(fmt::format(
-          "timestep is {} ms, too long for a drive that swings at {} Hz: at most {:.3f} ms",
-          1e3 * options.timestep, drive.resonance, 1e3 / (2 * std::numbers::pi * drive.resonance)));
-  }
+  check_timestep(machine, options.timestep);
 }
 
 std::string MujocoRig::engine() const { return fmt::format("mujoco {}", mj_versionString()); }

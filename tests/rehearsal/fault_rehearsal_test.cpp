@@ -170,6 +170,11 @@ TEST_F(FaultyRehearsal, FaultsOfAScenarioFileAreReadStrictly) {
               AllOf(HasSubstr("scenario.yaml:13"), HasSubstr("did you mean 'lost_steps'?")));
   EXPECT_THAT(error_of_faults(folder_, "faults:\n  - {fault: lost_steps, axis: l1, at_s: -1, steps: 8}\n"),
               HasSubstr("at_s is -1, below 0"));
+  EXPECT_EQ(error_of_faults(folder_, "faults:\n  - {fault: lost_steps, axis: l1, at_s: 1, steps: 1000000}\n"),
+            "accepted");
+  EXPECT_THAT(
+      error_of_faults(folder_, "faults:\n  - {fault: lost_steps, axis: l1, at_s: 1, steps: 1000004}\n"),
+      AllOf(HasSubstr("scenario.yaml:13"), HasSubstr("steps is 1000004, above 1000000")));
   EXPECT_THAT(error_of_faults(folder_, "faults:\n  - {fault: stall, axis: l1, at_s: 1}\n"),
               HasSubstr("'for_s'"));
   EXPECT_THAT(error_of_faults(folder_, "faults:\n  - {fault: power_cut, axis: l1, at_s: 1}\n"),
