@@ -139,5 +139,33 @@ TEST(MujocoPlant, ResetStartsTheClockAtRestAtTheDisplacements) {
   EXPECT_LE((plant->tool_pose().translation() - at_reset).norm(), 0.01e-6);
 }
 
+// Screws that the joints turn make struts longer than their drives read; at rest the tool is where the
+// coupled kinematics puts it, and visibly not where guided screws would have it.
+TEST(MujocoPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
+  auto machine = machine_g4();
+  machine.hexapod.screw_rotation = machine::ScrewRotation::free;
+  for (machine::Drive& drive : machine.drives) drive.lead = from_mm(1.5875);
+  const AsBuilt built = make_as_built(machine, "nominal", 1);
+  Pose X_BT = machine.X_BT_home;
+  X_BT.linear() = exp_rotation(from_deg(12) * Vec3(0.6, 0.8, 0));
+  X_BT.translation() += Vec3(0.008, -0.005, -0.01);
+  kinematics::StrutLengths lengths{};
+  ASSERT_EQ(kinematics::inverse(built.hexapod, machine.screw_coupling(), X_BT, lengths),
+            kinematics::Solve::ok);
+  machine::AxisArray displacement{};
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    displacement[i] = lengths[i] - built.hexapod.length_offset[i];
+  const Vec3 due = machine.X_WB * X_BT.translation();
+  const auto plant = make_mujoco_plant(machine, built, without_play());
+  plant->reset(displacement);
+  EXPECT_LE((plant->tool_pose().translation() - due).norm(), kTipError);
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    EXPECT_NEAR(plant->displacement()[i], displacement[i], kTipError);
+  machine.hexapod.screw_rotation = machine::ScrewRotation::guided;
+  const auto guided = make_mujoco_plant(machine, built, without_play());
+  guided->reset(displacement);
+  EXPECT_GT((guided->tool_pose().translation() - due).norm(), 20e-6);
+}
+
 }  // namespace
 }  // namespace understudy::sim
