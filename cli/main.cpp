@@ -49,8 +49,11 @@ int run(int argc, char** argv) {
   cli::add_sweep(app, action);
   cli::add_plan(app, action);
   cli::add_kinematics(app, action);
+  cli::add_calibrate(app, action);
+  cli::add_render(app, action);
   cli::add_workspace(app, action);
   cli::add_export(app, action);
+  cli::add_benchmark(app, action);
   cli::add_inspection(app, action);
   check_first_word(app, argc, argv);
   try {

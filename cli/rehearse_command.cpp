@@ -42,6 +42,11 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
   if (record.collision)
     fmt::print("  smallest clearance {:.2f} mm over {} checks\n", record.collision->min_clearance_mm,
                record.collision->checks);
+  if (record.sag && record.sag->strands > 0)
+    fmt::print("  {} strands in air, {:.1f} mm in all, sag {:.0f} um at most\n", record.sag->strands,
+               record.sag->unsupported_mm, record.sag->max_um);
+  if (record.surface && record.surface->ra_um)
+    fmt::print("  surface Ra {:.1f} um, Rz {:.1f} um\n", *record.surface->ra_um, *record.surface->rz_um);
   if (record.print) fmt::print("  print time {:.1f} s\n", record.print->duration_s);
   fmt::print("report: {}\n", (std::filesystem::path(folder) / "report.html").string());
 }
@@ -63,6 +68,45 @@ int rehearse(const rehearsal::RehearsalRequest& asked, const std::string& folder
   return record.go ? kGood : kNo;
 }
 
+void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
+  command.add_option("--place", dialect.place_mm, "X,Y,Z in mm: where the program's origin stands")
+      ->delimiter(',')
+      ->group("Programs of other machines");
+  command.add_option("--extruder-letter", dialect.extruder_letter, "letter of the filament's axis: E or A")
+      ->capture_default_str()
+      ->group("Programs of other machines");
+  command.add_option("--b-sign", dialect.b_sign, "-1: the program counts B the other way round")
+      ->check(CLI::IsMember({-1, 1}))
+      ->capture_default_str()
+      ->group("Programs of other machines");
+  command.add_option("--c-sign", dialect.c_sign, "-1: the program counts C the other way round")
+      ->check(CLI::IsMember({-1, 1}))
+      ->capture_default_str()
+      ->group("Programs of other machines");
+  command
+      .add_option("--coordinates", dialect.coordinates,
+                  "what X Y Z mean beside B C: tip (on the work), machine (the slides), crossing (the slides of a "
+                  "machine whose turning axes cross at the program's origin)")
+      ->group("Programs of other machines");
+}
+
+void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
+  command.add_option("--as-printed", surface.as_printed, "write the printed part: FILE.stl, or FILE.ply with its "
+                                                         "deviation from --intended as colour")
+      ->group("Surface of the print");
+  command.add_option("--intended", surface.intended, "what the print was to become: an STL in mm, or a name "
+                                                     "under models/parts")
+      ->group("Surface of the print");
+  command.add_option("--profile", surface.profile_mm, "x,y,z,x,y,z in mm: measure Ra and Rz along this line")
+      ->delimiter(',')
+      ->expected(6)
+      ->group("Surface of the print");
+  command.add_option("--probe", surface.probe, "x,y,z: the direction in which the line looks for the surface")
+      ->delimiter(',')
+      ->expected(3)
+      ->group("Surface of the print");
+}
+
 }  // namespace
 
 void add_rehearse(CLI::App& app, Action& action) {
@@ -77,6 +121,8 @@ void add_rehearse(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--fixture", request->fixture,
                       "the inserted part: an STL in mm, or a name under models/parts");
+  command->add_option("--material", request->material,
+                      "filament: a name under models/materials or a file; the machine's own unless given");
   command
       ->add_option("--as-built", request->as_built,
                    "the twin's errors: nominal, sampled (left after calibration), manufactured, or a file of "
@@ -87,8 +133,11 @@ void add_rehearse(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--gap-control", request->gap_control,
-                   "off, or start: close the gap before each print move by laser and camera; start where the "
-                   "machine has them");
+                   "off; start: close the gap before each print move by laser and camera; continuous: and follow "
+                   "it along the path; start where the machine has them");
+  add_dialect(*command, request->dialect);
+  add_surface(*command, request->surface);
+  command->add_flag("!--no-pictures", request->pictures, "leave the drawings of machine and part out of the report");
   command->add_option("--out", *folder, "folder of results")->capture_default_str();
   command->callback([=, &action] { action = [=] { return rehearse(*request, *folder); }; });
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "control/path_segment.h"
 #include "core/error.h"
@@ -37,6 +38,13 @@ struct Found {
   Location at;
 };
 
+// Moves one after the other in which one part breaks one limit.
+struct Run {
+  bool begun = false;
+  std::size_t found = 0;
+  std::size_t move = 0;  // the last, counted
+};
+
 double excess(const LimitViolation& v) { return std::abs(v.value - v.limit); }
 
 class Checker {
@@ -56,7 +64,8 @@ class Checker {
   }
 
   ConstraintReport run() {
-    note_pose(X_WT_, 0, {});
+    note_pose(X_WT_, path_.axes(X_WT_, axes_), 0, {});
+    ++moves_;  // home is no line of the program
     for (const Step& step : program_.steps) {
       if (step.kind == StepKind::end) break;
       walk(step);
@@ -72,32 +81,31 @@ class Checker {
   // Every pose of the step, against every limit of a pose; the speed that its feed asks of the axes.
   void walk(const Step& step) {
     if (!toolpath::moves(step)) return;
-    const PathSegment segment = make_segment(step, X_WT_, limits_);
+    const PathSegment segment = path_.segment(step, X_WT_, axes_, limits_);
     if (!segment.moves()) return;
+    ++moves_;
     if (const auto first = path_.self_motion_before(segment, axes_)) axes_ = first->self_motion->to;
+    const bool programmed_feed = step.kind == StepKind::move || step.kind == StepKind::print;
     const int parts = parts_of(segment, step_, kCheckTurn);
     for (int k = 1; k <= parts; ++k) {
       const machine::AxisArray before = axes_;
-      const double fraction = static_cast<double>(k) / parts;
-      const Pose X_WT = segment.pose_at(fraction * segment.length);
+      const double fraction = static_cast<double>(k) / parts, s = fraction * segment.length;
       const Location at{pushed_, fraction};
-      const bool reached = note_pose(X_WT, step.line, at);
-      if (reached) note_leap(before, step.line, at);
-      if (reached && (step.kind == StepKind::move || step.kind == StepKind::print))
-        note_speed(segment, fraction * segment.length, at);
+      if (!note_pose(path_.pose_at(segment, s), path_.axes_at(segment, s, axes_), step.line, at)) continue;
+      if (!segment.rotary) note_leap(before, step.line, at);
+      if (programmed_feed) note_speed(segment, s, at);
     }
     X_WT_ = segment.X_WT_end;
   }
 
-  bool note_pose(const Pose& X_WT, int line, const Location& at) {
+  bool note_pose(const Pose& X_WT, Solve status, int line, const Location& at) {
     const Pose X_BT = X_BW_ * X_WT;
     violations_.clear();
-    const Solve status = mechanism_->inverse(X_BT, axes_, axes_);
     mechanism_->check(X_BT, status == Solve::ok ? std::span<const double>(axes_) : std::span<const double>(),
                       violations_);
-    for (const LimitViolation& violation : violations_) note({violation, line, 0, 0}, at);
+    for (const LimitViolation& violation : violations_) note({violation, line}, at);
     if (status != Solve::ok) {
-      if (violations_.empty()) note({{LimitKind::unreachable, "tool pose", 0, 0, ""}, line, 0, 0}, at);
+      if (violations_.empty()) note({{LimitKind::unreachable, "tool pose", 0, 0, ""}, line}, at);
       plannable_ = false;
       return false;
     }
@@ -113,8 +121,7 @@ class Checker {
   void note_leap(const machine::AxisArray& before, int line, const Location& at) {
     const auto [axis, turn] = path_.largest_turn(before, axes_);
     if (turn <= kLeap) return;
-    note({{LimitKind::singularity, "axis " + mechanism_->axis_name(axis), turn, kLeap, "rad"}, line, 0, 0},
-         at);
+    note({{LimitKind::singularity, "axis " + mechanism_->axis_name(axis), turn, kLeap, "rad"}, line}, at);
     plannable_ = false;
   }
 
@@ -126,24 +133,32 @@ class Checker {
       if (limit >= kFeedLeft * needed) continue;
       const int axis = static_cast<int>(i);
       const bool angle = mechanism_->axis_is_angle(axis);
-      note({{LimitKind::axis_velocity, "axis " + mechanism_->axis_name(axis), needed, limit,
-             angle ? "rad/s" : "m/s"},
-            segment.line,
-            0,
-            limit / needed},
-           at);
+      ConstraintFinding finding{{LimitKind::axis_velocity, "axis " + mechanism_->axis_name(axis), needed,
+                                 limit, angle ? "rad/s" : "m/s"},
+                                segment.line};
+      finding.reduced_feed = limit / needed;
+      note(std::move(finding), at);
     }
   }
 
-  // The worst of a line, kind and part stays.
+  // The worst of a kind and part stays, over lines that follow each other.
   void note(ConstraintFinding finding, const Location& at) {
-    const auto key = std::make_tuple(finding.line, finding.violation.kind, finding.violation.part);
-    const auto [it, fresh] = index_.try_emplace(key, found_.size());
-    if (fresh) found_.push_back({finding, at});
-    Found& known = found_[it->second];
-    if (!fresh && excess(finding.violation) <= excess(known.finding.violation)) return;
+    finding.last_line = finding.line;
+    Run& run = runs_[{finding.violation.kind, finding.violation.part}];
+    const bool goes_on = run.begun && moves_ <= run.move + 1;
+    if (!goes_on) {
+      run.found = found_.size();
+      found_.push_back({finding, at});
+      untimed_.insert(run.found);
+    }
+    run.begun = true;
+    run.move = moves_;
+    Found& known = found_[run.found];
+    known.finding.last_line = finding.line;
+    if (!(excess(finding.violation) > excess(known.finding.violation))) return;
+    finding.line = known.finding.line;
     known = {std::move(finding), at};
-    untimed_.insert(it->second);
+    untimed_.insert(run.found);
   }
 
   void plan(const Step& step) {
@@ -152,8 +167,7 @@ class Checker {
       planner_.push(step);
     } catch (const InputError&) {
       // Only a way past a singular pose gets here: everything else was noted and is not planned.
-      note({{LimitKind::singularity, "the way past a singular pose", 0, 0, ""}, step.line, 0, 0},
-           {pushed_, 0});
+      note({{LimitKind::singularity, "the way past a singular pose", 0, 0, ""}, step.line}, {pushed_, 0});
       plannable_ = false;
       return;
     }
@@ -211,7 +225,8 @@ class Checker {
   std::vector<LimitViolation> violations_;
   std::vector<Found> found_;
   std::set<std::size_t> untimed_;  // of found_, not passed by the plan yet
-  std::map<std::tuple<int, LimitKind, std::string>, std::size_t> index_;
+  std::map<std::pair<LimitKind, std::string>, Run> runs_;
+  std::size_t moves_ = 0;
   ConstraintReport report_;
 };
 

@@ -11,18 +11,20 @@ namespace understudy::control {
 
 struct ConstraintFinding {
   kinematics::LimitViolation violation;
-  int line = 0;             ///< G-code line
-  double time = 0;          ///< [s], planned time
+  int line = 0;             ///< G-code line, the first where several moves on end break the limit
+  int last_line = 0;        ///< the last of these, or `line`
+  double time = 0;          ///< [s], planned time of the worst value
   double reduced_feed = 0;  ///< of the programmed feed that is left, below 0.5; 0: not this kind of finding
 };
 
 struct ConstraintReport {
-  /// One entry per line, kind and part: the worst value met there. Ordered by line.
+  /// One entry for every run of moves in which one part breaks one limit: the worst value met there. Ordered
+  /// by line.
   std::vector<ConstraintFinding> findings;
   double duration = 0;                        ///< [s], planned time of the program
   machine::AxisArray axis_min{}, axis_max{};  ///< range used, SI
   machine::AxisArray velocity_max{};          ///< largest planned axis speed
-  machine::AxisArray acceleration_max{};
+  machine::AxisArray acceleration_max{};      ///< change of speed in a cycle, jumps at corners included
   double condition_worst = 0;
 };
 

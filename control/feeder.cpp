@@ -15,14 +15,25 @@ constexpr double kPatience = 30.0;   // [s], port clock: a call that takes longe
 constexpr double kLead = 0.05;       // [s], a stretch begins this far ahead: time to plan its first batch
 constexpr double kSlice = 0.25;      // [s], between looks at the interrupt flag
 constexpr double kLook = 0.01;       // [s], between looks whether the last setpoint was executed
+constexpr double kReserve = 0.02;    // of the axes' velocity and acceleration, for what a watch adds
+
+MotionLimits limits_for(const machine::MachineDescription& machine, bool watched) {
+  MotionLimits limits = motion_limits(machine);
+  if (!watched) return limits;
+  for (double& v : limits.axis_velocity) v *= 1 - kReserve;
+  for (double& a : limits.axis_acceleration) a *= 1 - kReserve;
+  return limits;
+}
 
 }  // namespace
 
-Feeder::Feeder(const machine::MachineDescription& machine, machine::MachinePort& port, const Pose& X_WT_start)
+Feeder::Feeder(const machine::MachineDescription& machine, machine::MachinePort& port, const Pose& X_WT_start,
+               FeedWatch* watch)
     : machine_(machine),
       mechanism_(machine.make_mechanism()),
-      limits_(motion_limits(machine)),
+      limits_(limits_for(machine, watch != nullptr)),
       port_(port),
+      watch_(watch),
       batch_size_(std::clamp<std::size_t>(port.state().free_slots / 2, 1, kBatch)),
       X_WT_rest_(X_WT_start),
       axes_rest_(port.state().position),
@@ -47,6 +58,7 @@ Status Feeder::come_to_rest() {
   if (!planner_) return Status::ok;
   planner_->finish();
   if (const Status s = pump(); s != Status::ok) return s;
+  if (machine::Setpoint last; watch_ && watch_->flush(last)) batch_.push_back(last);
   if (const Status s = hand_over(); s != Status::ok) return s;
   X_WT_rest_ = planner_->resting_pose();
   axes_rest_ = planner_->resting_axes();
@@ -54,7 +66,7 @@ Status Feeder::come_to_rest() {
   if (const Status s = wait_until(end_time_ + limits_.cycle_time); s != Status::ok) return s;
   // Accepted is not executed: a machine that was held is late, not done.
   const double deadline = end_time_ + kPatience;
-  while (port_.state().executed < port_.state().accepted) {
+  while (port_.state().executed + dropped_ < port_.state().accepted) {
     if (port_.now() > deadline) return Status::deadline_exceeded;
     if (const Status s = wait_until(port_.now() + kLook); s != Status::ok) return s;
   }
@@ -65,10 +77,53 @@ Status Feeder::pump() {
   PlannedPoint point;
   while (planner_->next(point)) {
     point.setpoint.filament += filament_at_start_;
-    batch_.push_back(point.setpoint);
+    if (watch_) {
+      if (const Status s = queue_watched(point); s != Status::ok) return s;
+    } else {
+      batch_.push_back(point.setpoint);
+    }
     if (batch_.size() >= batch_size_)
       if (const Status s = hand_over(); s != Status::ok) return s;
   }
+  return Status::ok;
+}
+
+/// Not before its time comes within the lead: until then it can still be shifted.
+Status Feeder::queue_watched(const PlannedPoint& point) {
+  for (;;) {
+    const double release = point.setpoint.time - watch_->lead();
+    if (port_.now() >= release) break;
+    if (const Status s = hand_over(); s != Status::ok) return s;
+    stop_if_interrupted();
+    const double before = port_.now();
+    if (const Status s = watch_->pass_time(release); s != Status::ok) return s;
+    if (watch_->stop() != GapStop::none) return Status::rejected;
+    if (port_.now() <= before) break;  // as near as the port's clock comes
+  }
+  if (machine::Setpoint ready; watch_->shift(point, ready)) batch_.push_back(ready);
+  return watch_->stop() == GapStop::none ? Status::ok : Status::rejected;
+}
+
+Status Feeder::abandon(double filament) {
+  planner_.reset();
+  batch_.clear();
+  filament_ = filament;
+  if (const Status s = port_.urgent(machine::UrgentCommand::stop); s != Status::ok) return s;
+  const double deadline = port_.now() + kPatience;
+  do {
+    if (port_.now() > deadline) return Status::deadline_exceeded;
+    if (const Status s = wait_until(port_.now() + kLook); s != Status::ok) return s;
+  } while (port_.state().moving);
+  const machine::AxisState rest = port_.state();
+  dropped_ = rest.accepted - rest.executed;
+  axes_rest_ = rest.position;
+  const auto axes = static_cast<std::size_t>(mechanism_->axis_count());
+  Pose X_BT;
+  const Pose X_BT_near = machine_.X_WB.inverse() * X_WT_rest_;
+  if (mechanism_->forward(std::span<const double>(axes_rest_.data(), axes), X_BT_near, X_BT) !=
+      kinematics::Solve::ok)
+    return Status::rejected;
+  X_WT_rest_ = machine_.X_WB * X_BT;
   return Status::ok;
 }
 

@@ -25,6 +25,7 @@ constexpr double kJump = 10e-6;        // [m], beyond noise: the mechanism has m
 constexpr double kStallStep = 15e-6;   // [m], a step whose effect must show through the noise of one look
 constexpr double kStallShare = 0.3;    // of a step: a gap that closes by less has not followed
 constexpr int kStallsMax = 2;
+constexpr double kProbe = 0.2e-3;  // [m], a step while no reading has followed one yet: a ghost stands still
 constexpr double kStepMin = 1e-6;  // [m], about two microsteps: less is no motion
 
 /// Gap minus commanded height, averaged over the last looks: motion along the axis changes both alike, so
@@ -123,6 +124,7 @@ class Approach {
   double height_;                                    ///< [m], commanded tip above S along the tool axis
   double last_look_height_ = 0, last_look_gap_ = 0;  ///< [m]
   int stalls_ = 0;                                   ///< steps in a row that the gap did not follow
+  bool confirmed_ = false;                           ///< the readings are those of the part: they follow
   GapOutcome outcome_;
 };
 
@@ -171,7 +173,9 @@ GapStop Approach::look(GapEstimate& estimate, std::optional<Expectation>& expect
 /// A picture that stands still while the tip moves would lead it into the part.
 void Approach::count_stall(double gap) {
   const double moved = last_look_height_ - height_;
-  if (moved >= kStallStep) stalls_ = last_look_gap_ - gap < kStallShare * moved ? stalls_ + 1 : 0;
+  const bool followed = last_look_gap_ - gap >= kStallShare * moved;
+  if (moved >= kStallStep) stalls_ = followed ? 0 : stalls_ + 1;
+  if (moved >= kProbe / 2 && followed) confirmed_ = true;
   last_look_height_ = height_;
   last_look_gap_ = gap;
 }
@@ -208,7 +212,10 @@ GapStop Approach::judge(const GapEstimate& estimate) {
 /// averaged, and no step uses up more than half of the way to the accepted band's end. Never upwards.
 double Approach::next_step(const GapEstimate& estimate) const {
   const double gap = estimate.gap(height_), left = gap - aim_;
-  if (left > options_.slow_zone) return options_.step_fraction * left;
+  if (left > options_.slow_zone) {
+    const double step = options_.step_fraction * left;
+    return confirmed_ ? step : std::min(step, kProbe);
+  }
   const double share = left / std::max(1, estimate.missing());
   const double safe = gap - kTrusted * estimate.sigma() - limits_.accepted_min;
   return std::max(0.0, std::min({share, safe, (gap - limits_.accepted_min) / 2}));
@@ -217,6 +224,7 @@ double Approach::next_step(const GapEstimate& estimate) const {
 GapStop Approach::try_again_from_above() {
   const std::string first = outcome_.why;
   stalls_ = 0;
+  confirmed_ = false;
   const double height = std::max(standoff_, height_ + options_.retreat);
   if (const GapStop s = move_to(height); s != GapStop::none) return s;
   const GapStop s = descend();

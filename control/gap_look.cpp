@@ -45,26 +45,37 @@ GapEye::GapEye(const machine::MachineDescription& machine, const LocalSurface& s
 GapStop GapEye::take(const std::optional<Expectation>& expected, GapLook& look) {
   const Camera& camera = machine_.microscope.camera;
   const Region sensor{0, 0, camera.width, camera.height};
-  const int margin = static_cast<int>(std::ceil(kMarginRadii * dot_options_.expected_radius_px));
-  const Region region =
-      expected ? region_for_gap(machine_, surface_, expected->gap, expected->bound, expected->bound, margin)
-               : sensor;
-  GapStop stop = expose(region, look);
+  const Region region = expected ? region_around(*expected) : sensor;
+  GapStop stop = expose(region, kPatience, look);
   if (stop != GapStop::none) return stop;
   const bool missed = look.dot.status == DotStatus::no_dot || look.dot.status == DotStatus::clipped_by_border;
   // A dot outside the region shows on the whole sensor, and its reading then says what went wrong.
   if (missed && region != sensor)
-    if (stop = expose(sensor, look); stop != GapStop::none) return stop;
+    if (stop = expose(sensor, kPatience, look); stop != GapStop::none) return stop;
   if (stop = judge_dot(look); stop != GapStop::none) return stop;
   if (stop = judge_reading(expected, look); stop != GapStop::none) return stop;
   look.used = true;
   return GapStop::none;
 }
 
-GapStop GapEye::expose(const Region& region, GapLook& look) {
+Region GapEye::region_around(const Expectation& expected) const {
+  const int margin = static_cast<int>(std::ceil(kMarginRadii * dot_options_.expected_radius_px));
+  return region_for_gap(machine_, surface_, expected.gap, expected.bound, expected.bound, margin);
+}
+
+GapStop GapEye::expose_around(const Expectation& expected, double patience, GapLook& look) {
+  return expose(region_around(expected), patience, look);
+}
+
+GapStop GapEye::read(GapLook& look) const {
+  if (const GapStop stop = judge_dot(look); stop != GapStop::none) return stop;
+  return judge_reading(std::nullopt, look);
+}
+
+GapStop GapEye::expose(const Region& region, double patience, GapLook& look) {
   look.frame = {};
   const double asked_at = port_.now();
-  const Status status = port_.capture(region, look.frame, asked_at + kPatience);
+  const Status status = port_.capture(region, look.frame, asked_at + patience);
   if (status != Status::ok) {
     look.why = fmt::format("no picture from the microscope: {}", to_string(status));
     if (status == Status::faulted) look.why += fmt::format(" ({})", to_string(port_.state().fault));

@@ -23,8 +23,15 @@ class GapEye {
   /// can.
   GapStop take(const std::optional<Expectation>& expected, GapLook& look);
 
+  /// One exposure of where the dot of such gaps is, without a second try on the whole sensor; it must be
+  /// there within `patience` [s]. The dot is measured, not read.
+  GapStop expose_around(const Expectation& expected, double patience, GapLook& look);
+  /// Reads the gap off the dot that was measured, on the surface as it is now.
+  GapStop read(GapLook& look) const;
+
  private:
-  GapStop expose(const Region& region, GapLook& look);
+  GapStop expose(const Region& region, double patience, GapLook& look);
+  Region region_around(const Expectation& expected) const;
   GapStop judge_dot(GapLook& look) const;
   GapStop judge_reading(const std::optional<Expectation>& expected, GapLook& look) const;
 

@@ -27,7 +27,13 @@ ChannelLimits channel_limits(const MotionLimits& limits, int axis_count) {
   ChannelLimits channels;
   channels.count = axis_count + 1;
   std::copy_n(limits.axis_acceleration.begin(), axis_count, channels.acceleration.begin());
-  channels.acceleration[static_cast<std::size_t>(axis_count)] = limits.tip_acceleration;
+  std::copy_n(limits.velocity_jump.begin(), axis_count, channels.velocity_jump.begin());
+  const auto tip = static_cast<std::size_t>(axis_count);
+  channels.acceleration[tip] = limits.tip_acceleration;
+  // What turns the tip's way at once is the axes: where they may, it may.
+  if (std::any_of(channels.velocity_jump.begin(), channels.velocity_jump.end(),
+                  [](double v) { return v > 0; }))
+    channels.velocity_jump[tip] = std::numeric_limits<double>::infinity();
   channels.cycle_time = limits.cycle_time;
   return channels;
 }
@@ -39,6 +45,7 @@ MotionLimits motion_limits(const machine::MachineDescription& machine) {
   for (std::size_t i = 0; i < limits.axis_velocity.size(); ++i) {
     limits.axis_velocity[i] = machine.drives[i].velocity_max;
     limits.axis_acceleration[i] = machine.drives[i].acceleration_max;
+    limits.velocity_jump[i] = machine.drives[i].velocity_jump;
   }
   limits.tip_acceleration = machine.acceleration;
   limits.travel_velocity = machine.travel_velocity;
@@ -106,6 +113,8 @@ MotionPlanner::State::State(const kinematics::Mechanism& mechanism, const Pose& 
   for (std::size_t i = 0; i < static_cast<std::size_t>(kinematics.axis_count()); ++i) {
     require_positive("axis velocity", limits.axis_velocity[i]);
     require_positive("axis acceleration", limits.axis_acceleration[i]);
+    if (!(limits.velocity_jump[i] >= 0) || !std::isfinite(limits.velocity_jump[i]))
+      throw InputError("velocity jump is " + std::to_string(limits.velocity_jump[i]) + ", must be 0 or more");
   }
   axes_rest = axes_start;
   if (const Solve status = kinematics.axes(X_WT_start, axes_rest); status != Solve::ok)
@@ -118,7 +127,7 @@ void MotionPlanner::State::push(const toolpath::Step& step) {
     ++steps_pushed;
     return;
   }
-  PathSegment segment = make_segment(step, X_WT_rest, limits);
+  PathSegment segment = kinematics.segment(step, X_WT_rest, axes_end, limits);
   segment.step = steps_pushed;
   AxisArray axes = axes_end;
   std::optional<PathSegment> first = kinematics.self_motion_before(segment, axes);
@@ -227,7 +236,7 @@ void MotionPlanner::State::point_on_front(double elapsed, PlannedPoint& point) {
   point.fraction = segment.self_motion ? 0
                    : segment.moves()   ? std::min(1.0, s / segment.length)
                                        : std::min(1.0, elapsed / segment.rest);
-  point.X_WT = segment.moves() && !segment.self_motion ? segment.pose_at(s) : segment.X_WT_end;
+  point.X_WT = kinematics.pose_at(segment, s);
   point.step = segment.step;
   point.setpoint.line = segment.line;
   point.setpoint.filament = segment.filament_at(point.fraction);
@@ -256,7 +265,7 @@ bool MotionPlanner::State::next(PlannedPoint& point) {
     point.fraction = 1;
     point.setpoint.line = segment.line;
     point.setpoint.filament = filament_rest;
-    kinematics.axes(point.X_WT, axes_now);
+    kinematics.axes_at(segment, segment.length, axes_now);
     point.setpoint.position = axes_now;
     piece_time = time;
     resting = true;

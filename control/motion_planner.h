@@ -1,6 +1,7 @@
 // Lookahead motion planner: poses and feeds in, setpoints at the port's cycle out.
 //
-// The tip runs on straight lines with the orientation on the shortest arc between programmed poses. Speed
+// The tip runs on straight lines over the work, with the orientation on the shortest arc between programmed
+// poses, or, where the program names the turning axes, with these running linearly (toolpath::Step). Speed
 // along the path obeys the programmed feed, the tip's acceleration, the tool's angular speed and, through
 // the mechanism's Jacobian, the velocity and acceleration limit of every axis, also across the junctions of
 // the polyline. Nothing else shapes it: no corner is rounded, every programmed pose is reached exactly.
@@ -19,6 +20,7 @@ namespace understudy::control {
 struct MotionLimits {
   machine::AxisArray axis_velocity{};      ///< [m/s or rad/s]
   machine::AxisArray axis_acceleration{};  ///< [m/s^2 or rad/s^2]
+  machine::AxisArray velocity_jump{};      ///< [m/s or rad/s], at once at a corner, besides
   double tip_acceleration = 0;             ///< [m/s^2]
   double travel_velocity = 0;              ///< [m/s], G0
   double orientation_velocity = 0;         ///< [rad/s]
@@ -45,11 +47,16 @@ enum class PoseCheck {
 /// always stop at the window's end.
 ///
 /// Feeds (G94) are speeds of the tip; where the tool turns by more than a radian in 5 mm of tip travel, the
-/// turn is what is timed, at most at `orientation_velocity`. G93: the step's path at constant speed takes
+/// turn is what is timed, at most at `orientation_velocity` (of the tool's axis, where B and C are named:
+/// what spins the tool is limited by its drive alone). G93: the step's path at constant speed takes
 /// `duration`; speeding up and slowing down come on top. G0 and G28 run at `travel_velocity`. A step that
 /// feeds filament without moving takes |filament| / feed. Steps that neither move nor dwell are ignored.
 /// Acceleration is switched, not ramped: jerk is not limited. At a corner the velocity of each axis changes
-/// within one cycle by at most half of acceleration * cycle_time; the other half is for speeding up and down.
+/// within one cycle by at most half of acceleration * cycle_time and `velocity_jump`; the other half is for
+/// speeding up and down. So within any cycle an axis changes its velocity by at most acceleration *
+/// cycle_time
+/// + velocity_jump, however dense the corners; starts and stops take no jump. The tip's own acceleration does
+/// not hold at corners where there are such jumps.
 /// Where a step leaves a pose that lets an axis turn freely (a table under an upright tool), the axis turns
 /// to where the step needs it first, with the tool at rest on the part.
 class MotionPlanner {

@@ -77,8 +77,7 @@ ChannelArray corner_jump(const PathSegment& before, const PathSegment& after, in
   ChannelArray jump{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(axis_count); ++i)
     jump[i] = std::abs(after.slope_begin[i] - before.slope_end[i]);
-  jump[static_cast<std::size_t>(axis_count)] =
-      (after.twist_W().head<3>() - before.twist_W().head<3>()).norm();
+  jump[static_cast<std::size_t>(axis_count)] = (after.tip_slope() - before.tip_slope()).norm();
   return jump;
 }
 

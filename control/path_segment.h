@@ -1,5 +1,5 @@
 // One programmed step as a curve in a path parameter s: the tip on a straight line, the orientation on the
-// shortest arc, and what the axes do along it.
+// shortest arc or as the rotary axes turn it, and what the axes do along it.
 #pragma once
 
 #include <cstdint>
@@ -38,17 +38,28 @@ struct PathSegment {
     machine::AxisArray from{}, to{};
   };
   std::optional<SelfMotion> self_motion;
+  /// The program names the turning axes: they run linearly in s, and the pose is what they make of it. For a
+  /// segment of no length, how they stand.
+  struct Rotary {
+    toolpath::RotaryTurns from, to;
+  };
+  std::optional<Rotary> rotary;
   int fineness = 1;        ///< by which it is looked at more closely: it passes a singular pose
   double entry_speed = 0;  ///< [m/s] of s, at most, where it begins; 0: at rest
 
   bool moves() const { return length > 0; }
-  Pose pose_at(double s) const;
-  Twist twist_W() const;  ///< per unit of s: (tip, angular), constant along the segment
+  Vec3 tip_at(double s) const;
+  toolpath::RotaryTurns turns_at(double s) const;     ///< of one with `rotary`
+  Vec3 tip_slope() const { return travel / length; }  ///< per unit of s, constant along the segment
+  Twist twist_W() const;  ///< the same with the angular part, of an orientation on the shortest arc
   double filament_at(double fraction) const;
 };
 
-/// Throws InputError naming the line: a pose that is not finite or not rigid, no feed, a negative duration.
-PathSegment make_segment(const toolpath::Step& step, const Pose& X_WT_begin, const MotionLimits& limits);
+/// A step from X_WT_begin on. Throws InputError naming the line: a pose that is not finite or not rigid, no
+/// feed, a negative duration.
+PathSegment make_segment(const toolpath::Step& step, const Pose& X_WT_begin,
+                         const std::optional<PathSegment::Rotary>& rotary, const MotionLimits& limits);
+[[noreturn]] void refuse(int line, const std::string& message);
 
 /// The mechanism along a segment.
 class PathKinematics {
@@ -58,7 +69,15 @@ class PathKinematics {
   int axis_count() const { return axis_count_; }
   int channels() const { return axis_count_ + 1; }
 
+  /// A step from X_WT_begin on, where the axes stand at `axes_begin`. Throws InputError as make_segment does,
+  /// and for a pose that is not the one of the step's B and C.
+  PathSegment segment(const toolpath::Step& step, const Pose& X_WT_begin,
+                      const machine::AxisArray& axes_begin, const MotionLimits& limits) const;
+
   kinematics::Solve axes(const Pose& X_WT, machine::AxisArray& position) const;
+  Pose pose_at(const PathSegment& segment, double s) const;
+  /// Positions at s (`position` holds a near one on entry: the branch).
+  kinematics::Solve axes_at(const PathSegment& segment, double s, machine::AxisArray& position) const;
   /// Positions at s (`position` holds a near one on entry: the branch) and d/ds of every channel.
   kinematics::Solve evaluate(const PathSegment& segment, double s, machine::AxisArray& position,
                              ChannelArray& slope) const;
@@ -80,12 +99,17 @@ class PathKinematics {
     int leaping_axis = 0;
   };
   Walk walk(const PathSegment& segment, PoseCheck check, machine::AxisArray& position) const;
+  kinematics::TipAndTurns turned_tip(const PathSegment& segment, double s) const;
+  void require_turns(const toolpath::Step& step) const;
+  kinematics::Solve evaluate_rotary(const PathSegment& segment, double s, machine::AxisArray& position,
+                                    ChannelArray& slope) const;
   kinematics::Solve evaluate_self_motion(const PathSegment& segment, double s, machine::AxisArray& position,
                                          ChannelArray& slope) const;
 
   const kinematics::Mechanism& mechanism_;
-  Pose X_BW_;
+  Pose X_WB_, X_BW_;
   int axis_count_;
+  std::optional<kinematics::RotaryAxes> rotary_axes_;
 };
 
 /// An axis that turns farther between two such poses goes through a singular pose, not along a path.

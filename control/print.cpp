@@ -70,7 +70,8 @@ class PrintLoop {
         port_(port),
         options_(options),
         observer_(observer),
-        feeder_(machine, port, standing_pose(machine, port)),
+        watch_(make_watch()),
+        feeder_(machine, port, standing_pose(machine, port), watch_.get()),
         started_at_(port.now()) {}
 
   PrintResult run() {
@@ -99,6 +100,21 @@ class PrintLoop {
   }
 
  private:
+  std::unique_ptr<GapWatch> make_watch() {
+    if (options_.gap_control != GapControl::continuous) return nullptr;
+    GapFollowerOptions following = options_.following.value_or(gap_follower_options(machine_));
+    if (!options_.following && options_.gap.aim > 0) following.aim = options_.gap.aim;
+    return std::make_unique<GapWatch>(machine_, options_.part, options_.gap, following, port_,
+                                      [this](double time, int line, const Vec3& offset_W) {
+                                        tell({time, line, offset_W, true});
+                                      });
+  }
+
+  void tell(const OffsetChange& change) {
+    result_.offsets.push_back(change);
+    if (observer_) observer_->offset_changed(change);
+  }
+
   /// False: the print ends here and result_ says why.
   bool perform(std::size_t index) {
     const Step& step = program_.steps[index];
@@ -115,7 +131,7 @@ class PrintLoop {
       case StepKind::end:
         return true;
       case StepKind::move:
-        if (options_.gap_control == GapControl::start && is_approach(program_, index))
+        if (options_.gap_control != GapControl::off && is_approach(program_, index))
           return approach(step, index);
         return move(step);
       case StepKind::travel:
@@ -130,6 +146,7 @@ class PrintLoop {
   bool move(const Step& step) {
     Step shifted = step;
     shifted.X_WT.translation() += offset_;
+    if (watch_ && !watch_->active() && step.kind == StepKind::print) watch_->start_unknown(offset_);
     const Vec3 from = feeder_.resting_pose().translation();
     if (const Status s = feeder_.push(shifted); s != Status::ok) return fail(s, step.line);
     count(step, (shifted.X_WT.translation() - from).norm());
@@ -145,6 +162,7 @@ class PrintLoop {
 
   bool approach(const Step& step, std::size_t index) {
     if (const Status s = feeder_.come_to_rest(); s != Status::ok) return fail(s, step.line);
+    take_over_correction();
     const Pose X_WT_before = pose_before(program_, index, step.X_WT);
     const double standoff = (step.X_WT.translation() - X_WT_before.translation()).norm();
     const LocalSurface surface =
@@ -159,7 +177,8 @@ class PrintLoop {
     const bool reached = record.outcome.stop == GapStop::none;
     if (reached) {
       offset_ += record.outcome.offset_W;
-      result_.offsets.push_back({port_.now(), step.line, offset_});
+      tell({port_.now(), step.line, offset_});
+      if (watch_) watch_->start(offset_, record.outcome.gap, record.outcome.sigma);
       count(step, (feeder_.resting_pose().translation() - from).norm());
     } else {
       make_safe();
@@ -172,6 +191,14 @@ class PrintLoop {
     return reached;
   }
 
+  /// What was corrected along the path becomes part of the offset that the poses carry.
+  void take_over_correction() {
+    if (!watch_) return;
+    const Vec3 correction_W = watch_->release() * tool_axis(feeder_.resting_pose());
+    offset_ += correction_W;
+    feeder_.shift_rest(correction_W);
+  }
+
   void count(const Step& step, double way) {
     if (!toolpath::moves(step)) return;
     ++result_.moves;
@@ -180,6 +207,8 @@ class PrintLoop {
   }
 
   bool fail(Status status, int line) {
+    if (watch_ && watch_->stop() != GapStop::none && port_.state().fault == machine::Fault::none)
+      return stop_following();
     result_.status = status;
     result_.fault = port_.state().fault;
     result_.stop_line = line;
@@ -188,6 +217,40 @@ class PrintLoop {
                               : fmt::format("the machine did not take the motion: {}", to_string(status));
     make_safe();
     return false;
+  }
+
+  /// The gap is not known any more, or too small: up along the tool axis from where the tool comes to rest.
+  bool stop_following() {
+    GapFollowing& following = watch_->following();
+    const double filament = watch_->filament_at(port_.now());
+    static_cast<void>(watch_->release());
+    const double retreat = options_.gap.retreat;
+    const std::string failed = lift(retreat, filament);
+    following.why += failed.empty() ? fmt::format("; retreated by {:.3f} mm", to_mm(retreat))
+                                    : fmt::format("; could not retreat: {}", failed);
+    result_.stop_line = following.line;
+    result_.stop_reason = fmt::format("{}: {}", to_string(following.stop), following.why);
+    make_safe();
+    result_.fault = port_.state().fault;
+    if (result_.fault != machine::Fault::none) result_.status = Status::faulted;
+    return false;
+  }
+
+  /// Says why not; empty: done.
+  std::string lift(double height, double filament) {
+    try {
+      if (const Status s = feeder_.abandon(filament); s != Status::ok) return to_string(s);
+      Step up;
+      up.kind = StepKind::travel;
+      up.line = last_line_;
+      up.X_WT = feeder_.resting_pose();
+      up.X_WT.translation() += height * tool_axis(up.X_WT);
+      if (const Status s = feeder_.push(up); s != Status::ok) return to_string(s);
+      const Status s = feeder_.come_to_rest();
+      return s == Status::ok ? "" : to_string(s);
+    } catch (const InputError& error) {
+      return error.what();
+    }
   }
 
   /// Nothing moves on and nothing stays hot once the print has ended early. A port that is lost cannot obey.
@@ -199,6 +262,7 @@ class PrintLoop {
   PrintResult finish(bool completed) {
     result_.completed = completed;
     result_.duration = port_.now() - started_at_;
+    if (watch_) result_.following = std::move(watch_->following());
     return std::move(result_);
   }
 
@@ -207,6 +271,7 @@ class PrintLoop {
   machine::MachinePort& port_;
   const PrintOptions& options_;
   PrintObserver* observer_;
+  std::unique_ptr<GapWatch> watch_;
   Feeder feeder_;
   const double started_at_;
   machine::Outputs outputs_;

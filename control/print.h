@@ -6,16 +6,22 @@
 #include <vector>
 
 #include "control/gap_controller.h"
+#include "control/gap_watch.h"
 #include "control/motion_planner.h"
 #include "toolpath/program.h"
 
 namespace understudy::control {
 
-enum class GapControl { off, start };
+enum class GapControl {
+  off,
+  start,       ///< closed before each bead, the offset carried along it
+  continuous,  ///< and measured and corrected along it (docs/gap-control.md)
+};
 
 struct PrintOptions {
   GapControl gap_control = GapControl::start;
   GapControllerOptions gap;
+  std::optional<GapFollowerOptions> following;  ///< nothing: gap_follower_options() of the machine
   /// The nominal part in the program's frame, for the dot's geometry; without it the surface is taken as
   /// flat and perpendicular to the tool at S.
   const geometry::Mesh* part = nullptr;
@@ -26,6 +32,7 @@ struct OffsetChange {
   double time = 0;
   int line = 0;
   Vec3 offset_W{0, 0, 0};
+  bool gradual = false;  ///< the shift goes straight from the one before, whose time it had, to this
 };
 
 struct GapApproach {
@@ -46,6 +53,7 @@ struct PrintResult {
   double travel = 0;    ///< [m] of tip path without extrusion
   std::vector<OffsetChange> offsets;
   std::vector<GapApproach> approaches;
+  std::optional<GapFollowing> following;  ///< with GapControl::continuous
 };
 
 class PrintObserver {
@@ -53,11 +61,15 @@ class PrintObserver {
   virtual ~PrintObserver() = default;
   /// Called as steps are handed to the port; `done` of `total` steps.
   virtual void progress(std::size_t done, std::size_t total, double port_time) = 0;
+  /// The gap controller shifts the program: called before anything moves by it. A gradual change is told
+  /// while the machine still executes what lies before its time.
+  virtual void offset_changed(const OffsetChange& change) { static_cast<void>(change); }
 };
 
 /// An approach is a step of kind `move` of at most 10 mm straight against the tool axis (within 1 degree)
 /// that ends where the next `print` step begins. With GapControl::start each is closed by close_gap and the
-/// offset carried to all later steps until the next approach (Song 2015, eq 5: points are relative).
+/// offset carried to all later steps until the next approach (Song 2015, eq 5: points are relative). With
+/// GapControl::continuous the gap is then measured while print steps run, and the offset follows it.
 /// A GapStop retreats, ends the print and is reported; nothing is printed without a known gap.
 PrintResult print(const toolpath::Program& program, const machine::MachineDescription& machine,
                   machine::MachinePort& port, const PrintOptions& options, PrintObserver* observer = nullptr);

@@ -124,7 +124,9 @@ CornerWindow corner_window(const std::deque<Piece>& pieces, std::size_t k, const
 
 void take_share(Piece& piece, const CornerWindow& window, const ChannelLimits& limits) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.count); ++i) {
-    const double share = window.speed * window.jump[i] / (limits.acceleration[i] * limits.cycle_time);
+    const double jump = window.speed * window.jump[i];
+    if (jump <= limits.velocity_jump[i]) continue;
+    const double share = (jump - limits.velocity_jump[i]) / (limits.acceleration[i] * limits.cycle_time);
     piece.used[i] = std::max(piece.used[i], std::min(share, kCornerShare));
   }
 }
@@ -140,7 +142,9 @@ double corner_speed(const ChannelArray& jump, const ChannelLimits& limits) {
   double speed = kInfinity;
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.count); ++i)
     if (jump[i] > 0)
-      speed = std::min(speed, kCornerShare * limits.acceleration[i] * limits.cycle_time / jump[i]);
+      speed = std::min(
+          speed,
+          (kCornerShare * limits.acceleration[i] * limits.cycle_time + limits.velocity_jump[i]) / jump[i]);
   return speed;
 }
 

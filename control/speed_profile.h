@@ -35,12 +35,13 @@ struct Piece {
 
 struct ChannelLimits {
   int count = 0;
-  ChannelArray acceleration{};  ///< [m/s^2 or rad/s^2]
-  double cycle_time = 0;        ///< [s]
+  ChannelArray acceleration{};   ///< [m/s^2 or rad/s^2]
+  ChannelArray velocity_jump{};  ///< [m/s or rad/s], at corners, besides the share of acceleration
+  double cycle_time = 0;         ///< [s]
 };
 
 /// Half of each acceleration limit is for the jump of velocity at a corner, the rest for what else happens in
-/// that cycle. The corners passed within one cycle share it.
+/// that cycle. The corners passed within one cycle share it, and `velocity_jump`.
 constexpr double kCornerShare = 0.5;
 
 /// Largest speed at which a lone corner stays within its share.

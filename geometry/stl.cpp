@@ -81,6 +81,7 @@ class Welder {
     return vertex;
   }
   std::vector<Vec3>& vertices() { return vertices_; }
+  double tolerance() const { return tolerance_; }
 
  private:
   using Cell = std::array<std::int64_t, 3>;
@@ -109,6 +110,19 @@ class Welder {
   std::unordered_multimap<Cell, int, Hash> cells_;
 };
 
+// A triangle lower than the corners' rounding has no normal, and no side that a print could lie on.
+void check_area(const Soup& soup, std::size_t first, double tolerance, const std::string& file) {
+  const Vec3 &a = soup.corners[first], &b = soup.corners[first + 1], &c = soup.corners[first + 2];
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  const double height = longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
+  if (height > tolerance) return;
+  throw InputError(
+      Place{file},
+      fmt::format("triangle {} at ({:.3f}, {:.3f}, {:.3f}) mm has no area: it is {:.3g} mm high, not more "
+                  "than the corners' rounding of {:.3g} mm",
+                  first / 3 + 1, to_mm(a.x()), to_mm(a.y()), to_mm(a.z()), to_mm(height), to_mm(tolerance)));
+}
+
 std::shared_ptr<const Mesh> weld(const Soup& soup, const std::string& file) {
   double largest = 0;
   for (const Vec3& p : soup.corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
@@ -117,9 +131,9 @@ std::shared_ptr<const Mesh> weld(const Soup& soup, const std::string& file) {
   for (std::size_t i = 0; i + 2 < soup.corners.size(); i += 3) {
     const std::array<int, 3> t = {welder.weld(soup.corners[i]), welder.weld(soup.corners[i + 1]),
                                   welder.weld(soup.corners[i + 2])};
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+    check_area(soup, i, welder.tolerance(), file);
+    triangles.push_back(t);
   }
-  if (triangles.empty()) throw InputError(Place{file}, "no triangle with an area");
   return std::make_shared<Mesh>(std::move(welder.vertices()), std::move(triangles));
 }
 

@@ -65,6 +65,8 @@ struct ChainDescription {
   /// radian weighs as much as this.
   double length_scale = 0.1;
   double condition_max = kEndless;  ///< of axis_rates with that scale
+  /// Of a calibrated machine, whose `chain` is the measured one: the chain as drawn. Else without axes.
+  Chain design = {};
 };
 
 /// The mechanism of its kind; a numeric inverse where the kind has none of its own.

@@ -1,5 +1,7 @@
 #include "kinematics/chain_kind.h"
 
+#include "kinematics/calibrated_chain.h"
+
 namespace understudy::kinematics {
 
 const std::vector<ChainKind>& chain_kinds() {
@@ -15,6 +17,7 @@ const ChainKind* find_chain_kind(const std::string& name) {
 }
 
 std::unique_ptr<Mechanism> make_chain_mechanism(const ChainDescription& description) {
+  if (!description.design.axes.empty()) return make_calibrated_chain(description);
   const ChainKind* kind = find_chain_kind(description.kind);
   if (kind == nullptr || kind->make == nullptr) kind = find_chain_kind("chain");
   return kind->make(description);

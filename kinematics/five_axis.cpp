@@ -65,7 +65,30 @@ class FiveAxis final : public ChainMechanism {
     return Solve::ok;
   }
 
+  std::optional<RotaryAxes> rotary_axes() const override { return RotaryAxes{kB, kC}; }
+
+  Solve pose_at_turns(const TipAndTurns& at, Pose& X_ST) const override {
+    if (!finite(at)) return Solve::bad_input;
+    X_ST = five_axis_tip_pose(at.p_BT, at.b, at.c);
+    return Solve::ok;
+  }
+
+  Solve axes_at_turns(const TipAndTurns& at, const TipAndTurns& rate, std::span<double> axes,
+                      std::span<double> axis_rates) const override {
+    if (axes.size() < kFiveAxes || axis_rates.size() < kFiveAxes || !finite(at) || !finite(rate))
+      return Solve::bad_input;
+    const FiveAxes q = five_axis_at_tip(geometry_, at.p_BT, at.b, at.c);
+    const FiveAxes q_rate = five_axis_rates_at_tip(geometry_, at.p_BT, at.b, at.c, rate.p_BT, rate.b, rate.c);
+    std::copy(q.begin(), q.end(), axes.begin());
+    std::copy(q_rate.begin(), q_rate.end(), axis_rates.begin());
+    return Solve::ok;
+  }
+
  private:
+  static bool finite(const TipAndTurns& at) {
+    return at.p_BT.allFinite() && std::isfinite(at.b) && std::isfinite(at.c);
+  }
+
   struct Choice {
     FiveAxes axes{};
     int broken = 0;
@@ -134,6 +157,17 @@ FiveAxes five_axis_at_tip(const FiveAxisGeometry& geometry, const Vec3& p_ST, do
   const Vec3 turned = c_axis + turn_z(-c) * (p_ST - c_axis);
   const Vec3 slides = b_axis + turn_y(-b) * (turned - b_axis);
   return {slides.x(), slides.y(), slides.z(), b, c};
+}
+
+FiveAxes five_axis_rates_at_tip(const FiveAxisGeometry& geometry, const Vec3& p_ST, double b, double c,
+                                const Vec3& v_ST, double b_rate, double c_rate) {
+  const Vec3 b_axis = on_b_axis(geometry), c_axis = on_c_axis(geometry);
+  const Mat3 R_b = turn_y(-b), R_c = turn_z(-c);
+  const Vec3 from_c = R_c * (p_ST - c_axis);
+  const Vec3 turned_rate = R_c * v_ST - c_rate * Vec3::UnitZ().cross(from_c);
+  const Vec3 from_b = R_b * (c_axis + from_c - b_axis);
+  const Vec3 rate = R_b * turned_rate - b_rate * Vec3::UnitY().cross(from_b);
+  return {rate.x(), rate.y(), rate.z(), b_rate, c_rate};
 }
 
 ChainKind five_axis_kind() {

@@ -109,4 +109,11 @@ std::string to_string(const LimitViolation& violation) {
   return is_at;
 }
 
+Solve Mechanism::pose_at_turns(const TipAndTurns& /*at*/, Pose& /*X_BT*/) const { return Solve::bad_input; }
+
+Solve Mechanism::axes_at_turns(const TipAndTurns& /*at*/, const TipAndTurns& /*rate*/,
+                               std::span<double> /*axes*/, std::span<double> /*axis_rates*/) const {
+  return Solve::bad_input;
+}
+
 }  // namespace understudy::kinematics

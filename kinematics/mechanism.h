@@ -4,6 +4,7 @@
 // No function here throws, allocates (but for `check`) or returns NaN: a Solve says why there is no answer.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +49,17 @@ struct AxisRange {
   double lower = 0, upper = 0;  ///< [m] or [rad]
 };
 
+/// Which axes a program may turn by words of its own.
+struct RotaryAxes {
+  std::size_t b = 0, c = 0;
+};
+
+/// The tip and those axes, or the rates of both.
+struct TipAndTurns {
+  Vec3 p_BT{0, 0, 0};   ///< [m]
+  double b = 0, c = 0;  ///< [rad], of any number of turns
+};
+
 class Mechanism {
  public:
   virtual ~Mechanism() = default;
@@ -78,6 +90,14 @@ class Mechanism {
   /// inverse() gave them, or empty where it has no solution.
   virtual void check(const Pose& X_BT, std::span<const double> axes,
                      std::vector<LimitViolation>& violations) const = 0;
+
+  /// Of a machine with rotary words B and C; the two functions below are for these, `bad_input` elsewhere.
+  virtual std::optional<RotaryAxes> rotary_axes() const { return std::nullopt; }
+  virtual Solve pose_at_turns(const TipAndTurns& at, Pose& X_BT) const;
+  /// The axes that hold the tip there with B and C as they are, branch and turns included, singular or not,
+  /// and what they do while tip and turns move at `rate`.
+  virtual Solve axes_at_turns(const TipAndTurns& at, const TipAndTurns& rate, std::span<double> axes,
+                              std::span<double> axis_rates) const;
 };
 
 }  // namespace understudy::kinematics

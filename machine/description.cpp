@@ -6,6 +6,7 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "kinematics/chain_kind.h"
+#include "machine/calibration_section.h"
 #include "machine/chain_section.h"
 #include "machine/hexapod_section.h"
 #include "machine/model_files.h"
@@ -86,7 +87,9 @@ void read_machine(YamlMap& root, MachineDescription& m) {
     read_chain(root, m);
   else
     read_hexapod(root, m);
+  if (root.has("calibration")) read_calibration(root, m);
   root.section("tool", [&](YamlMap& map) { read_tool(map, m.tool); });
+  if (root.has("process")) root.section("process", [&](YamlMap& map) { read_process(map, m.process); });
   m.has_microscope = !chain || root.has("laser") || root.has("microscope");
   if (m.has_microscope) {
     root.section("laser", [&](YamlMap& map) { read_laser(map, m.laser); });
@@ -97,7 +100,7 @@ void read_machine(YamlMap& root, MachineDescription& m) {
   root.section("table", [&](YamlMap& map) { read_table(map, m.table); });
   root.section("motion", [&](YamlMap& map) { read_motion(map, m); });
   if (!root.complete()) return;
-  if (!chain) settle_home(root.place("geometry"), m);
+  if (!chain) settle_home(root.place(m.calibration ? "calibration" : "geometry"), m);
   if (m.has_microscope) check_optics(root, m);
 }
 

@@ -23,6 +23,9 @@ struct Drive {
   int steps_per_turn = 0;       ///< full steps
   int microsteps = 0;           ///< per full step
   double velocity_max = 0;      ///< [unit/s]
+  /// Change of speed that the motor takes at once at a corner without losing steps [unit/s]; 0: none beyond
+  /// what its acceleration allows within a cycle.
+  double velocity_jump = 0;
   double acceleration_max = 0;  ///< [unit/s^2]
   /// Rotor and load against the commanded field, as seen on the axis [N/m] or [N m/rad]; 0: the motor is
   /// where it is commanded. With it, the rotor swings at `resonance` when the axis carries nothing else.
@@ -59,7 +62,8 @@ enum class ScrewRotation {
 
 /// A hanging platform on six screw struts (Song 2015).
 struct HexapodModel {
-  kinematics::HexapodGeometry geometry;
+  kinematics::HexapodGeometry geometry;  ///< what the controller reckons with: calibrated where it was
+  kinematics::HexapodGeometry design;    ///< as drawn
   kinematics::HexapodJoints joints;
   kinematics::HexapodLimits limits;
   double strut_radius = 0;  ///< [m], body of a strut in collision checks and pictures
@@ -92,6 +96,16 @@ struct Tool {
   double filament_diameter = 0;         ///< [m]
   std::vector<geometry::Shape> bodies;  ///< nozzle cone, heater block, platform...; poses in T
   bool prints() const { return nozzle_diameter > 0; }
+};
+
+/// What happens to the filament between drive and part; the keys of section `process`, which may be left out.
+struct Process {
+  std::string material = "pla";         ///< a name under models/materials or a path of a material file
+  double ambient_temperature = 298.15;  ///< [K]
+  double fan_air_speed = 1;             ///< [m/s] past the strand, at full fan
+  /// [m], diameter of a strand that leaves the nozzle freely; 0: 1.2 bores (Ishak 2018: 0.48 mm).
+  double free_strand_diameter = 0;
+  double extruder_lag = 0.03;  ///< [s], first-order, from the drive's feed to the flow at the nozzle
 };
 
 /// Laser beam: X_TL z along the beam. Gaussian spot.
@@ -130,6 +144,15 @@ struct Tolerances {
   ToleranceSet after_calibration;  ///< left after the paper's calibration
 };
 
+/// What a machine file says of the calibration that its geometry comes from.
+struct CalibrationRecord {
+  std::string estimator;
+  std::string measurements;         ///< name of the file that was measured
+  std::string measurements_sha256;  ///< hexadecimal
+  int poses = 0;
+  double tip_sigma = 0;  ///< [m], RMS over the work space of the tip's 3D uncertainty
+};
+
 /// The gap between tip and surface (Song 2015, 3.3).
 struct GapLimits {
   double accepted_min = 0;  ///< [m]
@@ -152,9 +175,12 @@ struct MachineDescription {
   /// One of the two: the closed loops of a hexapod, or an open chain.
   HexapodModel hexapod;
   std::optional<ChainModel> chain;
+  /// Empty: the geometry is the drawn one.
+  std::optional<CalibrationRecord> calibration;
 
   std::array<Drive, kinematics::kMaxAxes> drives{};  ///< one an axis
   Tool tool;
+  Process process;          ///< of a tool that prints
   bool has_microscope = true;  ///< with its laser; without, there is no gap control
   Laser laser;
   Microscope microscope;

@@ -61,6 +61,7 @@ void read_geometry(YamlMap& map, MachineDescription& machine) {
         on_circle(platform_radius, centre + side * (from_deg(60) - platform_half_angle), platform_height);
     machine.hexapod.geometry.length_offset[strut] = length_offset;
   }
+  machine.hexapod.design = machine.hexapod.geometry;
   machine.X_WB = make_pose(Quat::Identity(), Vec3(0, 0, base_height));
   machine.X_BT_home = machine.X_WB.inverse() * make_pose(Quat::Identity(), home_tip);
 }
@@ -114,7 +115,8 @@ void settle_home(const Place& place, MachineDescription& machine) {
   check_apart(place, "base", machine.hexapod.geometry.base_joint);
   check_apart(place, "platform", machine.hexapod.geometry.platform_joint);
   check_struts_exist(place, machine);
-  machine.hexapod.joints = kinematics::joints_at_home(machine.hexapod.geometry, machine.X_BT_home);
+  // Studs were made as drawn; a calibration says nothing about them.
+  machine.hexapod.joints = kinematics::joints_at_home(machine.hexapod.design, machine.X_BT_home);
   std::vector<kinematics::LimitViolation> violations;
   kinematics::check(machine.hexapod.geometry, machine.hexapod.joints, machine.hexapod.limits,
                     machine.X_BT_home, violations);

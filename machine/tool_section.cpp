@@ -53,6 +53,8 @@ void read_drive(YamlMap& map, bool angle, Drive& drive) {
     drive.velocity_max = map.quantity("velocity_max_mm_per_s", {0.1, 5000});
     drive.acceleration_max = map.quantity("acceleration_max_mm_per_s2", {1, 1e6});
   }
+  const std::string jump = angle ? "velocity_jump_deg_per_s" : "velocity_jump_mm_per_s";
+  if (map.has(jump)) drive.velocity_jump = map.quantity(jump, {0, 1000});
   drive.steps_per_turn = map.integer("steps_per_turn", 1, 10000000);
   drive.microsteps = map.integer("microsteps", 1, 1024);
   if (map.has("self_locking")) drive.self_locking = map.word("self_locking", {"yes", "no"}) == "yes";
@@ -109,6 +111,14 @@ void read_tool(YamlMap& map, Tool& tool) {
         map.place("flat_diameter_mm"),
         fmt::format("{} is {:g} mm, not wider than the bore of {:g} mm", map.path("flat_diameter_mm"),
                     to_mm(tool.flat_diameter), to_mm(tool.nozzle_diameter)));
+}
+
+void read_process(YamlMap& map, Process& process) {
+  if (map.has("material")) process.material = map.text("material");
+  if (map.has("ambient_c")) process.ambient_temperature = kCelsiusZero + map.quantity("ambient_c", {-50, 200});
+  if (map.has("fan_air_m_per_s")) process.fan_air_speed = map.quantity("fan_air_m_per_s", {0, 50});
+  if (map.has("free_strand_mm")) process.free_strand_diameter = map.quantity("free_strand_mm", {0.01, 20});
+  if (map.has("extruder_lag_ms")) process.extruder_lag = map.quantity("extruder_lag_ms", {0, 2000});
 }
 
 }  // namespace understudy::machine

@@ -15,5 +15,6 @@ void read_bodies(YamlMap& map, std::vector<geometry::Shape>& bodies);
 /// [kg m^2] along the axes of a frame; refuses moments that no body has.
 Vec3 read_inertia(YamlMap& map, const std::string& key);
 void read_tool(YamlMap& map, Tool& tool);
+void read_process(YamlMap& map, Process& process);
 
 }  // namespace understudy::machine

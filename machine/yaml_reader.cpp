@@ -29,6 +29,7 @@ constexpr std::array kUnits{
     Unit{"_mm_per_s2", " mm/s^2", kMillimetre},
     Unit{"_mm_per_s", " mm/s", kMillimetre},
     Unit{"_deg_per_s", " deg/s", kDegree},
+    Unit{"_m_per_s", " m/s", 1},
     Unit{"_kg_mm2", " kg mm^2", kMillimetre* kMillimetre},
     Unit{"_px_per_mm", " px/mm", 1 / kMillimetre},
     Unit{"_mm", " mm", kMillimetre},
@@ -43,6 +44,12 @@ constexpr std::array kUnits{
     Unit{"_px", " px", 1},
     Unit{"_levels", " grey levels", 1},
     Unit{"_electrons", " electrons", 1},
+    Unit{"_kg_per_m3", " kg/m^3", 1},
+    Unit{"_j_per_kg_k", " J/(kg K)", 1},
+    Unit{"_w_per_m_k", " W/(m K)", 1},
+    Unit{"_gpa", " GPa", 1e9},
+    Unit{"_k", " K", 1},
+    Unit{"_c", " C", 1},  // the zero of the scale is the reader's to shift
 };
 
 Unit unit_of(std::string_view key) {

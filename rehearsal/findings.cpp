@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -35,40 +37,134 @@ ReportUnit report_unit(const std::string& si) {
   return {1, "1"};
 }
 
-Finding contact_finding(const sim::Contact& contact, bool touches, double limit) {
+std::string place_text(const Vec3& p_W) {
+  return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", to_mm(p_W.x()), to_mm(p_W.y()), to_mm(p_W.z()));
+}
+
+/// Contacts of the same two bodies on lines that follow each other: the worst of them speaks for all.
+struct ContactStretch {
+  sim::Contact worst;
+  double begin_time = 0;
+  int first_line = 0, last_line = 0;
+};
+
+constexpr int kSameStretch = 3;  // lines from one contact to the next
+
+std::vector<ContactStretch> stretches_of(const std::vector<sim::Contact>& contacts) {
+  std::vector<ContactStretch> stretches;
+  std::map<std::pair<std::string, std::string>, std::size_t> open;
+  for (const sim::Contact& contact : contacts) {
+    // Beads are many, what was printed is one.
+    const std::string obstacle = contact.obstacle.starts_with("bead") ? "bead" : contact.obstacle;
+    const auto [entry, is_new] = open.try_emplace({contact.body, obstacle}, stretches.size());
+    if (!is_new) {
+      ContactStretch& stretch = stretches[entry->second];
+      if (std::abs(contact.line - stretch.last_line) <= kSameStretch) {
+        stretch.last_line = contact.line;
+        if (contact.clearance < stretch.worst.clearance) stretch.worst = contact;
+        continue;
+      }
+      entry->second = stretches.size();
+    }
+    stretches.push_back({contact, contact.time, contact.line, contact.line});
+  }
+  return stretches;
+}
+
+Finding contact_finding(const ContactStretch& stretch, bool touches, double limit) {
+  const sim::Contact& contact = stretch.worst;
   Finding f;
   f.kind = touches ? "collision" : "near_collision";
   f.severity = touches ? Severity::error : Severity::warning;
-  f.gcode_line = contact.line;
-  f.time_s = contact.time;
+  f.gcode_line = stretch.first_line;
+  f.time_s = stretch.begin_time;
   f.value = to_mm(contact.clearance);
   f.limit = to_mm(limit);
   f.unit = "mm";
-  const Vec3 place = contact.place_W * 1e3;
-  f.message =
-      touches
-          ? fmt::format("{} touches {}, {:.3f} mm deep at ({:.2f}, {:.2f}, {:.2f}) mm", contact.body,
-                        contact.obstacle, -f.value, place.x(), place.y(), place.z())
-          : fmt::format("{} passes {} at {:.3f} mm, nearer than {:.3f} mm, at ({:.2f}, {:.2f}, {:.2f}) mm",
-                        contact.body, contact.obstacle, f.value, f.limit, place.x(), place.y(), place.z());
+  f.message = touches ? fmt::format("{} touches {}, {:.3f} mm deep at {}", contact.body, contact.obstacle,
+                                    -f.value, place_text(contact.place_W))
+                      : fmt::format("{} passes {} at {:.3f} mm, nearer than {:.3f} mm, at {}", contact.body,
+                                    contact.obstacle, f.value, f.limit, place_text(contact.place_W));
+  if (stretch.last_line != stretch.first_line)
+    f.message += fmt::format(" (lines {} to {}, the worst on {})", stretch.first_line, stretch.last_line,
+                             contact.line);
   return f;
 }
 
-Finding loose_finding(const sim::DepositionObserver::Loose& loose, double accepted_max) {
+Finding loose_finding(const sim::LooseStretch& loose, const Stage& stage) {
   Finding f;
   f.kind = "adhesion";
   f.gcode_line = loose.line;
   f.time_s = loose.time;
-  f.limit = to_mm(accepted_max);
+  f.limit = to_mm(stage.machine.gap.accepted_max);
   f.unit = "mm";
-  const Vec3 place = loose.place_W * 1e3;
-  const bool in_air = !std::isfinite(loose.worst_gap);
-  f.value = in_air ? to_mm(sim::kGapReach) : to_mm(loose.worst_gap);
-  const std::string why = in_air ? fmt::format("nothing lies below the nozzle within {:.0f} mm", f.value)
-                                 : fmt::format("gap up to {:.3f} mm, above {:.3f} mm", f.value, f.limit);
-  f.message = fmt::format("bead of {:.2f} mm does not stick: {}, from ({:.2f}, {:.2f}, {:.2f}) mm",
-                          to_mm(loose.length), why, place.x(), place.y(), place.z());
+  f.value = std::isfinite(loose.worst_gap) ? to_mm(loose.worst_gap) : to_mm(sim::kGapReach);
+  std::string why;
+  if (loose.adhesion == sim::Adhesion::cold) {
+    f.value = loose.interface_temperature - kCelsiusZero;
+    f.limit = stage.material.glass_transition - kCelsiusZero;
+    f.unit = "C";
+    why = fmt::format(
+        "its interface with the bead below is at {:.0f} C, below the glass transition at {:.0f} C", f.value,
+        f.limit);
+  } else if (loose.adhesion == sim::Adhesion::buried) {
+    f.limit = 0;
+    why = fmt::format("the nozzle is {:.3f} mm below the surface", -f.value);
+  } else if (!std::isfinite(loose.worst_gap)) {
+    why = fmt::format("nothing lies below the nozzle within {:.0f} mm", f.value);
+  } else {
+    why = fmt::format("gap up to {:.3f} mm, above {:.3f} mm", f.value, f.limit);
+  }
+  f.message = fmt::format("bead of {:.2f} mm does not stick: {}, from {}", to_mm(loose.length), why,
+                          place_text(loose.place_W));
   return f;
+}
+
+/// Half of its diameter is the sag at which a strand no longer meets what was planned to lie on it.
+Finding sag_finding(const sim::AirStrand& strand) {
+  Finding f;
+  f.kind = "sag";
+  f.severity = strand.solved && strand.small ? Severity::warning : Severity::error;
+  f.gcode_line = strand.line;
+  f.time_s = strand.time;
+  f.value = to_mm(strand.sag);
+  f.limit = to_mm(strand.diameter / 2);
+  f.unit = "mm";
+  const std::string what = fmt::format("strand of {:.1f} mm in air, {:.2f} mm thick,", to_mm(strand.length),
+                                       to_mm(strand.diameter));
+  if (!strand.solved) {
+    f.message = fmt::format("{} from {}: too long and crooked for its sag to be known", what,
+                            place_text(strand.from_W));
+    return f;
+  }
+  f.message = fmt::format(
+      "{} sags by {}{:.3f} mm at {}{}", what, strand.small || strand.lies ? "" : "more than ", f.value,
+      place_text(strand.sag_place_W), strand.held_at_end ? "" : "; nothing holds its end");
+  return f;
+}
+
+Finding flow_finding(const FlowStretch& stretch) {
+  Finding f;
+  f.kind = "flow";
+  f.severity = Severity::warning;
+  f.gcode_line = stretch.line;
+  f.time_s = stretch.time;
+  f.value = stretch.ratio;
+  f.limit = stretch.ratio > 1 ? 1 + kFlowTolerance : 1 - kFlowTolerance;
+  f.unit = "1";
+  f.message = fmt::format("over {:.2f} mm {} is laid, {:.0f} % of what is programmed, from {}",
+                          to_mm(stretch.length), stretch.ratio > 1 ? "too much" : "too little",
+                          100 * stretch.ratio, place_text(stretch.place_W));
+  return f;
+}
+
+void add_strand_findings(const TwinRun& run, const Stage& stage, std::vector<Finding>& findings) {
+  for (const auto& loose : run.loose)
+    if (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose))
+      findings.push_back(loose_finding(loose, stage));
+  for (const auto& stretch : run.flow) findings.push_back(flow_finding(stretch));
+  for (const auto& strand : run.strands)
+    if (!strand.solved || strand.sag > strand.diameter / 2) findings.push_back(sag_finding(strand));
 }
 
 Finding gap_finding(Severity severity, int line, double time, double gap, double limit, std::string message) {
@@ -85,21 +181,23 @@ void add_gap_findings(const TwinRun& run, const machine::MachineDescription& mac
         gap_finding(Severity::error, approach.line, approach.done_at, outcome.gap, limits.accepted_max,
                     fmt::format("gap control stopped ({}): {}", to_string(outcome.stop), outcome.why)));
   }
-  if (mode == control::GapControl::start && run.result.completed && run.result.approaches.empty() &&
+  if (const auto& following = run.result.following; following && following->stop != control::GapStop::none)
+    findings.push_back(gap_finding(
+        Severity::error, following->line, following->time, following->gap, limits.accepted_max,
+        fmt::format("gap control stopped on the path ({}): {}", to_string(following->stop), following->why)));
+  if (mode != control::GapControl::off && run.result.completed && run.result.approaches.empty() &&
       run.deposition.length > 0)
     findings.push_back(gap_finding(
         Severity::warning, 0, 0, limits.aim, limits.accepted_max,
         "the program has no approach along the tool axis before it prints: the gap was not controlled"));
   const auto& laid = run.deposition;
   if (laid.length == 0) return;
-  const auto lowest = std::min_element(run.trace.begin(), run.trace.end(), [](const auto& a, const auto& b) {
-    return (a.extruding ? a.gap : HUGE_VAL) < (b.extruding ? b.gap : HUGE_VAL);
-  });
-  if (lowest->extruding && lowest->gap < limits.accepted_min)
+  constexpr double kRounding = 0.1e-6;  // [m]: printed surfaces are known to single precision
+  if (laid.gap_max > 0 && laid.gap_min < limits.accepted_min - kRounding)
     findings.push_back(
-        gap_finding(Severity::error, lowest->line, lowest->time, lowest->gap, limits.accepted_min,
+        gap_finding(Severity::error, laid.gap_min_line, laid.gap_min_time, laid.gap_min, limits.accepted_min,
                     fmt::format("the nozzle runs as low as {:.3f} mm over the surface, below {:.3f} mm",
-                                to_mm(lowest->gap), to_mm(limits.accepted_min))));
+                                to_mm(laid.gap_min), to_mm(limits.accepted_min))));
 }
 
 }  // namespace
@@ -126,17 +224,20 @@ std::vector<Finding> findings_of(const control::ConstraintReport& report) {
   return findings;
 }
 
-std::vector<Finding> findings_of(const TwinRun& run, const machine::MachineDescription& machine,
-                                 control::GapControl gap_control) {
+std::vector<Finding> findings_of(const TwinRun& run, const Stage& stage, control::GapControl gap_control) {
+  const machine::MachineDescription& machine = stage.machine;
   std::vector<Finding> findings;
-  for (const auto& contact : run.collisions) findings.push_back(contact_finding(contact, true, 0));
+  for (const auto& stretch : stretches_of(run.collisions))
+    findings.push_back(contact_finding(stretch, true, 0));
   const sim::CollisionOptions options;
-  for (const auto& contact : run.near_collisions)
-    findings.push_back(contact_finding(contact, false, options.near));
+  for (const auto& stretch : stretches_of(run.near_collisions))
+    findings.push_back(contact_finding(stretch, false, options.near));
   add_gap_findings(run, machine, gap_control, findings);
-  for (const auto& loose : run.loose) findings.push_back(loose_finding(loose, machine.gap.accepted_max));
-  const bool explained = std::any_of(run.result.approaches.begin(), run.result.approaches.end(),
-                                     [](const auto& a) { return a.outcome.stop != control::GapStop::none; });
+  add_strand_findings(run, stage, findings);
+  const bool explained =
+      std::any_of(run.result.approaches.begin(), run.result.approaches.end(),
+                  [](const auto& a) { return a.outcome.stop != control::GapStop::none; }) ||
+      (run.result.following && run.result.following->stop != control::GapStop::none);
   if (!run.result.completed && !explained) {
     Finding f;
     f.kind = "unreachable";

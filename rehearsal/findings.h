@@ -10,8 +10,7 @@
 namespace understudy::rehearsal {
 
 std::vector<Finding> findings_of(const control::ConstraintReport& report);
-std::vector<Finding> findings_of(const TwinRun& run, const machine::MachineDescription& machine,
-                                 control::GapControl gap_control);
+std::vector<Finding> findings_of(const TwinRun& run, const Stage& stage, control::GapControl gap_control);
 
 /// Errors first, then by line and time.
 void sort_findings(std::vector<Finding>& findings);

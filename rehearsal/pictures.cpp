@@ -2,16 +2,20 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "core/units.h"
 #include "sim/collision/collision.h"
+#include "sim/process/bead_mesh.h"
 
 namespace understudy::rehearsal {
 namespace {
 
 using Colour = std::array<float, 3>;
+constexpr std::size_t kBeadsDrawn = 60'000, kBeadsBesideMachine = 15'000;
 constexpr Colour kMetal{0.55f, 0.58f, 0.62f}, kStrut{0.25f, 0.42f, 0.62f}, kBrass{0.80f, 0.60f, 0.22f},
     kPart{0.86f, 0.88f, 0.84f}, kTable{0.90f, 0.90f, 0.91f}, kPath{0.85f, 0.25f, 0.10f},
-    kHeater{0.45f, 0.20f, 0.18f};
+    kHeater{0.45f, 0.20f, 0.18f}, kFilament{0.90f, 0.45f, 0.15f};
 
 Colour colour_of(const std::string& body) {
   if (body.find("strut") != std::string::npos) return kStrut;
@@ -28,6 +32,9 @@ const TracePoint* middle_of_print(const Record& record) {
   const auto last = std::find_if(record.trace.rbegin(), record.trace.rend(), extruding).base();
   return &*(first + (last - first) / 2);
 }
+
+/// More points of path than this are drawn as what was printed instead.
+constexpr std::size_t kPathPointsMost = 3000;
 
 /// The programmed tip path; print moves apart from travel, so that the picture shows what is laid.
 void add_path(const toolpath::Program& program, renderer::PictureScene& scene) {
@@ -48,7 +55,25 @@ void add_path(const toolpath::Program& program, renderer::PictureScene& scene) {
   if (!line.points.empty()) scene.polylines.push_back(line);
 }
 
-renderer::PictureScene build_scene(const Stage& stage, const sim::Posture& posture) {
+bool path_is_short(const toolpath::Program& program) {
+  const auto prints = [](const toolpath::Step& s) { return s.kind == toolpath::StepKind::print; };
+  return static_cast<std::size_t>(std::count_if(program.steps.begin(), program.steps.end(), prints)) <=
+         kPathPointsMost;
+}
+
+/// What was laid; of a very large print evenly chosen beads, so that there are at most `most`.
+std::optional<renderer::ColouredShape> printed_shape(const sim::BeadIndex& beads, std::size_t most) {
+  const std::size_t stride = beads.size() / most + 1;
+  sim::BeadMesh shells;
+  for (std::size_t i = 0; i < beads.size(); i += stride)
+    sim::append_shell(beads.bead(i), beads.size() > kPathPointsMost ? 4 : 8, shells);
+  if (shells.triangles.empty()) return std::nullopt;
+  const auto mesh = std::make_shared<geometry::Mesh>(std::move(shells.vertices), std::move(shells.triangles));
+  return renderer::ColouredShape{{"printed", geometry::MeshShape{mesh}}, kFilament};
+}
+
+renderer::PictureScene build_scene(const Stage& stage, const sim::Workpiece* printed,
+                                   const sim::Posture& posture) {
   renderer::PictureScene scene;
   const auto& machine = stage.machine;
   for (auto& shape : sim::machine_bodies(machine, stage.as_built, posture))
@@ -62,7 +87,11 @@ renderer::PictureScene build_scene(const Stage& stage, const sim::Posture& postu
   }
   scene.shapes.push_back({machine.table, kTable});
   if (stage.part) scene.shapes.push_back({{"part", geometry::MeshShape{stage.part}}, kPart});
-  add_path(stage.program, scene);
+  if (path_is_short(stage.program)) {
+    add_path(stage.program, scene);
+  } else if (printed) {
+    if (auto shape = printed_shape(printed->beads(), kBeadsBesideMachine)) scene.shapes.push_back(*shape);
+  }
   return scene;
 }
 
@@ -86,13 +115,33 @@ machine::AxisArray home_axes(const machine::MachineDescription& machine) {
   return axes;
 }
 
+/// What was laid, without the machine.
+void add_printed_part(const Stage& stage, const sim::Workpiece& printed, Record& record) {
+  const sim::BeadIndex& beads = printed.beads();
+  const auto shape = printed_shape(beads, kBeadsDrawn);
+  if (!shape) return;
+  const auto& mesh = *std::get<geometry::MeshShape>(shape->shape.form).mesh;
+  renderer::PictureScene scene;
+  scene.shapes.push_back(*shape);
+  if (stage.part) scene.shapes.push_back({{"part", geometry::MeshShape{stage.part}}, kPart});
+  scene.target_W = 0.5 * (mesh.lower() + mesh.upper());
+  const double radius = std::max(3e-3, 0.5 * (mesh.upper() - mesh.lower()).norm());
+  scene.field_of_view = from_deg(26);
+  scene.eye_W = scene.target_W + 4.6 * radius * Vec3(0.55, -0.70, 0.45).normalized();
+  record.pictures.push_back(renderer::render_picture(scene));
+  const std::size_t stride = beads.size() / kBeadsDrawn + 1;
+  record.picture_captions.push_back(
+      stride == 1 ? fmt::format("As printed: {} beads", beads.size())
+                  : fmt::format("As printed: one in {} of {} beads", stride, beads.size()));
+}
+
 }  // namespace
 
-void add_pictures(const Stage& stage, Record& record) {
+void add_pictures(const Stage& stage, const sim::Workpiece* printed, Record& record) {
   const TracePoint* point = middle_of_print(record);
   const Pose X_WT = point ? point->X_WT : Pose(stage.machine.X_WB * stage.machine.X_BT_home);
   const sim::Posture posture{X_WT, point ? point->axes : home_axes(stage.machine)};
-  renderer::PictureScene scene = build_scene(stage, posture);
+  renderer::PictureScene scene = build_scene(stage, printed, posture);
   const Ball around = enclose(scene);
   scene.target_W = around.centre;
   scene.eye_W = around.centre + 3.5 * around.radius * Vec3(0.62, -0.74, 0.24).normalized();
@@ -106,6 +155,7 @@ void add_pictures(const Stage& stage, Record& record) {
   scene.field_of_view = from_deg(26);
   record.pictures.push_back(renderer::render_picture(scene));
   record.picture_captions.push_back("The tool on the path");
+  if (printed && printed->beads().size() > 0) add_printed_part(stage, *printed, record);
 }
 
 }  // namespace understudy::rehearsal

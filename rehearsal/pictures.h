@@ -7,7 +7,7 @@
 namespace understudy::rehearsal {
 
 /// An overview of machine and part, and a close-up of the tool on the path, at the middle of the print (or at
-/// home when nothing was simulated).
-void add_pictures(const Stage& stage, Record& record);
+/// home when nothing was simulated); the part as printed, where something was (`printed` may be null).
+void add_pictures(const Stage& stage, const sim::Workpiece* printed, Record& record);
 
 }  // namespace understudy::rehearsal

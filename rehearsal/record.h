@@ -2,6 +2,7 @@
 // Drawing is elsewhere (report.h); absent values stay absent.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -47,6 +48,15 @@ struct CollisionFigures {
   std::uint64_t checks = 0;
   int pairs = 0;
 };
+struct SagFigures {
+  double max_um = 0;
+  int strands = 0;
+  double unsupported_mm = 0;  ///< length of all strands in air
+};
+struct SurfaceFigures {
+  std::optional<double> ra_um, rz_um;      ///< along the chosen line
+  std::optional<double> deviation_p95_um;  ///< of the printed surface from the intended part
+};
 struct EngineFigures {
   std::string name, version;
   double timestep_s = 0;
@@ -59,6 +69,14 @@ struct Provenance {
   std::uint64_t seed = 0;
   std::string as_built, command;
   std::vector<std::string> faults = {};  ///< what was made to go wrong, in words
+};
+
+/// A strand in air as the report lists it.
+struct StrandRow {
+  int line = 0;
+  double time_s = 0, length_mm = 0, diameter_mm = 0, speed_mm_per_s = 0, sag_um = 0;
+  double solid_after_s = 0, duration_s = 0;
+  bool held_at_end = true, solved = true, small = true;
 };
 
 /// One instant of the run, truth beside command.
@@ -98,7 +116,9 @@ struct Record {
   std::optional<PrintFigures> print;
   std::optional<AccuracyFigures> accuracy;
   std::optional<GapFigures> gap;
+  std::optional<SagFigures> sag;
   std::optional<CollisionFigures> collision;
+  std::optional<SurfaceFigures> surface;
   std::optional<EngineFigures> engine;
   Provenance provenance;
 
@@ -106,8 +126,12 @@ struct Record {
   std::vector<AxisColumn> axes;  ///< the first entries of TracePoint::axes, in order
   double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
   std::vector<TracePoint> trace;
+  int trace_stride = 1;                               ///< snapshots a point of the trace
   std::vector<TracePoint> trace_without_gap_control;  ///< empty when the run itself had none
   std::vector<FrameRecord> frames;
+  std::vector<std::array<double, 2>> profile;  ///< position [mm], height [um] along the chosen line
+  std::string profile_note, deviation_note;    ///< in words
+  std::vector<StrandRow> strands;           ///< those that sag most first
   std::vector<renderer::Picture> pictures;  ///< overview, close-up
   std::vector<std::string> picture_captions;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -14,9 +15,12 @@
 #include "core/interrupt.h"
 #include "core/units.h"
 #include "rehearsal/findings.h"
+#include "rehearsal/fixture.h"
 #include "rehearsal/pictures.h"
+#include "rehearsal/process_check.h"
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/run_twin.h"
+#include "rehearsal/surface.h"
 #include "rehearsal/version.h"
 #include "sim/as_built/as_built_file.h"
 #include "toolpath/gcode.h"
@@ -27,12 +31,38 @@ namespace {
 
 control::GapControl gap_control_of(const std::string& word, const machine::MachineDescription& machine) {
   if (word == "off" || (word.empty() && !machine.has_microscope)) return control::GapControl::off;
-  if (word.empty() || word == "start") {
-    if (machine.has_microscope) return control::GapControl::start;
+  if (word.empty() || word == "start" || word == "continuous") {
+    if (machine.has_microscope)
+      return word == "continuous" ? control::GapControl::continuous : control::GapControl::start;
     throw InputError(
         fmt::format("gap control '{}' needs a laser and a microscope; {} has none: off", word, machine.name));
   }
-  throw InputError("gap control '" + word + "': one of off, start");
+  throw InputError("gap control '" + word + "': one of off, start, continuous");
+}
+
+toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
+                                     const machine::MachineDescription& machine) {
+  toolpath::GcodeOptions gcode;
+  gcode.X_WT_home = machine.X_WB * machine.X_BT_home;
+  gcode.rotary = rotary_words(machine);
+  if (dialect.extruder_letter != "E" && dialect.extruder_letter != "A")
+    throw InputError("extruder letter '" + dialect.extruder_letter + "': one of E, A");
+  gcode.extruder_letter = dialect.extruder_letter[0];
+  for (int i = 0; i < 3; ++i) gcode.offset_W[i] = from_mm(dialect.place_mm[static_cast<std::size_t>(i)]);
+  gcode.b_sign = dialect.b_sign;
+  gcode.c_sign = dialect.c_sign;
+  if (dialect.coordinates.empty()) return gcode;
+  using Coordinates = toolpath::RotaryWords::Coordinates;
+  const std::map<std::string, Coordinates> words{{"tip", Coordinates::tip},
+                                                 {"machine", Coordinates::machine},
+                                                 {"crossing", Coordinates::crossing}};
+  const auto word = words.find(dialect.coordinates);
+  if (word == words.end())
+    throw InputError("coordinates '" + dialect.coordinates + "': one of tip, machine, crossing");
+  if (!gcode.rotary)
+    throw InputError("coordinates '" + dialect.coordinates + "': " + machine.name + " has no rotary words");
+  gcode.rotary->coordinates = word->second;
+  return gcode;
 }
 
 Stage prepare(const RehearsalRequest& request) {
@@ -41,11 +71,13 @@ Stage prepare(const RehearsalRequest& request) {
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   Stage stage;
   stage.machine = machine::load_machine(request.machine);
-  toolpath::GcodeOptions gcode;
-  gcode.X_WT_home = stage.machine.X_WB * stage.machine.X_BT_home;
-  gcode.rotary = rotary_words(stage.machine);
-  stage.program = toolpath::read_gcode(request.program, gcode);
-  if (!request.fixture.empty()) stage.part = geometry::read_stl(find_fixture(request.fixture));
+  stage.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, stage.machine));
+  if (stage.machine.tool.prints()) {
+    stage.material =
+        machine::load_material(request.material.empty() ? stage.machine.process.material : request.material);
+    check_process(stage.program, stage.machine, stage.material);
+  }
+  if (!request.fixture.empty()) stage.part = read_fixture(find_fixture(request.fixture), stage.machine);
   stage.as_built = sim::make_as_built(stage.machine, request.as_built, request.seed);
   stage.engine = request.engine;
   stage.seed = request.seed;
@@ -58,7 +90,9 @@ Record describe_run(const RehearsalRequest& request, const Stage& stage, control
   record.program_name = fs::path(request.program).filename().string();
   record.machine_name = stage.machine.name;
   record.fixture_name = request.fixture.empty() ? "" : fs::path(request.fixture).filename().string();
-  record.gap_control = mode == control::GapControl::off ? "off" : "start";
+  record.gap_control = mode == control::GapControl::off     ? "off"
+                       : mode == control::GapControl::start ? "start"
+                                                            : "continuous";
   record.as_built = sim::write_as_built(stage.as_built);
   record.title = record.program_name + " on " + record.machine_name;
   record.gap_accepted_min_mm = to_mm(stage.machine.gap.accepted_min);
@@ -80,36 +114,6 @@ Record describe_run(const RehearsalRequest& request, const Stage& stage, control
   for (const sim::FaultEvent& event : stage.faults)
     record.provenance.faults.push_back(describe(event, stage.machine));
   return record;
-}
-
-AccuracyFigures accuracy_of(const TwinRun& run) {
-  AccuracyFigures figures;
-  std::vector<double> errors;
-  double sum = 0;
-  for (const TracePoint& point : run.trace) {
-    if (!point.extruding) continue;
-    errors.push_back(point.tip_error);
-    sum += point.tip_error * point.tip_error;
-    figures.orientation_max_mrad = std::max(figures.orientation_max_mrad, 1e3 * point.orientation_error);
-  }
-  std::sort(errors.begin(), errors.end());
-  const auto n = errors.size();
-  figures.tip_rms_um = to_um(std::sqrt(sum / static_cast<double>(n)));
-  figures.tip_p95_um =
-      to_um(errors[std::min(n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n)))]);
-  figures.tip_max_um = to_um(errors.back());
-  return figures;
-}
-
-double tip_max_um(const TwinRun& run) {
-  double worst = 0;
-  for (const TracePoint& point : run.trace)
-    if (point.extruding) worst = std::max(worst, point.tip_error);
-  return to_um(worst);
-}
-
-bool any_extrusion(const std::vector<TracePoint>& trace) {
-  return std::any_of(trace.begin(), trace.end(), [](const TracePoint& p) { return p.extruding; });
 }
 
 /// Nothing where no gap exists: nothing was printed, or somewhere nothing lies below the nozzle.
@@ -138,6 +142,21 @@ double as_filament_mm(double volume, const machine::MachineDescription& machine)
   return to_mm(volume / (0.25 * std::numbers::pi * d * d));
 }
 
+void fill_strands(const std::vector<sim::AirStrand>& strands, Record& record) {
+  SagFigures sag;
+  sag.strands = static_cast<int>(strands.size());
+  for (const sim::AirStrand& strand : strands) {
+    sag.max_um = std::max(sag.max_um, to_um(strand.sag));
+    sag.unsupported_mm += to_mm(strand.length);
+    record.strands.push_back({strand.line, strand.time, to_mm(strand.length), to_mm(strand.diameter),
+                              to_mm(strand.speed), to_um(strand.sag), strand.solid_after, strand.duration,
+                              strand.held_at_end, strand.solved, strand.small});
+  }
+  std::stable_sort(record.strands.begin(), record.strands.end(),
+                   [](const StrandRow& a, const StrandRow& b) { return a.sag_um > b.sag_um; });
+  record.sag = sag;
+}
+
 void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& machine,
                   Record& record) {
   const auto& r = run.result;
@@ -145,10 +164,10 @@ void fill_figures(const TwinRun& run, const TwinRun* without, const machine::Mac
                               as_filament_mm(run.deposition.deposited_volume, machine), to_mm(r.travel)};
   record.collision = run.collision;
   record.engine = run.engine;
-  if (any_extrusion(run.trace)) {
-    record.accuracy = accuracy_of(run);
-    record.accuracy->open_loop_tip_max_um = tip_max_um(without ? *without : run);
-  }
+  record.accuracy = run.accuracy;
+  const auto& open_loop = without ? without->accuracy : run.accuracy;
+  if (record.accuracy && open_loop) record.accuracy->open_loop_tip_max_um = open_loop->tip_max_um;
+  if (machine.tool.prints()) fill_strands(run.strands, record);
   record.gap = gap_of(run, without, machine);
 }
 
@@ -189,29 +208,17 @@ bool any_error(const std::vector<Finding>& findings) {
 
 }  // namespace
 
-std::string find_fixture(const std::string& fixture) {
-  if (fs::is_regular_file(fixture)) return fixture;
-  const fs::path parts = machine::models_folder() / "parts";
-  const fs::path named = parts / (fixture + ".stl");
-  if (fs::is_regular_file(named)) return named.string();
-  std::vector<std::string> known;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(parts, ignored))
-    if (entry.path().extension() == ".stl") known.push_back(entry.path().stem().string());
-  std::sort(known.begin(), known.end());
-  throw InputError(
-      fmt::format("no fixture {}: neither a file nor one of {}", fixture, fmt::join(known, ", ")));
-}
-
 Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   const auto report = [&](double share, const std::string& what) {
     if (progress) progress(share, what);
   };
   report(0, "reading");
   const Stage stage = prepare(request);
+  const SurfaceTask surface = prepare_surface(request.surface);
   const control::GapControl mode = gap_control_of(request.gap_control, stage.machine);
   Record record = describe_run(request, stage, mode);
 
+  std::shared_ptr<const sim::Workpiece> printed;
   report(0.02, "checking limits");
   const auto constraints = control::check_constraints(stage.program, stage.machine);
   record.findings = findings_of(constraints);
@@ -221,17 +228,21 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
                  [&](double share, const std::string& what) { report(0.05 + 0.85 * share, what); });
     const TwinRun* without = runs.without ? &*runs.without : nullptr;
     fill_figures(runs.main, without, stage.machine, record);
-    auto findings = findings_of(runs.main, stage.machine, mode);
+    auto findings = findings_of(runs.main, stage, mode);
     record.findings.insert(record.findings.end(), findings.begin(), findings.end());
     record.trace = runs.main.trace;
+    record.trace_stride = runs.main.trace_stride;
     if (without) record.trace_without_gap_control = without->trace;
     record.frames = runs.main.frames;
+    report(0.9, "measuring the surface");
+    printed = runs.main.workpiece;
+    study_surface(surface, *printed, record);
   }
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
   if (request.pictures) {
     report(0.92, "drawing");
-    add_pictures(stage, record);
+    add_pictures(stage, printed.get(), record);
   }
   report(1, "done");
   return record;

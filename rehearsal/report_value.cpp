@@ -105,6 +105,41 @@ Json picture_value(const renderer::Picture& picture, const std::string& caption)
   return object;
 }
 
+constexpr std::size_t kStrandsShown = 50;
+
+Json strands_value(const std::vector<StrandRow>& strands) {
+  Json rows = Json::array();
+  for (const StrandRow& strand : strands) {
+    if (rows.size() == kStrandsShown) break;
+    Json row;
+    row["line"] = strand.line;
+    row["time_s"] = stable_number(strand.time_s, "strand time");
+    row["length_mm"] = stable_number(strand.length_mm, "strand length");
+    row["diameter_mm"] = stable_number(strand.diameter_mm, "strand diameter");
+    row["speed_mm_per_s"] = stable_number(strand.speed_mm_per_s, "strand speed");
+    if (strand.solved) row["sag_um"] = stable_number(strand.sag_um, "sag");
+    row["solid_after_s"] = stable_number(strand.solid_after_s, "strand solid");
+    row["duration_s"] = stable_number(strand.duration_s, "strand duration");
+    row["held_at_end"] = strand.held_at_end;
+    row["small"] = strand.small;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+constexpr std::size_t kFramesShown = 60;  // more come from following a path: those with pictures stand for them
+
+Json profile_value(const Record& record) {
+  Json object;
+  object["note"] = record.profile_note;
+  object["position_mm"] = object["height_um"] = Json::array();
+  for (const auto& [position, height] : record.profile) {
+    object["position_mm"].push_back(stable_number(position, "profile position"));
+    object["height_um"].push_back(stable_number(height, "profile height"));
+  }
+  return object;
+}
+
 }  // namespace
 
 Json report_value(const Record& record) {
@@ -122,8 +157,14 @@ Json report_value(const Record& record) {
   if (!record.trace.empty()) report["trace"] = trace_value(record.trace, record);
   if (!record.trace_without_gap_control.empty())
     report["trace_without_gap_control"] = trace_value(record.trace_without_gap_control, record);
+  if (record.trace_stride > 1) report["trace_stride"] = record.trace_stride;
+  if (!record.strands.empty()) report["strands"] = strands_value(record.strands);
+  if (!record.profile.empty()) report["profile"] = profile_value(record);
+  if (!record.deviation_note.empty()) report["deviation_note"] = record.deviation_note;
   report["frames"] = Json::array();
-  for (const FrameRecord& frame : record.frames) report["frames"].push_back(frame_value(frame));
+  const bool all_frames = record.frames.size() <= kFramesShown;
+  for (const FrameRecord& frame : record.frames)
+    if (all_frames || !frame.look.frame.image.pixels.empty()) report["frames"].push_back(frame_value(frame));
   report["pictures"] = Json::array();
   for (std::size_t i = 0; i < record.pictures.size(); ++i)
     report["pictures"].push_back(picture_value(

@@ -51,6 +51,9 @@ RehearsalRequest request_of(const Scenario& scenario) {
   request.as_built = scenario.as_built;
   request.seed = scenario.seed;
   request.gap_control = scenario.gap_control;
+  request.material = scenario.material;
+  request.dialect = scenario.dialect;
+  request.surface = scenario.surface;
   request.faults = scenario.faults;
   request.command = "understudy scenario run " + scenario.file.filename().string();
   return request;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -10,65 +10,35 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "rehearsal/trace_observer.h"
 #include "sim/plant/plant.h"
+#include "sim/process/bead_temperature.h"
+#include "sim/process/beads_near.h"
 #include "sim/sensors/microscope.h"
+#include "sim/twin/observer_thread.h"
 #include "sim/twin/simulated_port.h"
 
 namespace understudy::rehearsal {
 namespace {
 
-/// Keeps the truth beside the command, at every snapshot.
-class TraceObserver : public sim::Observer {
+class Relay : public control::PrintObserver {
  public:
-  explicit TraceObserver(std::shared_ptr<const geometry::Mesh> part) : part_(std::move(part)) {}
-
-  void observe(const sim::Snapshot& s) override {
-    TracePoint point;
-    point.time = s.time;
-    point.line = s.line;
-    point.extruding = !trace_.empty() && s.filament > filament_;
-    point.X_WT = s.X_WT;
-    point.X_WT_programmed = s.X_WT_commanded;
-    point.gap = sim::true_gap(part_.get(), s.X_WT);
-    point.axes = s.axes;
-    if (point.extruding) path_ += (s.X_WT.translation() - trace_.back().X_WT.translation()).norm();
-    point.path = path_;
-    filament_ = std::max(filament_, s.filament);
-    trace_.push_back(point);
-  }
-
-  std::vector<TracePoint> take() { return std::move(trace_); }
-
- private:
-  std::shared_ptr<const geometry::Mesh> part_;
-  std::vector<TracePoint> trace_;
-  double filament_ = 0;
-  double path_ = 0;
-};
-
-class ProgressRelay : public control::PrintObserver {
- public:
-  explicit ProgressRelay(const Progress& progress) : progress_(progress) {}
+  Relay(const Progress& progress, sim::ObserverThread& observers, TraceObserver& trace)
+      : progress_(progress), observers_(observers), trace_(trace) {}
   void progress(std::size_t done, std::size_t total, double) override {
     if (progress_)
       progress_(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total)), "printing");
   }
+  void offset_changed(const control::OffsetChange& change) override {
+    observers_.drain();
+    trace_.add_offset(change);
+  }
 
  private:
   const Progress& progress_;
+  sim::ObserverThread& observers_;
+  TraceObserver& trace_;
 };
-
-/// The program's own pose: the command without the offset that the gap controller carries at that time.
-void subtract_offsets(std::vector<TracePoint>& trace, const std::vector<control::OffsetChange>& offsets) {
-  std::size_t next = 0;
-  Vec3 offset = Vec3::Zero();
-  for (TracePoint& point : trace) {
-    while (next < offsets.size() && offsets[next].time <= point.time) offset = offsets[next++].offset_W;
-    point.X_WT_programmed.translation() -= offset;
-    point.tip_error = (point.X_WT.translation() - point.X_WT_programmed.translation()).norm();
-    point.orientation_error = angle_between(point.X_WT.linear(), point.X_WT_programmed.linear());
-  }
-}
 
 /// The truth of each exposure, kept apart from what the controller made of it.
 struct ExposureTruth {
@@ -79,17 +49,21 @@ struct ExposureTruth {
 std::vector<FrameRecord> pair_with_truth(const control::PrintResult& result,
                                          const std::map<std::uint64_t, ExposureTruth>& truth) {
   std::vector<FrameRecord> frames;
-  for (const auto& approach : result.approaches) {
-    for (const auto& look : approach.outcome.looks) {
-      FrameRecord record;
-      record.look = look;
-      if (const auto found = truth.find(look.frame.number); found != truth.end()) {
-        record.true_gap = found->second.gap;
-        record.true_dot_px = found->second.dot_px;
-      }
-      frames.push_back(std::move(record));
+  const auto add = [&](const control::GapLook& look) {
+    FrameRecord record;
+    record.look = look;
+    if (const auto found = truth.find(look.frame.number); found != truth.end()) {
+      record.true_gap = found->second.gap;
+      record.true_dot_px = found->second.dot_px;
     }
-  }
+    frames.push_back(std::move(record));
+  };
+  for (const auto& approach : result.approaches)
+    for (const auto& look : approach.outcome.looks) add(look);
+  if (result.following)
+    for (const auto& look : result.following->looks) add(look);
+  std::stable_sort(frames.begin(), frames.end(),
+                   [](const FrameRecord& a, const FrameRecord& b) { return a.look.time < b.look.time; });
   return frames;
 }
 
@@ -99,6 +73,63 @@ std::unique_ptr<sim::Plant> make_plant(const Stage& stage) {
   if (stage.engine == "quasistatic") return sim::make_quasistatic_plant(stage.machine, stage.as_built);
   throw InputError(
       fmt::format("unknown engine {}: one of {}", stage.engine, fmt::join(engine_names(), ", ")));
+}
+
+/// What the printed material knows of its own temperature.
+sim::DepositionOptions deposition_options(const Stage& stage, FlowWatch& flow) {
+  sim::DepositionOptions options;
+  options.laid = [&flow](const sim::LaidBead& bead) { flow.add(bead); };
+  if (!stage.machine.tool.prints()) return options;
+  options.glass_transition = stage.material.glass_transition;
+  options.substrate_temperature = sim::BeadTemperature(stage.machine, stage.material);
+  return options;
+}
+
+constexpr double kLaserSees = 6e-3;  // [m], around the tip
+
+/// Everything that watches a run, and what it watches.
+struct Watch {
+  explicit Watch(const Stage& stage, const RunOptions& options)
+      : workpiece(std::make_shared<sim::Workpiece>(stage.part)),
+        flow(stage.program, stage.machine),
+        deposition(stage.machine, workpiece, deposition_options(stage, flow)),
+        trace(deposition),
+        collision(stage.machine, stage.as_built, stage.part, collision_options()),
+        thread(options.watch_collisions ? std::vector<sim::Observer*>{&deposition, &trace, &collision}
+                                        : std::vector<sim::Observer*>{&deposition, &trace}) {}
+
+  sim::CollisionOptions collision_options() const {
+    sim::CollisionOptions options;
+    options.beads = &workpiece->beads();
+    options.fresh_from = [this] { return deposition.fresh_from(); };
+    return options;
+  }
+
+  /// True gap at a pose, over what has been printed by now.
+  double gap(const Pose& X_WT) const {
+    const auto below = workpiece->below(X_WT, deposition.fresh_from());
+    return below ? below->distance : std::numeric_limits<double>::infinity();
+  }
+
+  std::shared_ptr<sim::Workpiece> workpiece;
+  FlowWatch flow;
+  sim::DepositionObserver deposition;
+  TraceObserver trace;
+  sim::CollisionObserver collision;
+  sim::ObserverThread thread;
+};
+
+EngineFigures engine_of(const sim::Plant& plant, const sim::SimulatedPort& port, double wall) {
+  const std::string engine = plant.engine();
+  const auto space = engine.find(' ');
+  EngineFigures figures;
+  figures.name = engine.substr(0, space);
+  figures.version = space == std::string::npos ? "" : engine.substr(space + 1);
+  figures.timestep_s = plant.timestep();
+  figures.steps = port.steps();
+  figures.real_time_factor = plant.time() / wall;
+  figures.closure_max_um = to_um(port.closure_max());
+  return figures;
 }
 
 }  // namespace
@@ -111,51 +142,48 @@ const std::vector<std::string>& engine_names() {
 TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& progress) {
   const auto started = std::chrono::steady_clock::now();
   const auto plant = make_plant(stage);
+  Watch watch(stage, options);
   std::optional<sim::Microscope> microscope;
   if (stage.machine.has_microscope) microscope.emplace(stage.machine, stage.part, stage.seed);
   std::map<std::uint64_t, ExposureTruth> truth;
   const auto expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
-    truth[number] = {sim::true_gap(stage.part.get(), X_WT), microscope->true_dot(X_WT)};
+    watch.thread.drain();  // the laser sees what has been printed by now
+    microscope->set_printed(sim::beads_near(watch.workpiece->beads(), X_WT.translation(), kLaserSees));
+    truth[number] = {watch.gap(X_WT), microscope->true_dot(X_WT)};
     return microscope->expose(X_WT, region, number);
   };
-
-  TraceObserver trace(stage.part);
-  sim::DepositionObserver deposition(stage.machine, stage.part);
-  sim::CollisionObserver collision(stage.machine, stage.as_built, stage.part, {});
-  std::vector<sim::Observer*> observers{&trace, &deposition};
-  if (options.watch_collisions) observers.push_back(&collision);
   sim::TwinOptions twin;
   twin.faults = stage.faults;
   sim::SimulatedPort port(stage.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
-                          observers, twin);
+                          {&watch.thread}, twin);
 
   control::PrintOptions print_options;
   print_options.gap_control = options.gap_control;
   print_options.part = stage.part.get();
-  ProgressRelay relay(progress);
+  Relay relay(progress, watch.thread, watch.trace);
   TwinRun run;
   run.result = control::print(stage.program, stage.machine, port, print_options, &relay);
+  watch.thread.drain();
   if (!port.engine_failure().empty()) throw MachineError(port.engine_failure());
+  watch.deposition.finish();
 
-  run.trace = trace.take();
-  subtract_offsets(run.trace, run.result.offsets);
+  run.accuracy = watch.trace.accuracy();
+  run.trace_stride = watch.trace.stride();
+  run.trace = watch.trace.take();
   run.frames = pair_with_truth(run.result, truth);
-  run.deposition = deposition.summary();
-  run.loose = deposition.loose_stretches();
+  run.deposition = watch.deposition.summary();
+  run.loose = watch.deposition.loose_stretches();
+  run.flow = watch.flow.stretches();
+  run.workpiece = watch.workpiece;
+  if (stage.machine.tool.prints()) run.strands = sim::air_strands(run.loose, stage.machine, stage.material);
   if (options.watch_collisions) {
-    run.collisions = collision.collisions();
-    run.near_collisions = collision.near_collisions();
-    run.collision = {to_mm(collision.min_clearance()), collision.checks(), collision.pairs()};
+    run.collisions = watch.collision.collisions();
+    run.near_collisions = watch.collision.near_collisions();
+    run.collision = {to_mm(watch.collision.min_clearance()), watch.collision.checks(),
+                     watch.collision.pairs()};
   }
-  const std::string engine = plant->engine();
-  const auto space = engine.find(' ');
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
-  run.engine.name = engine.substr(0, space);
-  run.engine.version = space == std::string::npos ? "" : engine.substr(space + 1);
-  run.engine.timestep_s = plant->timestep();
-  run.engine.steps = port.steps();
-  run.engine.real_time_factor = plant->time() / wall.count();
-  run.engine.closure_max_um = to_um(port.closure_max());
+  run.engine = engine_of(*plant, port, wall.count());
   return run;
 }
 

@@ -7,9 +7,12 @@
 #include "control/print.h"
 #include "geometry/mesh.h"
 #include "machine/description.h"
+#include "machine/material.h"
+#include "rehearsal/flow_watch.h"
 #include "rehearsal/rehearse.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
+#include "sim/process/air_strands.h"
 #include "sim/process/deposition.h"
 #include "toolpath/program.h"
 
@@ -18,6 +21,7 @@ namespace understudy::rehearsal {
 /// What a run reads; immutable, shared by runs in several threads.
 struct Stage {
   machine::MachineDescription machine;
+  machine::Material material;  ///< of a tool that prints
   toolpath::Program program;
   std::shared_ptr<const geometry::Mesh> part;  ///< may be null
   sim::AsBuilt as_built;
@@ -29,11 +33,16 @@ struct Stage {
 struct TwinRun {
   control::PrintResult result;
   std::vector<TracePoint> trace;
+  int trace_stride = 1;  ///< snapshots a point of the trace
+  std::optional<AccuracyFigures> accuracy;
   std::vector<FrameRecord> frames;
   std::vector<sim::Contact> collisions, near_collisions;
   CollisionFigures collision;
   sim::DepositionSummary deposition;
-  std::vector<sim::DepositionObserver::Loose> loose;
+  std::vector<sim::LooseStretch> loose;
+  std::vector<FlowStretch> flow;
+  std::vector<sim::AirStrand> strands;
+  std::shared_ptr<sim::Workpiece> workpiece;  ///< as printed
   EngineFigures engine;
 };
 

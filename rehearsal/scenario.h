@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rehearsal/metrics.h"
+#include "rehearsal/rehearse.h"
 #include "rehearsal/scenario_faults.h"
 
 namespace understudy::rehearsal {
@@ -46,6 +47,9 @@ struct Scenario {
   std::string as_built;  ///< nominal, sampled, manufactured or a path
   std::uint64_t seed = 0;
   std::string gap_control, engine;
+  std::string material;    ///< empty: the machine's
+  DialectRequest dialect;  ///< how the program is read
+  SurfaceRequest surface;  ///< what is asked about the surface
   std::vector<FaultRequest> faults;
   std::vector<Expectation> expect;  ///< of the run with `seed`
   std::optional<MachineSeries> machines;

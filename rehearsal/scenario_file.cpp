@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::vector<std::string> kAsBuilt{"nominal", "sampled", "manufactured"};
-const std::vector<std::string> kGapControls{"off", "start"};
+const std::vector<std::string> kGapControls{"off", "start", "continuous"};
 const std::vector<std::string> kStatistics{"min", "max", "mean", "median", "p95", "fraction_within"};
 constexpr std::uint64_t kMachinesMax = 1'000'000;  // beyond it a range of seeds is a slip of the pen
 
@@ -157,6 +157,25 @@ MachineSeries read_machines(StrictMap map) {
   return series;
 }
 
+// How the program is read, what it prints with, and what is asked about the surface; all may be left out.
+void read_program_options(StrictMap& map, const fs::path& folder, Scenario& scenario) {
+  if (map.has("material")) scenario.material = name_or_path(map, "material", folder, ".yaml");
+  DialectRequest& dialect = scenario.dialect;
+  if (map.has("place_mm")) {
+    const auto place = map.numbers("place_mm", 3);
+    std::copy(place.begin(), place.end(), dialect.place_mm.begin());
+  }
+  if (map.has("extruder_letter")) dialect.extruder_letter = map.word("extruder_letter", {"E", "A"});
+  if (map.has("b_sign")) dialect.b_sign = map.number("b_sign") < 0 ? -1 : 1;
+  if (map.has("c_sign")) dialect.c_sign = map.number("c_sign") < 0 ? -1 : 1;
+  if (map.has("coordinates"))
+    dialect.coordinates = map.word("coordinates", {"tip", "machine", "crossing"});
+  SurfaceRequest& surface = scenario.surface;
+  if (map.has("intended")) surface.intended = name_or_path(map, "intended", folder, ".stl");
+  if (map.has("profile_mm")) surface.profile_mm = map.numbers("profile_mm", 6);
+  if (map.has("probe")) surface.probe = map.numbers("probe", 3);
+}
+
 }  // namespace
 
 Scenario load_scenario(const fs::path& path) {
@@ -175,6 +194,7 @@ Scenario load_scenario(const fs::path& path) {
   scenario.seed = map.whole_number("seed");
   scenario.gap_control = map.word("gap_control", kGapControls);
   scenario.engine = map.word("engine", engine_names());
+  read_program_options(map, folder, scenario);
   scenario.faults = read_faults(map);
   scenario.expect = read_expectations(map, false);
   if (map.has("machines")) scenario.machines = read_machines(map.map("machines", "machines"));

@@ -69,6 +69,22 @@ Json collision_value(const CollisionFigures& collision) {
   return object;
 }
 
+Json sag_value(const SagFigures& sag) {
+  Json object;
+  put(object, "max_um", sag.max_um);
+  object["strands"] = sag.strands;
+  put(object, "unsupported_mm", sag.unsupported_mm);
+  return object;
+}
+
+Json surface_value(const SurfaceFigures& surface) {
+  Json object;
+  if (surface.ra_um) put(object, "ra_um", *surface.ra_um);
+  if (surface.rz_um) put(object, "rz_um", *surface.rz_um);
+  if (surface.deviation_p95_um) put(object, "deviation_p95_um", *surface.deviation_p95_um);
+  return object;
+}
+
 Json engine_value(const EngineFigures& engine) {
   Json object;
   object["name"] = engine.name;
@@ -114,7 +130,9 @@ Json summary_value(const Record& record) {
   if (record.print) summary["print"] = print_value(*record.print);
   if (record.accuracy) summary["accuracy"] = accuracy_value(*record.accuracy);
   if (record.gap) summary["gap"] = gap_value(*record.gap);
+  if (record.sag) summary["sag"] = sag_value(*record.sag);
   if (record.collision) summary["collision"] = collision_value(*record.collision);
+  if (record.surface) summary["surface"] = surface_value(*record.surface);
   if (record.engine) summary["engine"] = engine_value(*record.engine);
   summary["provenance"] = provenance_value(record.provenance);
   return summary;

@@ -186,6 +186,7 @@ void LaserView::State::gather(const LaserScene& scene, const Region& region) {
   const Pose X_CT = scene.X_TC.inverse();
   const Pose X_CW = (scene.X_WT * scene.X_TC).inverse();
   if (scene.part) add(surface_of(scene.part), X_CW, Owner::scenery, scene, region);
+  if (scene.printed) add(tessellate(*scene.printed), X_CW, Owner::scenery, scene, region);  // grows: not kept
   for (const auto& body : scene.tool_bodies) {
     const auto* mesh = std::get_if<geometry::MeshShape>(&body.form);
     if (mesh) {

@@ -120,20 +120,41 @@ void put_ground(PictureGeometry& g, double z) {
            marked);
 }
 
+// The sky is four dozen lights: a fine-grained scene, like a print of many beads, shades itself softly
+// whether all of its grains are counted or one in some.
+constexpr std::size_t kCastersMost = 40'000;  // triangles
+constexpr std::size_t kTriangle = 27;         // floats
+
+void thin_casters(PictureGeometry& g, const std::vector<std::size_t>& shape_ends) {
+  if (g.solids.size() <= kCastersMost * kTriangle) return;
+  const std::size_t stride = g.solids.size() / (kCastersMost * kTriangle) + 1;
+  std::size_t begin = 0;
+  for (const std::size_t end : shape_ends) {
+    const bool fine = end - begin > kCastersMost / 4 * kTriangle;
+    for (std::size_t i = begin; i < end; i += kTriangle * (fine ? stride : 1))
+      g.casters.insert(g.casters.end(), g.solids.begin() + static_cast<std::ptrdiff_t>(i),
+                       g.solids.begin() + static_cast<std::ptrdiff_t>(i + kTriangle));
+    begin = end;
+  }
+}
+
 }  // namespace
 
 PictureGeometry picture_geometry(const PictureScene& scene) {
   PictureGeometry g;
   const double metres_per_pixel_at_1m = 2 * std::tan(scene.field_of_view / 2) / scene.height;
+  std::vector<std::size_t> shape_ends;
   for (const ColouredShape& coloured : scene.shapes) {
     const Surface surface = tessellate(coloured.shape, kSegments);
     put_surface(g.solids, surface, coloured.colour);
+    shape_ends.push_back(g.solids.size());
     Colour dark = coloured.colour;
     for (float& channel : dark) channel *= kCreaseShade;
     for (const auto& [a, b] : surface.creases)
       put_crease(g.creases, a, b, scene.eye_W, metres_per_pixel_at_1m, dark);
   }
   for (const Polyline& line : scene.polylines) put_tube(g.solids, line);
+  shape_ends.push_back(g.solids.size());
   if (g.solids.empty()) {
     g.radius = 1;
     return g;
@@ -142,6 +163,7 @@ PictureGeometry picture_geometry(const PictureScene& scene) {
   g.centre = box.center();
   g.radius = std::max(1e-6, 0.5 * box.diagonal().norm());
   shift(g.solids, g.centre);
+  thin_casters(g, shape_ends);
   shift(g.creases, g.centre);
   // Just below, so that a table that ends there does not fight with it.
   const double ground = box.min().z() - 1e-3 * g.radius;

@@ -107,7 +107,7 @@ Lights make_lights(const PictureScene& scene, double radius) {
 }
 
 void draw_shadows(const GlFunctions& gl, const Lights& lights, const GlVertices& solids,
-                  const GlTarget& atlas, const GlTarget& lamp) {
+                  const GlVertices& casters, const GlTarget& atlas, const GlTarget& lamp) {
   const GlProgram program(gl, "depth", shader_source("depth.vert"), shader_source("depth.frag"));
   program.use();
   gl.Enable(GL_DEPTH_TEST);
@@ -120,7 +120,7 @@ void draw_shadows(const GlFunctions& gl, const Lights& lights, const GlVertices&
     gl.Viewport(i % kTilesX * kTile, i / kTilesX * kTile, kTile, kTile);
     gl.UniformMatrix4fv(program.uniform("clip"), 1, GL_FALSE,
                         lights.clips[static_cast<std::size_t>(i)].data());
-    solids.draw(GL_TRIANGLES);
+    casters.draw(GL_TRIANGLES);
   }
   lamp.bind();
   gl.Clear(GL_DEPTH_BUFFER_BIT);
@@ -193,12 +193,13 @@ Picture render_picture(const PictureScene& scene) {
 
   GlContext context;
   const GlFunctions& gl = context.gl();
-  GlVertices solids(gl, kLayout), ground(gl, kLayout), creases(gl, kLayout);
+  GlVertices solids(gl, kLayout), casters(gl, kLayout), ground(gl, kLayout), creases(gl, kLayout);
   solids.fill(geometry.solids);
   ground.fill(geometry.ground);
   creases.fill(geometry.creases);
   const GlTarget atlas(gl, GL_R8, kTilesX * kTile, kTilesY * kTile), lamp(gl, GL_R8, kLampMap, kLampMap);
-  draw_shadows(gl, lights, solids, atlas, lamp);
+  if (!geometry.casters.empty()) casters.fill(geometry.casters);
+  draw_shadows(gl, lights, solids, geometry.casters.empty() ? solids : casters, atlas, lamp);
 
   const Drawing drawing{solids, ground, creases};
   const GlTarget half_size(gl, GL_RGBA32F, (scene.width + 1) / 2, (scene.height + 1) / 2);

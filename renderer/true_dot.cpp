@@ -12,8 +12,9 @@ constexpr double kLift = 0.5e-6;  // [m], off the surface, so that a ray from it
 /// Distance to the first thing on the ray, in W; `kReach` when there is none.
 double first_hit(const LaserScene& scene, const Vec3& origin, const Vec3& direction, double reach) {
   double nearest = reach;
-  if (scene.part) {
-    if (const auto hit = scene.part->ray_hit(origin, direction, nearest)) nearest = hit->distance;
+  for (const auto& mesh : {scene.part, scene.printed}) {
+    if (!mesh) continue;
+    if (const auto hit = mesh->ray_hit(origin, direction, nearest)) nearest = hit->distance;
   }
   if (scene.table && direction.z() != 0) {
     const double t = -origin.z() / direction.z();

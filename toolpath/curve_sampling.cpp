@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "toolpath/plan_checks.h"
 #include "toolpath/polyline.h"
 
 namespace understudy::toolpath {
@@ -21,10 +22,6 @@ constexpr double kSwingPerStep = 5 * kDegree;  // over it, arc and chord of the 
 constexpr double kSharpEdge = 20 * kDegree;
 
 double angle(const Vec3& u, const Vec3& v) { return std::atan2(u.cross(v).norm(), u.dot(v)); }
-
-std::string in_mm(const Vec3& p) {
-  return fmt::format("({:.3f}, {:.3f}, {:.3f}) mm", to_mm(p.x()), to_mm(p.y()), to_mm(p.z()));
-}
 
 // A stretch of the curve without corners, by arc length.
 class Stretch {

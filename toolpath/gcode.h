@@ -1,9 +1,10 @@
 // G-code as printers use it, with tool orientation per point (docs/gcode.md).
 //
-// Words: G0 G1 G4 G20 G21 G28 G90 G91 G92 G93 G94, M82 M83 M104 M109 M106 M107 M30, modal, with ; and ( )
-// comments, E for filament length. Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K alone,
-// the tool axis; or B C, the turning axes of a machine that has them, with G43.4 and G49. Lengths mm (or inch
-// under G20), angles degrees, feeds mm/min.
+// Words: G0 G1 G4 G20 G21 G28 G90 G91 G92 G93 G94, M82 M83 M104 M109 M106 M107 M221 M30 and T, modal, with ;
+// and ( ) comments, E for filament length; what slicers write beside it and the twin has no use for is a
+// list. Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K alone, the tool axis; or B C, the
+// turning axes of a machine that has them, with G43.4 and G49. Lengths mm (or inch under G20), angles
+// degrees, feeds mm/min.
 #pragma once
 
 #include <filesystem>
@@ -21,6 +22,9 @@ struct RotaryWords {
   enum class Coordinates {
     tip,      ///< X Y Z is p_WT (tool-centre-point coordinates, G43.4)
     machine,  ///< X Y Z are the slides (G49)
+    /// X Y Z are the slides of some machine whose turning axes cross at the program's origin:
+    /// p_WT = offset_W + Rz(C) Ry(B) (X, Y, Z). No word of the program says so.
+    crossing,
   };
   Coordinates coordinates = Coordinates::tip;  ///< before the program says which
   double b_home = 0, c_home = 0;               ///< at X_WT_home
@@ -36,6 +40,10 @@ struct GcodeOptions {
   Pose X_WT_home = Pose::Identity();  ///< where the tool starts and where G28 takes it
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
   std::optional<RotaryWords> rotary = std::nullopt;  ///< without it B and C are errors
+  // Of the dialect.
+  char extruder_letter = 'E';  ///< of filament: E or A
+  Vec3 offset_W{0, 0, 0};      ///< [m], the program's origin in W
+  int b_sign = 1, c_sign = 1;  ///< -1: the program counts that axis the other way round
 };
 
 /// Throws InputError with file, line and column for an unknown word, a malformed or non-finite number, a
@@ -45,7 +53,8 @@ Program read_gcode(const std::filesystem::path& path, const GcodeOptions& option
 Program parse_gcode(const std::string& text, const std::string& file, const GcodeOptions& options);
 
 /// Text that read_gcode turns into the same program: lengths within 0.5e-6 mm, quaternion components within
-/// 0.5e-9, orientation within 2e-9 rad. `header` lines become comments at the top.
+/// 0.5e-9, orientation within 2e-9 rad. Turning axes are left out: the poses say where the tool goes, not by
+/// which turns of the table. `header` lines become comments at the top.
 /// Throws InputError for a step that G-code cannot say: a print or move without feed, a value not finite.
 std::string write_gcode(const Program& program, const std::vector<std::string>& header);
 

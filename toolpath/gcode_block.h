@@ -29,16 +29,27 @@ enum class Command {
   heat_and_wait,        // M109
   fan_on,               // M106
   fan_off,              // M107
+  flow,                 // M221
   end,                  // M30
+};
+
+/// How a dialect uses letters.
+struct Letters {
+  bool rotary = false;  ///< B and C are axes
+  char extruder = 'E';  ///< is read as E
 };
 
 class Block {
  public:
   /// Throws InputError for a word that the dialect does not know, a letter given twice, or two commands that
-  /// exclude each other. B and C are known to a machine `with_rotary_words`.
-  Block(std::vector<Word> words, std::string file, int line, bool with_rotary_words);
+  /// exclude each other.
+  Block(std::vector<Word> words, const std::string& file, int line, Letters letters);
 
   bool empty() const { return words_.empty(); }
+  /// A command that the twin has no use for, alone on its line, with parameters that it may have.
+  bool without_effect() const { return without_effect_; }
+  /// The only word of its line.
+  bool alone(const Word& word) const { return words_.size() == 1 && &words_.front().word == &word; }
   int line() const { return line_; }
   /// The word of the command, or null; commands need not be taken.
   const Word* find(Command command) const;
@@ -61,13 +72,16 @@ class Block {
     bool taken = false;
   };
   void add(const Word& word, bool first);
-  void check_rotary(const Word& word) const;
+  void check_letter(const Word& word) const;
   void check_groups() const;
+  void check_numbers() const;
+  bool read_without_effect(const std::vector<Word>& words);
 
   std::vector<Entry> words_;
-  std::string file_;
+  const std::string& file_;  // of the parser, which outlives its lines
   int line_;
-  bool with_rotary_words_;
+  Letters letters_;
+  bool without_effect_ = false;
 };
 
 }  // namespace understudy::toolpath

@@ -50,10 +50,29 @@ class LineLexer {
     const std::size_t start = at_;
     word.letter = upper(line_[at_++]);
     word.column = static_cast<int>(start) + 1;
+    const bool apart = at_ >= line_.size() || is_blank(line_[at_]) || line_[at_] == ';' || line_[at_] == '(';
+    const std::size_t after_letter = at_;
     skip_blanks();
-    word.value = number(start);
+    word.bare = apart && !begins_number();
+    word.quoted = at_ < line_.size() && line_[at_] == '"';
+    if (word.quoted)
+      skip_quoted();
+    else if (word.bare)
+      at_ = after_letter;
+    else
+      word.value = number(start);
     word.text = line_.substr(start, at_ - start);
     return word;
+  }
+
+  bool begins_number() const {
+    return at_ < line_.size() &&
+           (is_digit(line_[at_]) || line_[at_] == '.' || line_[at_] == '-' || line_[at_] == '+');
+  }
+  void skip_quoted() {
+    const std::size_t close = line_.find('"', at_ + 1);
+    if (close == std::string_view::npos) fail(at_, "the text '\"' is not closed on its line");
+    at_ = close + 1;
   }
 
   // Sign, digits, point, digits; no exponent, for E is a word of its own.

@@ -12,6 +12,8 @@ struct Word {
   double value = 0;       ///< as written, finite
   std::string_view text;  ///< letter and number as written, for messages
   int column = 0;         ///< from 1
+  bool bare = false;      ///< a letter without a number, which few commands take; value is 0
+  bool quoted = false;    ///< P "text"; value is 0
 };
 
 /// The words of one line (without its line end), comments left out. Throws InputError with place for a

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string_view>
 
 #include "core/digest.h"
@@ -15,11 +16,13 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
   program.file = file;
   program.sha256 = sha256_hex(text);
   GcodeState state(options);
+  const Letters letters{options.rotary.has_value(), options.extruder_letter};
+  program.steps.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
   std::string_view rest = text;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // byte order mark of some editors
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = rest.find('\n');
-    Block block(lex_line(rest.substr(0, end), file, line), file, line, options.rotary.has_value());
+    Block block(lex_line(rest.substr(0, end), file, line), file, line, letters);
     state.run(block, program.steps);
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
   }

@@ -10,9 +10,9 @@ namespace {
 
 constexpr const char* kMotionWords = "XYZBCEWIJK";
 // No spool is longer; keeps sums finite.
-constexpr double kLargestExtruder = 1e6;  // [m]
-constexpr double kLongestDwell = 86400;   // [s]
-constexpr double kCelsius = 273.15;       // [K]
+constexpr double kLargestExtruder = 1e6;            // [m]
+constexpr double kLongestDwell = 86400;             // [s]
+constexpr int kLeastFlow = 1, kLargestFlow = 1000;  // [%]
 
 bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
 
@@ -23,6 +23,7 @@ GcodeState::GcodeState(const GcodeOptions& options) : position_(options) {}
 void GcodeState::run(Block& block, std::vector<Step>& steps) {
   if (block.empty()) return;
   if (ended_) block.fail("a word after M30, the end of the program");
+  if (block.without_effect()) return;
   set_modes(block);
   set_feed(block);
   set_process(block, steps);
@@ -54,15 +55,18 @@ void GcodeState::set_feed(Block& block) {
   duration_.reset();
   const Word* word = block.take('F');
   if (word == nullptr) return;
+  const bool homing = block.find(Command::home) != nullptr;
   const double feed = word->value * unit_ / 60;
   const double duration = 60 / word->value;
   if (!(word->value > 0 && feed > 0 && std::isfinite(duration)))
     block.fail(*word, fmt::format("'{}': the feed must be above 0", word->text));
+  if (homing) return;  // of this line alone, and home is reached as fast as the machine may
   if (!inverse_time_) {
     feed_ = feed;
     return;
   }
-  const bool moves = motion_ == Motion::linear && block.find_any(kMotionWords) != nullptr;
+  const bool moves = (motion_ == Motion::linear && block.find_any(kMotionWords) != nullptr) ||
+                     (motion_ == Motion::rapid && block.find('E') != nullptr);
   if (!moves)
     block.fail(*word, fmt::format("'{}': under G93 an F belongs to the G1 move of its line", word->text));
   duration_ = duration;
@@ -72,12 +76,13 @@ void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
   const Word* heat = block.find(Command::heat);
   const Word* wait = block.find(Command::heat_and_wait);
   const Word* fan = block.find(Command::fan_on);
+  select_tool(block);
   if (const Word* command = heat != nullptr ? heat : wait) {
     const Word* s = block.take('S');
     if (s == nullptr) block.fail(*command, fmt::format("'{}' needs S, the temperature in C", command->text));
     if (s->value < 0) block.fail(*s, fmt::format("'{}': the nozzle temperature is below 0 C", s->text));
     steps.push_back(step(StepKind::temperature, block.line()));
-    steps.back().temperature = s->value + kCelsius;
+    steps.back().temperature = s->value + kCelsiusZero;
     steps.back().wait = wait != nullptr;
   }
   if (fan != nullptr) {
@@ -89,11 +94,35 @@ void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
     steps.back().fan = s->value / 255;
   }
   if (block.find(Command::fan_off) != nullptr) steps.push_back(step(StepKind::fan, block.line()));
+  if (const Word* flow = block.find(Command::flow)) {
+    const Word* s = block.take('S');
+    if (s == nullptr) block.fail(*flow, fmt::format("'{}' needs S, the flow in percent", flow->text));
+    if (s->value < kLeastFlow || s->value > kLargestFlow)
+      block.fail(*s, fmt::format("'{}': the flow is outside {} to {} %", s->text, kLeastFlow, kLargestFlow));
+    flow_ = s->value / 100;
+  }
+}
+
+/// T alone, or with what concerns one tool. Machines here have one extruder; whether a program calls it T0 or
+/// T1 is its own affair, as long as it keeps to one.
+void GcodeState::select_tool(Block& block) {
+  const Word* tool = block.find('T');
+  if (tool == nullptr) return;
+  const bool of_command = block.find(Command::heat) != nullptr ||
+                          block.find(Command::heat_and_wait) != nullptr ||
+                          block.find(Command::flow) != nullptr;
+  if (!of_command && !block.alone(*tool)) return;
+  block.take('T');
+  if (tool->value != 0 && tool->value != 1)
+    block.fail(*tool, fmt::format("'{}': the machine has one extruder, T0 or T1", tool->text));
+  if (tool_ && *tool_ != tool->value)
+    block.fail(*tool, fmt::format("'{}' after T{}: the machine has one extruder", tool->text, *tool_));
+  tool_ = tool->value;
 }
 
 void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
   if (block.find(Command::dwell) != nullptr) return dwell(block, steps);
-  if (block.find(Command::home) != nullptr) return home(steps, block.line());
+  if (block.find(Command::home) != nullptr) return home(block, steps);
   if (block.find(Command::set_position) != nullptr) return set_position(block);
   const Word* word = block.find_any(kMotionWords);
   if (word != nullptr && motion_ == Motion::none)
@@ -119,9 +148,9 @@ void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
   steps.back().duration = duration;
 }
 
-void GcodeState::home(std::vector<Step>& steps, int line) {
-  position_.go_home();
-  steps.push_back(step(StepKind::home, line));
+void GcodeState::home(Block& block, std::vector<Step>& steps) {
+  const bool whole = position_.go_home(block);
+  steps.push_back(step(whole ? StepKind::home : StepKind::travel, block.line()));
 }
 
 void GcodeState::set_position(Block& block) {
@@ -133,15 +162,14 @@ void GcodeState::set_position(Block& block) {
 }
 
 void GcodeState::move(Block& block, std::vector<Step>& steps) {
-  const Word* extrusion = block.find('E');
-  if (motion_ == Motion::rapid && extrusion != nullptr)
-    block.fail(*extrusion, fmt::format("'{}': G0 feeds no filament, use G1", extrusion->text));
+  // Filament is fed at a feed, whichever of the two words the line has.
+  const bool paced = motion_ == Motion::linear || block.find('E') != nullptr;
   const Pose from = position_.X_WT();
   position_.move(block, unit_, relative_);
-  Step next = step(motion_ == Motion::rapid ? StepKind::travel : StepKind::move, block.line());
+  Step next = step(paced ? StepKind::move : StepKind::travel, block.line());
   next.filament = fed_filament(block);
   if (next.filament > 0) next.kind = StepKind::print;
-  if (motion_ == Motion::linear) set_pace(block, next);
+  if (paced) set_pace(block, next);
   if (next.filament != 0 && next.duration == 0 && !tip_moves(from, position_.X_WT())) {
     next.duration = std::abs(next.filament) / next.feed;
     next.feed = 0;
@@ -151,7 +179,9 @@ void GcodeState::move(Block& block, std::vector<Step>& steps) {
 
 void GcodeState::set_pace(const Block& block, Step& step) const {
   if (inverse_time_ && !duration_) block.fail("G93 needs F, one over the move's minutes, on every G1 line");
-  if (!inverse_time_ && !feed_) block.fail("G1 without a feed: no F on this line or before it");
+  if (!inverse_time_ && !feed_)
+    block.fail(fmt::format("{} without a feed: no F on this line or before it",
+                           motion_ == Motion::linear ? "G1" : "G0 with E"));
   step.duration = duration_.value_or(0);
   step.feed = inverse_time_ ? 0 : *feed_;
 }
@@ -165,13 +195,14 @@ double GcodeState::fed_filament(Block& block) {
   if (std::abs(extruder_) > kLargestExtruder)
     block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
                                   to_mm(extruder_), to_mm(kLargestExtruder)));
-  return relative_extrusion_ ? value : value - before;
+  return flow_ * (relative_extrusion_ ? value : value - before);
 }
 
 Step GcodeState::step(StepKind kind, int line) const {
   Step step;
   step.kind = kind;
   step.X_WT = position_.X_WT();
+  if (moves(step)) step.rotary = position_.turns();
   step.line = line;
   return step;
 }

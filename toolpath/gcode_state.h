@@ -27,7 +27,8 @@ class GcodeState {
   void set_process(Block& block, std::vector<Step>& steps);
   void run_motion(Block& block, std::vector<Step>& steps);
   void dwell(Block& block, std::vector<Step>& steps);
-  void home(std::vector<Step>& steps, int line);
+  void home(Block& block, std::vector<Step>& steps);
+  void select_tool(Block& block);
   void set_position(Block& block);
   void move(Block& block, std::vector<Step>& steps);
   void set_pace(const Block& block, Step& step) const;
@@ -36,8 +37,10 @@ class GcodeState {
   Step step(StepKind kind, int line) const;
 
   GcodePosition position_;
-  double extruder_ = 0;        // [m], reading of E
-  double unit_ = kMillimetre;  // [m]
+  double extruder_ = 0;         // [m], reading of E
+  double flow_ = 1;             // filament fed for one that is programmed (M221)
+  std::optional<double> tool_;  // number of the only extruder, once a line has said it
+  double unit_ = kMillimetre;   // [m]
   bool relative_ = false;
   bool relative_extrusion_ = false;
   bool inverse_time_ = false;

@@ -9,8 +9,6 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr double kCelsius = 273.15;  // [K]
-
 // Fixed point without trailing zeros; never an exponent, which G-code would read as an E word.
 std::string number(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
@@ -49,7 +47,7 @@ class Writer {
       case StepKind::dwell:
         return line("G4 P" + number(checked(step.duration) * 1e3, 6));
       case StepKind::temperature:
-        return line((step.wait ? "M109 S" : "M104 S") + number(checked(step.temperature) - kCelsius, 6));
+        return line((step.wait ? "M109 S" : "M104 S") + number(checked(step.temperature) - kCelsiusZero, 6));
       case StepKind::fan:
         return line(step.fan > 0 ? "M106 S" + number(checked(step.fan) * 255, 6) : "M107");
       case StepKind::end:

@@ -1,23 +1,21 @@
 #include "toolpath/surface_planner.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/units.h"
 #include "toolpath/curve_sampling.h"
+#include "toolpath/plan_checks.h"
+#include "toolpath/program_builder.h"
 
 namespace understudy::toolpath {
 namespace {
 
 using geometry::SurfacePoint;
 
-void check_positive(const char* name, double value, const char* unit) {
-  if (!(value > 0 && std::isfinite(value)))
-    throw InputError(fmt::format("{} is {:g} {}, it must be above 0 {}", name, value, unit, unit));
-}
+constexpr int kMostLayers = 1000;
 
 void check_plan(const SurfacePlan& plan) {
   check_positive("gap", to_mm(plan.gap), "mm");
@@ -27,92 +25,65 @@ void check_plan(const SurfacePlan& plan) {
   check_positive("chord tolerance", to_mm(plan.chord_tolerance), "mm");
   check_positive("feed", plan.feed / kMillimetrePerMinute, "mm/min");
   check_positive("approach feed", plan.approach_feed / kMillimetrePerMinute, "mm/min");
-  check_positive("bead width", to_mm(plan.bead_width), "mm");
-  check_positive("bead height", to_mm(plan.bead_height), "mm");
+  check_bead(plan.bead_width, plan.bead_height);
   check_positive("filament diameter", to_mm(plan.filament_diameter), "mm");
   check_positive("largest tilt", to_deg(plan.tilt_max), "deg");
   if (plan.clearance < plan.standoff)
     throw InputError(fmt::format("clearance is {:g} mm, less than the standoff of {:g} mm",
                                  to_mm(plan.clearance), to_mm(plan.standoff)));
-  if (plan.bead_width < plan.bead_height)
-    throw InputError(fmt::format("bead width is {:g} mm, less than its height of {:g} mm",
-                                 to_mm(plan.bead_width), to_mm(plan.bead_height)));
-  if (!(plan.fan >= 0 && plan.fan <= 1))
-    throw InputError(fmt::format("fan is {:g}, outside 0 to 1", plan.fan));
-  if (!(plan.temperature >= 0 && std::isfinite(plan.temperature)))
-    throw InputError(fmt::format("temperature is {:g} K, it must not be below 0 K", plan.temperature));
+  check_nozzle(plan.temperature, plan.fan);
 }
 
 void check_tilt(const std::vector<SurfacePoint>& path, double tilt_max) {
   for (const SurfacePoint& s : path) {
     const double tilt = std::atan2(s.normal.head<2>().norm(), s.normal.z());
     if (tilt > tilt_max + 1e-9)  // a curve clipped at the limit lies on it to rounding
-      throw InputError(
-          fmt::format("the surface at ({:.3f}, {:.3f}, {:.3f}) mm tilts the tool {:.3f} deg, more than "
-                      "{:.3f} deg",
-                      to_mm(s.position.x()), to_mm(s.position.y()), to_mm(s.position.z()), to_deg(tilt),
-                      to_deg(tilt_max)));
+      throw InputError(fmt::format("the surface at {} tilts the tool {:.3f} deg, more than {:.3f} deg",
+                                   in_mm(s.position), to_deg(tilt), to_deg(tilt_max)));
   }
 }
 
-class SurfaceProgram {
- public:
-  explicit SurfaceProgram(const SurfacePlan& plan) : plan_(plan) {}
-
-  Program run(const std::vector<SurfacePoint>& path) {
-    // Steps that do not move leave the tool where the program will put it first.
-    const Pose above = tool(path.front(), plan_.gap + plan_.clearance);
-    if (plan_.temperature > 0) {
-      Step& heat = add(StepKind::temperature, above);
-      heat.temperature = plan_.temperature;
-      heat.wait = true;
-    }
-    add(StepKind::fan, above).fan = plan_.fan;
-    add(StepKind::travel, above);
-    add(StepKind::travel, tool(path.front(), plan_.gap + plan_.standoff));
-    add(StepKind::move, tool(path.front(), plan_.gap)).feed = plan_.approach_feed;
-    for (std::size_t i = 1; i < path.size(); ++i) {
-      Step& print = add(StepKind::print, tool(path[i], plan_.gap));
-      print.feed = plan_.feed;
-      print.filament = filament(path[i - 1], path[i]);
-    }
-    add(StepKind::travel, tool(path.back(), plan_.gap + plan_.clearance));
-    return std::move(program_);
+// One stroke of a bead whose lower side is `base` above the surface.
+void add_stroke(ProgramBuilder& program, const std::vector<SurfacePoint>& path, double base,
+                const SurfacePlan& plan) {
+  const auto tool = [&](const SurfacePoint& s, double height) {
+    return tool_at(s.position, s.normal, base + height);
+  };
+  const Pose above = tool(path.front(), plan.gap + plan.clearance);
+  if (program.empty()) program.begin(above, plan.temperature, plan.fan);
+  program.travel(above);
+  program.travel(tool(path.front(), plan.gap + plan.standoff));
+  program.move(tool(path.front(), plan.gap), plan.approach_feed);
+  const double middle = base + 0.5 * plan.bead_height, area = bead_area(plan.bead_width, plan.bead_height);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vec3 from = path[i - 1].position + middle * path[i - 1].normal;
+    const Vec3 to = path[i].position + middle * path[i].normal;
+    program.print(tool(path[i], plan.gap), plan.feed, area * (to - from).norm());
   }
-
- private:
-  static Pose tool(const SurfacePoint& s, double height) {
-    return make_pose(shortest_arc_from_z(s.normal), s.position + height * s.normal);
-  }
-  double filament(const SurfacePoint& from, const SurfacePoint& to) const {
-    const double half = 0.5 * plan_.bead_height;
-    const double length = (to.position + half * to.normal - from.position - half * from.normal).norm();
-    const double d = plan_.filament_diameter;
-    return bead_area(plan_.bead_width, plan_.bead_height) * length / (std::numbers::pi / 4 * d * d);
-  }
-  Step& add(StepKind kind, const Pose& X_WT) {
-    Step step;
-    step.kind = kind;
-    step.X_WT = X_WT;
-    program_.steps.push_back(step);
-    return program_.steps.back();
-  }
-
-  SurfacePlan plan_;
-  Program program_;
-};
+  program.travel(tool(path.back(), plan.gap + plan.clearance));
+}
 
 }  // namespace
 
-double bead_area(double width, double height) {
-  return (width - height) * height + std::numbers::pi / 4 * height * height;
+Program plan_surface(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, const SurfacePlan& plan) {
+  return plan_surface(mesh, std::vector<std::vector<Vec3>>{curve}, 1, plan);
 }
 
-Program plan_surface(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, const SurfacePlan& plan) {
+Program plan_surface(const geometry::Mesh& mesh, const std::vector<std::vector<Vec3>>& curves, int layers,
+                     const SurfacePlan& plan) {
   check_plan(plan);
-  const auto path = sample_curve(mesh, curve, {plan.gap, plan.step, plan.chord_tolerance});
-  check_tilt(path, plan.tilt_max);
-  return SurfaceProgram(plan).run(path);
+  check_within("number of layers", layers, 1, kMostLayers, "layers");
+  if (curves.empty()) throw InputError("there are 0 curves to print, it needs 1");
+  std::vector<std::vector<SurfacePoint>> paths;
+  const double outermost = plan.gap + (layers - 1) * plan.bead_height;
+  for (const auto& curve : curves) {
+    paths.push_back(sample_curve(mesh, curve, {outermost, plan.step, plan.chord_tolerance}));
+    check_tilt(paths.back(), plan.tilt_max);
+  }
+  ProgramBuilder program(plan.filament_diameter);
+  for (int layer = 0; layer < layers; ++layer)
+    for (const auto& path : paths) add_stroke(program, path, layer * plan.bead_height, plan);
+  return program.take();
 }
 
 }  // namespace understudy::toolpath

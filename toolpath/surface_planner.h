@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "toolpath/bead.h"
 #include "toolpath/program.h"
 
 namespace understudy::toolpath {
@@ -25,10 +26,6 @@ struct SurfacePlan {
   double tilt_max = 0;           ///< [rad], largest tilt from vertical that the machine allows
 };
 
-/// Cross-section of a flattened strand, a rectangle with rounded ends: (width - height) height + pi height^2
-/// / 4 [m^2]. Needs width >= height.
-double bead_area(double width, double height);
-
 /// `curve` is a polyline near the surface. Its smooth stretches are divided into equal steps, each point is
 /// projected to the nearest surface point, steps are halved where the chord leaves the surface or the normal
 /// swings more than 5 degrees, and each point gets the shortest-arc orientation that puts the tool on the
@@ -39,6 +36,11 @@ double bead_area(double width, double height);
 /// curve has no length, leaves the mesh by more than 5 mm, crosses a sharp edge (normals of neighbours more
 /// than 20 degrees apart however close they are), or tilts the tool beyond tilt_max.
 Program plan_surface(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, const SurfacePlan& plan);
+
+/// The same for several curves, each with its own approach and retreat, and for `layers` layers of them:
+/// layer k = 0, 1, ... runs k bead heights farther out along the surface's normals.
+Program plan_surface(const geometry::Mesh& mesh, const std::vector<std::vector<Vec3>>& curves, int layers,
+                     const SurfacePlan& plan);
 
 /// The intersection of the mesh with a plane through `point` with unit `normal`: the longest connected
 /// polyline on the side that faces `up` (unit). It runs with its inside (the material) on the left, seen from
@@ -56,6 +58,19 @@ double tilt_about(const Vec3& surface_normal, const Vec3& swing_axis);
 /// Throws InputError when tilt_min is not below tilt_max or no part of the curve lies between them.
 std::vector<Vec3> clip_by_tilt(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, double tilt_min,
                                double tilt_max, const Vec3& swing_axis);
+
+/// Planes side by side, and what is kept of their sections.
+struct SectionRows {
+  Vec3 point = Vec3::Zero();    ///< [m], on the middle plane, or between the two middle ones
+  Vec3 normal = Vec3::UnitY();  ///< unit, level
+  int count = 1;
+  double pitch = 0;                   ///< [m], from plane to plane
+  double tilt_min = 0, tilt_max = 0;  ///< [rad], as clip_by_tilt takes them
+};
+
+/// section_curve and clip_by_tilt for each plane, along the normal; every second curve runs backwards, so
+/// that the tool goes to and fro. Throws InputError as they do, naming the row.
+std::vector<std::vector<Vec3>> section_rows(const geometry::Mesh& mesh, const SectionRows& rows);
 
 /// A polyline from a CSV file with the header x_mm,y_mm,z_mm. Throws InputError with file, line and column
 /// for another header, a row without three finite numbers, or fewer than two points.

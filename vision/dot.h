@@ -40,4 +40,8 @@ double speckle_area_px2(double wavelength, double aperture_sine, double px_per_m
 /// out the offset between the centroid and the beam's axis on curved or oblique surfaces.
 DotMeasurement measure_dot(const Image& image, const DotOptions& options);
 
+/// The same dot by a least-squares fit of an elliptic Gaussian on a level ground, for comparison: dearer, and
+/// worse under speckle (reference D). Its covariance takes the residuals as independent from grain to grain.
+DotMeasurement fit_dot(const Image& image, const DotOptions& options);
+
 }  // namespace understudy::vision

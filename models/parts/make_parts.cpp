@@ -107,12 +107,65 @@ Mesh slanted_box() {
            {1, 7, 5}}};
 }
 
+// For the comparison of planar layers with a conformal finish (Song 2015, figure 17): a block whose top is a
+// crown, a piece of a cylinder along y. Base, crown and shell are whole numbers of 0.13 mm layers high.
+constexpr double kLayer = 0.13;         // [mm]
+constexpr double kCrownHalfWidth = 12;  // [mm], along x
+constexpr double kCrownHalfLength = 6;  // [mm], along y
+constexpr double kBaseHeight = 140 * kLayer;
+constexpr double kApex = 157 * kLayer;
+constexpr double kCrownRadius = 40 + 3 * kLayer;
+constexpr int kCrownFacets = 80;  // sag of a chord 0.3 um
+
+// A block on z = 0 whose top is the profile z(x), from x = -12 to 12 mm.
+Mesh block_under(const std::vector<Vec2>& profile) {
+  std::vector<Vec3> vertices;
+  for (const double y : {-kCrownHalfLength, kCrownHalfLength})
+    for (const bool top : {false, true})
+      for (const Vec2& p : profile) vertices.push_back(Vec3(p.x(), y, top ? p.y() : 0) * kMillimetre);
+  const int n = static_cast<int>(profile.size());
+  std::vector<std::array<int, 3>> triangles;
+  const auto quad = [&](int a, int b, int c, int d) {
+    triangles.push_back({a, b, c});
+    triangles.push_back({a, c, d});
+  };
+  for (int i = 0; i + 1 < n; ++i) {
+    const int front = i, front_top = n + i, back = 2 * n + i, back_top = 3 * n + i;
+    quad(front, front + 1, front_top + 1, front_top);        // y low
+    quad(back + 1, back, back_top, back_top + 1);            // y high
+    quad(front_top, front_top + 1, back_top + 1, back_top);  // top
+    quad(front + 1, front, back, back + 1);                  // bottom
+  }
+  quad(2 * n, 0, n, 3 * n);                              // x low
+  quad(n - 1, 2 * n + n - 1, 3 * n + n - 1, n + n - 1);  // x high
+  return {std::move(vertices), std::move(triangles)};
+}
+
+// `shell`: how far inside the crown's surface [mm].
+Mesh crown(double shell) {
+  const double radius = kCrownRadius - shell;
+  std::vector<Vec2> profile;
+  for (int i = 0; i <= kCrownFacets; ++i) {
+    const double x = kCrownHalfWidth * (2.0 * i / kCrownFacets - 1);
+    profile.emplace_back(x, kApex - kCrownRadius + std::sqrt(radius * radius - x * x));
+  }
+  return block_under(profile);
+}
+
+Mesh crown_base() { return block_under({{-kCrownHalfWidth, kBaseHeight}, {kCrownHalfWidth, kBaseHeight}}); }
+
 void make_parts(const std::filesystem::path& folder) {
   write_file(folder / "bottle.stl",
              geometry::write_stl(bottle(), "bottle, body 31 mm, lying along y on z = 0, millimetres"));
   write_file(
       folder / "slanted_box.stl",
       geometry::write_stl(slanted_box(), "box, top slanted 15 degrees towards +x, on z = 0, millimetres"));
+  write_file(folder / "crown.stl",
+             geometry::write_stl(crown(0), "block with a crown of 40.39 mm, millimetres"));
+  write_file(folder / "crown_core.stl",
+             geometry::write_stl(crown(3 * kLayer), "the crown less a shell of 0.39 mm, millimetres"));
+  write_file(folder / "crown_base.stl",
+             geometry::write_stl(crown_base(), "the block under the crown, top at 18.2 mm, millimetres"));
 }
 
 }  // namespace

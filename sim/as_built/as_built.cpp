@@ -45,15 +45,17 @@ void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
     add_axis_errors(tolerance, built);
 }
 
-AsBuilt nominal(const machine::MachineDescription& machine) {
+/// As the controller knows the machine, or as it was drawn.
+AsBuilt without_errors(const machine::MachineDescription& machine, bool drawn) {
   AsBuilt built;
   if (!machine.chain) {
-    built.hexapod = machine.hexapod.geometry;
+    built.hexapod = drawn && machine.calibration ? machine.hexapod.design : machine.hexapod.geometry;
     built.nut_play.fill(machine.hexapod.play.screw_nut);
     built.ball_play.fill(machine.hexapod.play.ball_joint);
     return built;
   }
-  built.chain = machine.chain->kinematics.chain;
+  const kinematics::ChainDescription& known = machine.chain->kinematics;
+  built.chain = drawn && machine.calibration ? known.design : known.chain;
   for (std::size_t i = 0; i < built.chain.axes.size(); ++i) built.axis_play[i] = machine.chain->play[i];
   return built;
 }
@@ -62,7 +64,7 @@ AsBuilt nominal(const machine::MachineDescription& machine) {
 
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set,
                       std::uint64_t seed) {
-  AsBuilt built = nominal(machine);
+  AsBuilt built = without_errors(machine, set != "nominal" && set != "sampled");
   built.source = set;
   built.seed = seed;
   if (set == "sampled") {

@@ -23,11 +23,12 @@ double reach_of(const geometry::Shape& shape) {
 }  // namespace
 
 BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
-                 std::shared_ptr<const geometry::Mesh> part)
+                 std::shared_ptr<const geometry::Mesh> part, const BeadIndex* beads)
     : X_WB_(machine.X_WB),
       geometry_(as_built.hexapod),
       links_(machine, as_built),
-      is_chain_(machine.chain.has_value()) {
+      is_chain_(machine.chain.has_value()),
+      beads_(beads) {
   for (const geometry::Shape& shape : machine.tool.bodies) add_body(shape, Owner::tool, 0);
   if (is_chain_) {
     for (std::size_t i = 0; i < links_.items().size(); ++i) add_body(links_.items()[i].shape, Owner::link, i);
@@ -45,6 +46,7 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
   table.name = "table";
   add_body(table, Owner::world, 0);
   add_pairs(machine.hexapod.strut_radius);
+  if (beads_) add_bead_pairs(bodies_.size() - 1);
 }
 
 void BodySet::add_body(const geometry::Shape& shape, Owner owner, std::size_t index) {
@@ -94,6 +96,14 @@ void BodySet::add_pairs(double strut_radius) {
   }
 }
 
+// Beads stand on the table: what cannot meet the one cannot meet the other.
+void BodySet::add_bead_pairs(std::size_t table) {
+  for (const BodyPair& pair : std::vector<BodyPair>(pairs_)) {
+    const Body& body = bodies_[pair.body];
+    if (pair.obstacle == table && body.solid) pairs_.push_back({pair.body, table, body.nozzle, false, true});
+  }
+}
+
 double BodySet::motion(const BodyPair& pair, const Travel& travel) const {
   double sum = 0;
   for (const std::size_t i : {pair.body, pair.obstacle}) {
@@ -139,6 +149,23 @@ Separation BodySet::separation(const BodyPair& pair, const Posture& posture, boo
   result.distance = -deepest.depth;
   if (deepest.depth > 0) result.place_W = deepest.place_W;
   return result;
+}
+
+std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const Posture& posture,
+                                                     std::size_t before) {
+  Body& body = bodies_[pair.body];
+  if (body.owner == Owner::link) links_.pose(posture.axes);
+  const Pose X_WS = place(body, posture.X_WT);
+  return beads_->nearest(*body.solid, X_WS, kBeadReach, before);
+}
+
+double BodySet::bead_clearance(const BodyPair& pair, const Posture& posture, const Bead& bead) {
+  Body& body = bodies_[pair.body];
+  if (body.owner == Owner::link) links_.pose(posture.axes);
+  const Vec3 from(bead.from_W[0], bead.from_W[1], bead.from_W[2]),
+      to(bead.to_W[0], bead.to_W[1], bead.to_W[2]);
+  const Vec3 middle_S = place(body, posture.X_WT).inverse(Eigen::Isometry) * (0.5 * (from + to));
+  return signed_distance(*body.solid, middle_S) - 0.5 * ((to - from).norm() + double(bead.width));
 }
 
 }  // namespace understudy::sim

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/collision/bead_index.h"
 #include "sim/collision/chain_bodies.h"
 #include "sim/collision/collision.h"
 #include "sim/collision/convex_solid.h"
@@ -14,17 +15,21 @@
 
 namespace understudy::sim {
 
+/// [m]: beads farther away than this are not looked for.
+constexpr double kBeadReach = 5e-3;
+
 struct BodyPair {
   std::size_t body = 0, obstacle = 0;
   bool nozzle_at_work = false;  ///< nozzle against part or table: nearness is its work
   bool nozzle_gap = false;      ///< the gap of the work itself: to the part, or the table without one
+  bool printed = false;         ///< the obstacle is everything printed so far
 };
 
 class BodySet {
  public:
-  /// The part may be null. Struts and links have the as-built geometry.
+  /// The part and the beads may be null. Struts and links have the as-built geometry.
   BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
-          std::shared_ptr<const geometry::Mesh> part);
+          std::shared_ptr<const geometry::Mesh> part, const BeadIndex* beads);
 
   /// Tool bodies, struts and links against part and table, struts and links against each other and against
   /// the tool bodies; without those that a joint holds together.
@@ -44,6 +49,12 @@ class BodySet {
   /// also finds a body that lies wholly inside a closed part, which no surface shows.
   Separation separation(const BodyPair& pair, const Posture& posture, bool check_inside);
 
+  /// The nearest of the first `before` beads; nothing within kBeadReach.
+  std::optional<BeadIndex::Near> nearest_bead(const BodyPair& pair, const Posture& posture,
+                                              std::size_t before);
+  /// [m], at least, between the pair's body and one bead.
+  double bead_clearance(const BodyPair& pair, const Posture& posture, const Bead& bead);
+
  private:
   enum class Owner { tool, strut, link, world };
   struct Body {
@@ -57,6 +68,7 @@ class BodySet {
   };
   void add_body(const geometry::Shape& shape, Owner owner, std::size_t index);
   void add_pairs(double strut_radius);
+  void add_bead_pairs(std::size_t table);
   bool carries_joint(const Body& tool, std::size_t strut, double strut_radius) const;
   bool joined(const Body& a, const Body& b, double strut_radius) const;
   int axis_of(const Body& body) const;
@@ -67,6 +79,7 @@ class BodySet {
   kinematics::HexapodGeometry geometry_;
   ChainBodies links_;
   bool is_chain_ = false;
+  const BeadIndex* beads_ = nullptr;
   std::unique_ptr<MeshClearance> part_;
   std::size_t part_body_ = 0;
   FclWorld world_;

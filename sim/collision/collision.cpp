@@ -40,6 +40,7 @@ struct CollisionObserver::State {
   struct Look {
     double clearance = kInfinity;  // [m], at the last look
     double budget = 0;             // [m], motion left until the next
+    std::size_t beads = 0;         // that it counted with, of a printed pair
   };
 
   BodySet bodies;
@@ -53,14 +54,17 @@ struct CollisionObserver::State {
   std::map<std::pair<int, std::size_t>, Contact> touching, near;
 
   double contact_level(const BodyPair& pair) const {
+    if (pair.printed && pair.nozzle_at_work) return -options.bead_press;
     return pair.nozzle_at_work ? options.nozzle_contact : 0.0;
   }
   double near_level(const BodyPair& pair) const {
+    if (pair.printed && pair.nozzle_at_work) return -options.bead_press;
     return pair.nozzle_at_work ? options.nozzle_contact : options.near;
   }
 
   void look(std::size_t index, const Posture& posture, double time, int line) {
     const BodyPair& pair = bodies.pairs()[index];
+    if (pair.printed) return look_at_beads(index, posture, time, line);
     Look& at = looks[index];
     // Motion is continuous: a body that was outside gets inside only through a contact that is seen.
     const bool check_inside = !last || at.clearance <= 0;
@@ -72,9 +76,44 @@ struct CollisionObserver::State {
     at.budget = allowed_motion(seen.distance, watch(index, line));
   }
 
+  void look_at_beads(std::size_t index, const Posture& posture, double time, int line) {
+    const BodyPair& pair = bodies.pairs()[index];
+    Look& at = looks[index];
+    at.clearance = kBeadReach;
+    ++checks;
+    if (const auto found = bodies.nearest_bead(pair, posture, beads_for(pair))) {
+      at.clearance = found->separation.distance;
+      if (at.clearance <= near_level(pair) || at.clearance < closest.clearance) {
+        const std::string name = "bead of line " + std::to_string(options.beads->bead(found->bead).line);
+        record(index, {bodies.name(pair.body), name, at.clearance, found->separation.place_W, time, line});
+      }
+    }
+    at.budget = allowed_motion(at.clearance, watch(index, line));
+  }
+
+  // How many beads are there for this pair.
+  std::size_t beads_for(const BodyPair& pair) const {
+    return pair.nozzle_at_work && options.fresh_from ? std::min(options.fresh_from(), options.beads->size())
+                                                     : options.beads->size();
+  }
+
+  // Material has appeared since the last snapshot: nearer than what the pair's budget counts with, perhaps.
+  void mind_new_beads(std::size_t index, const Posture& posture) {
+    const BodyPair& pair = bodies.pairs()[index];
+    Look& at = looks[index];
+    const std::size_t count = beads_for(pair);
+    for (std::size_t k = at.beads; k < count && at.budget > 0; ++k) {
+      const double clearance = bodies.bead_clearance(pair, posture, options.beads->bead(k));
+      at.budget = std::min(at.budget, std::max(0.0, clearance - near_level(pair)));
+    }
+    at.beads = count;
+  }
+
   void record(std::size_t index, const Contact& contact) {
     const BodyPair& pair = bodies.pairs()[index];
-    if (pair.nozzle_gap) {
+    if (pair.printed && pair.nozzle_at_work) {
+      // level with its own layer: no clearance to speak of
+    } else if (pair.nozzle_gap) {
       least_nozzle = std::min(least_nozzle, contact.clearance);
     } else if (contact.clearance < closest.clearance) {
       closest = contact;
@@ -98,6 +137,10 @@ struct CollisionObserver::State {
     w.resolution = pair.nozzle_gap ? options.margin / kNozzleFineness : options.margin;
     w.depth_accuracy = options.margin;
     w.accuracy = pair.nozzle_gap ? w.resolution / 2 : kLeastAccuracy;
+    if (pair.printed && pair.nozzle_at_work) {
+      w.least = kInfinity;
+      w.resolution = w.depth_accuracy = options.bead_press;
+    }
     return w;
   }
 
@@ -105,6 +148,7 @@ struct CollisionObserver::State {
   void advance(std::size_t index, const Snapshot& to, const BodySet::Travel& travel) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
+    if (pair.printed) mind_new_beads(index, {last->X_WT, last->axes_reached});
     if (to.line != last->line && at.clearance <= near_level(pair)) at.budget = 0;  // each line has its record
     const double motion = bodies.motion(pair, travel);
     double left = motion;
@@ -120,8 +164,15 @@ struct CollisionObserver::State {
 CollisionObserver::CollisionObserver(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                      std::shared_ptr<const geometry::Mesh> part,
                                      const CollisionOptions& options)
-    : state_(
-          new State{BodySet(machine, as_built, std::move(part)), options, {}, {}, 0, kInfinity, {}, {}, {}}) {
+    : state_(new State{BodySet(machine, as_built, std::move(part), options.beads),
+                       options,
+                       {},
+                       {},
+                       0,
+                       kInfinity,
+                       {},
+                       {},
+                       {}}) {
   if (!(options.margin > 0))
     throw InputError("collision margin is " + std::to_string(options.margin) + " m, must be above 0");
   state_->looks.resize(state_->bodies.pairs().size());

@@ -1,6 +1,7 @@
 // Contact and clearance between machine and surroundings, adaptive in time so that nothing is stepped over.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "geometry/mesh.h"
 #include "machine/description.h"
 #include "sim/as_built/as_built.h"
+#include "sim/collision/bead_index.h"
 #include "sim/collision/posture.h"
 #include "sim/observer.h"
 
@@ -23,7 +25,7 @@ std::vector<geometry::Shape> hexapod_bodies(const machine::MachineDescription& m
 
 struct Contact {
   std::string body;       ///< "nozzle", "heater block", "strut 3"
-  std::string obstacle;   ///< "part", "table", "strut 4"
+  std::string obstacle;   ///< "part", "table", "strut 4", "bead of line 812"
   double clearance = 0;   ///< [m]; negative: depth of the deepest point of either surface in the other body
   Vec3 place_W{0, 0, 0};  ///< nearest point on the obstacle; the deepest point where they overlap
   double time = 0;        ///< [s]
@@ -34,6 +36,13 @@ struct CollisionOptions {
   double margin = 0.02e-3;  ///< [m], above 0: motion between two checks may use up the clearance but for this
   double near = 0.5e-3;     ///< [m]: below, a body other than the nozzle is a near collision
   double nozzle_contact = 0;  ///< [m]: the nozzle touches when its clearance is at or below this
+  /// What has been printed so far, growing between snapshots; nullptr: it is not watched.
+  const BeadIndex* beads = nullptr;
+  /// Number of the first bead that is still under the nozzle, which presses it by design; asked at every
+  /// snapshot. Without it no bead is fresh.
+  std::function<std::size_t()> fresh_from;
+  /// [m]: the nozzle runs level with the beads of its own layer and presses into them; deeper is a contact.
+  double bead_press = 0.1e-3;
 };
 
 /// Watches every snapshot. Between snapshots the motion is bounded by the swept distance of each body, and
@@ -46,6 +55,9 @@ struct CollisionOptions {
 /// - min_clearance() is at most max(0.05 mm, 1 %), min_nozzle_clearance() at most max(margin / 8, 1 %) above
 ///   the least that was passed, and never below it;
 /// - the depth of a contact is within max(margin, 5 %) of the deepest of its line.
+/// Beads are obstacles from the moment they are in the index, for the nozzle once they are no longer fresh;
+/// they are not followed between two snapshots. A nozzle deeper in beads than bead_press is found within as
+/// much motion, its depth within bead_press; that pair counts in no least clearance.
 /// A body named "nozzle..." is the nozzle; struts are not checked against the tool body that carries their
 /// ball joint ("platform", or any within a strut's radius of the joint). Distances to the part are exact to
 /// 2 nm, all others to 0.5 um or 0.01 % of a round body's radius (FCL). Depths need a closed part; without

@@ -56,11 +56,18 @@ Vec3 FrustumCore::farthest(const Vec3& direction) const {
   return {scale * direction.x(), scale * direction.y(), at_low ? low : high};
 }
 Vec3 FrustumCore::nearest(const Vec3& p) const {
-  const Vec2 section = section_of(p);
-  if (inside(*this, section)) return p;
-  const Vec2 q = onto_outline(*this, section).point;
-  const double scale = section.x() > 0 ? q.x() / section.x() : 0.0;
-  return {scale * p.x(), scale * p.y(), q.y()};
+  const double r2 = p.x() * p.x() + p.y() * p.y();
+  if (p.z() <= low && r2 <= radius_low * radius_low) return {p.x(), p.y(), low};
+  if (p.z() >= high && r2 <= radius_high * radius_high) return {p.x(), p.y(), high};
+  // Neither disc faces the point: it is inside, or its nearest is on the flank.
+  const double r = std::sqrt(r2), widening = radius_high - radius_low, height = high - low;
+  const double share = (p.z() - low) / height;
+  if (share >= 0 && share <= 1 && r <= radius_low + widening * share) return p;
+  const double t = std::clamp(
+      ((r - radius_low) * widening + (p.z() - low) * height) / (widening * widening + height * height), 0.0,
+      1.0);
+  const double scale = r > 0 ? (radius_low + t * widening) / r : 0.0;
+  return {scale * p.x(), scale * p.y(), low + t * height};
 }
 double FrustumCore::depth(const Vec3& p) const {
   const Vec2 section = section_of(p);

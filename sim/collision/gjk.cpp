@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "sim/collision/bead_shape.h"
 #include "sim/collision/convex_solid.h"
 
 namespace understudy::sim {
@@ -11,8 +12,8 @@ constexpr double kGap = 1e-9;        // [m], a thousandth of the micrometre that
 constexpr int kIterationsMax = 100;  // the worst of 10^6 random pairs took 32
 
 struct Vertex {
-  Vec3 difference{0, 0, 0};  // point of the core minus point of the triangle
-  Vec3 on_triangle{0, 0, 0};
+  Vec3 difference{0, 0, 0};  // point of the core minus point of the other body
+  Vec3 on_other{0, 0, 0};
 };
 
 struct Simplex {
@@ -26,9 +27,9 @@ struct Simplex {
     for (int i = 0; i < size; ++i) v += weight[static_cast<std::size_t>(i)] * at(i).difference;
     return v;
   }
-  Vec3 on_triangle() const {
+  Vec3 on_other() const {
     Vec3 v = Vec3::Zero();
-    for (int i = 0; i < size; ++i) v += weight[static_cast<std::size_t>(i)] * at(i).on_triangle;
+    for (int i = 0; i < size; ++i) v += weight[static_cast<std::size_t>(i)] * at(i).on_other;
     return v;
   }
 };
@@ -39,6 +40,17 @@ const Vec3& farthest(const Triangle& corners, const Vec3& direction) {
     if (corners[i].dot(direction) > corners[best].dot(direction)) best = i;
   }
   return corners[best];
+}
+Vec3 farthest(const BeadCore& bead, const Vec3& direction) { return bead.farthest(direction); }
+
+// Where to begin: the first direction should already bound most bodies away.
+template <typename Core>
+Vec3 first_guess(const Core&, const Triangle& corners) {
+  return (corners[0] + corners[1] + corners[2]) / 3;
+}
+template <typename Core>
+Vec3 first_guess(const Core& core, const BeadCore& bead) {
+  return bead.nearest(core.nearest(bead.middle));
 }
 
 Simplex point(const Vertex& a) {
@@ -136,35 +148,47 @@ Simplex grown_and_reduced(const Simplex& s, const Vertex& w) {
   }
 }
 
+template <typename Core, typename Other>
+GjkResult gjk_distance(const Core& core, const Other& other, double enough) {
+  const Vec3 start = first_guess(core, other);
+  Simplex simplex = point({core.nearest(start) - start, start});
+  Vec3 v = simplex.nearest();
+  for (int iteration = 1; iteration <= kIterationsMax; ++iteration) {
+    const double length = v.norm();
+    if (length <= kGap) return {0, simplex.on_other(), iteration};
+    const Vec3 b = farthest(other, v);
+    const Vertex w{core.farthest(-v) - b, b};
+    const double lower = v.dot(w.difference) / length;
+    if (length - lower <= kGap || lower >= enough) return {length, simplex.on_other(), iteration};
+    const Simplex next = grown_and_reduced(simplex, w);
+    if (next.size == 4) return {0, next.on_other(), iteration};
+    const Vec3 nearer = next.nearest();
+    if (nearer.squaredNorm() >= v.squaredNorm()) return {length, simplex.on_other(), iteration};  // rounding
+    simplex = next;
+    v = nearer;
+  }
+  return {v.norm(), simplex.on_other(), kIterationsMax};
+}
+
 }  // namespace
 
 template <typename Core>
 GjkResult distance_to_triangle(const Core& core, const Triangle& corners, double enough) {
-  // From the middle's nearest point the first direction already bounds most triangles away.
-  const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3;
-  Simplex simplex = point({core.nearest(middle) - middle, middle});
-  Vec3 v = simplex.nearest();
-  for (int iteration = 1; iteration <= kIterationsMax; ++iteration) {
-    const double length = v.norm();
-    if (length <= kGap) return {0, simplex.on_triangle(), iteration};
-    const Vec3& b = farthest(corners, v);
-    const Vertex w{core.farthest(-v) - b, b};
-    const double lower = v.dot(w.difference) / length;
-    if (length - lower <= kGap || lower >= enough) return {length, simplex.on_triangle(), iteration};
-    const Simplex next = grown_and_reduced(simplex, w);
-    if (next.size == 4) return {0, next.on_triangle(), iteration};
-    const Vec3 nearer = next.nearest();
-    if (nearer.squaredNorm() >= v.squaredNorm())
-      return {length, simplex.on_triangle(), iteration};  // rounding
-    simplex = next;
-    v = nearer;
-  }
-  return {v.norm(), simplex.on_triangle(), kIterationsMax};
+  return gjk_distance(core, corners, enough);
+}
+
+template <typename Core>
+GjkResult distance_to_bead_core(const Core& core, const BeadCore& bead, double enough) {
+  return gjk_distance(core, bead, enough);
 }
 
 template GjkResult distance_to_triangle(const PointCore&, const Triangle&, double);
 template GjkResult distance_to_triangle(const SegmentCore&, const Triangle&, double);
 template GjkResult distance_to_triangle(const FrustumCore&, const Triangle&, double);
 template GjkResult distance_to_triangle(const BoxCore&, const Triangle&, double);
+template GjkResult distance_to_bead_core(const PointCore&, const BeadCore&, double);
+template GjkResult distance_to_bead_core(const SegmentCore&, const BeadCore&, double);
+template GjkResult distance_to_bead_core(const FrustumCore&, const BeadCore&, double);
+template GjkResult distance_to_bead_core(const BoxCore&, const BeadCore&, double);
 
 }  // namespace understudy::sim

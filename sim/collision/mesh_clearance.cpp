@@ -97,7 +97,7 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
       for (std::size_t k = 0; k < 3; ++k)
         corners[k] = X_SW * mesh_->vertices()[static_cast<std::size_t>(t[k])];
       const GjkResult result = distance_to_triangle(core, corners, best.distance);
-      if (result.distance < best.distance) best = {result.distance, X_WS * result.on_triangle};
+      if (result.distance < best.distance) best = {result.distance, X_WS * result.on_other};
     }
   }
   return best;

@@ -3,200 +3,260 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numbers>
-#include <optional>
+
+#include "sim/process/bead_builder.h"
+#include "sim/process/extruder.h"
+#include "sim/process/gap_sums.h"
+#include "sim/process/loose_recorder.h"
 
 namespace understudy::sim {
 namespace {
 
-constexpr double kElementLength = 0.1e-3;  // [m]
-constexpr double kPause = 10e-6;           // [m], path without feed that ends a bead; less is jitter at rest
-constexpr double kGapJump = 0.5e-3;        // [m], between two snapshots: the axis went over an edge
-constexpr double kRounding = 1e-9;         // [m], of a gap: coordinates of 0.1 m through files and rotations
+constexpr double kGapJump = 0.5e-3;  // [m], between two snapshots: the axis went over an edge
+constexpr double kRounding = 1e-9;   // [m], of a gap: coordinates of 0.1 m through files and rotations
+constexpr double kThinnest = 1e-6;   // [m]: what is thinner has a volume but is in nobody's way
+constexpr double kFills = 0.99;      // of the gap
+constexpr double kSide = 0.35;       // of the width, where an overhang is felt for
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A point of the tip's path and what is below it.
-struct Point {
-  double time = 0;
-  Vec3 tip_W{0, 0, 0}, axis_W{0, 0, 1};
-  double gap = 0;
-  Vec3 foot_W() const { return std::isfinite(gap) ? Vec3(tip_W - gap * axis_W) : tip_W; }
-};
-
-Point between(const Point& a, const Point& b, double f, double gap) {
+PathPoint between(const PathPoint& a, const PathPoint& b, double f, double gap) {
   return {a.time + f * (b.time - a.time), a.tip_W + f * (b.tip_W - a.tip_W),
           ((1 - f) * a.axis_W + f * b.axis_W).normalized(), gap};
 }
 
-enum class Hold { buried, sticks, loose };
+// What lies below the tip at a snapshot.
+struct Ground {
+  double gap = kInfinity;
+  bool printed = false;                      // it is a bead
+  double interface_temperature = kInfinity;  // [K]
+};
 
-// Share of a linear ramp of the gap that is at or below `level`.
-double share_below(double from, double to, double level) {
-  const double low = std::min(from, to), high = std::max(from, to);
-  if (high <= level) return 1;
-  if (low > level || std::isinf(high)) return low > level ? 0 : 0.5;
-  return (level - low) / (high - low);
+Bead shape_of(const Element& element) {
+  const LaidBead& laid = element.bead;
+  // What fills the way from the surface to the nozzle is as high as the tip everywhere; a thinner strand lies
+  // on the surface, unless it hangs.
+  const bool lies = laid.adhesion == Adhesion::buried ||
+                    (laid.adhesion != Adhesion::loose && laid.adhesion != Adhesion::fused &&
+                     laid.height < kFills * laid.gap);
+  const double half = laid.height / 2;
+  const auto middle = [&](const Vec3& tip, const Vec3& foot) -> Vec3 {
+    if (lies) return foot + half * laid.normal_W;
+    return tip - half * laid.normal_W;
+  };
+  const Vec3 from = middle(element.tip_from_W, laid.from_W), to = middle(element.tip_to_W, laid.to_W);
+  const auto floats = [](const Vec3& v) {
+    return std::array{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+  };
+  Bead bead;
+  bead.from_W = floats(from);
+  bead.to_W = floats(to);
+  bead.up_W = floats(laid.normal_W);
+  bead.height = static_cast<float>(laid.height);
+  bead.width = std::max(bead.height, static_cast<float>(laid.width));
+  bead.laid_at = static_cast<float>(laid.time);
+  bead.line = laid.line;
+  return bead;
 }
-
-// What a bead keeps beside its public face.
-struct Growth {
-  double start_time = 0;
-  int start_line = 0;
-  double moment = 0;  // integral of the gap over the length
-  double worst_gap = 0;
-  Hold hold = Hold::sticks;
-  bool follows = false;  // goes on where the bead before it ends
-};
-
-struct GapSums {
-  double length = 0, below = 0, in_band = 0;
-  double surface_length = 0, moment = 0;
-  double min = std::numeric_limits<double>::infinity(), max = -min;
-};
 
 }  // namespace
 
 struct DepositionObserver::State {
-  std::shared_ptr<const geometry::Mesh> part;
-  double filament_area = 0;                   // [m^2]
-  double accepted_min = 0, accepted_max = 0;  // [m]
+  State(const machine::MachineDescription& machine, std::shared_ptr<Workpiece> stands_below,
+        DepositionOptions with)
+      : workpiece(std::move(stands_below)),
+        options(std::move(with)),
+        filament_area(std::numbers::pi / 4 * machine.tool.filament_diameter * machine.tool.filament_diameter),
+        nozzle_flat(machine.tool.flat_diameter),
+        accepted_min(machine.gap.accepted_min),
+        accepted_max(machine.gap.accepted_max),
+        extruder(machine.process.extruder_lag),
+        builder([this](const Element& element) { keep(element); }),
+        loose(*workpiece, machine.gap.accepted_max),
+        sums(machine.gap.accepted_min - kRounding, machine.gap.accepted_max + kRounding),
+        usual_height(machine.gap.aim) {}
+
+  std::shared_ptr<Workpiece> workpiece;
+  DepositionOptions options;
+  double filament_area;               // [m^2]
+  double nozzle_flat;                 // [m]
+  double accepted_min, accepted_max;  // [m]
+  Extruder extruder;
+  BeadBuilder builder;
+  LooseRecorder loose;
+  GapSums sums;
+  DepositionSummary totals;
 
   std::optional<Snapshot> last;
-  std::optional<double> last_gap;                // of `last`, when it was needed
-  double first_filament = 0, most_filament = 0;  // [m]
-  std::vector<Bead> beads;
-  std::vector<Growth> growths;  // one a bead
-  bool open = false;            // the last bead still grows
-  bool continuous = false;      // nothing but extrusion since the last bead's end
-  double idle_path = 0;         // [m] since then
-  std::optional<double> start_gap;
-  GapSums sums;
+  Ground ground;                                 // at `last`
+  double most_filament = 0, first_filament = 0;  // [m]
+  LooseRecorder::Conditions conditions;
+  double usual_height;  // [m], of the last element that sticks: what a fused one gets
+  bool flows = false;
+  bool started = false;
+  bool emptied = false;  // the nozzle, after the end
 
-  Hold hold_of(double gap) const {
-    if (gap > accepted_max + kRounding) return Hold::loose;
-    return gap > kRounding ? Hold::sticks : Hold::buried;
+  double path = 0;             // [m], of the tip
+  std::deque<double> fresh;    // path at the end of each bead that may be under the nozzle
+  std::size_t fresh_from = 0;  // number of the first of them
+
+  // [m^3]; what was drawn back is no melt that waits.
+  double column() const { return emptied ? 0 : std::max(0.0, extruder.column()) * filament_area; }
+
+  double take_column() {
+    const double volume = column();
+    emptied = true;
+    return volume;
   }
 
-  void pause(double path) {
-    idle_path += path;
-    if (idle_path > kPause) open = continuous = false;
+  void keep(const Element& element) {
+    const LaidBead& bead = element.bead;
+    totals.laid_volume += bead.volume;
+    if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
+      totals.deposited_volume += bead.volume;
+    if (bead.adhesion == Adhesion::sticks) usual_height = bead.height;
+    ++totals.beads;
+    loose.add(element, conditions);
+    conditions.interface_temperature = kInfinity;
+    if (bead.height > kThinnest) {
+      workpiece->add(shape_of(element));
+      fresh.push_back(path);
+    }
+    if (options.laid) options.laid(bead);
   }
 
-  void begin_bead(const Point& at, Hold hold, int line) {
-    Bead bead;
-    bead.from_W = at.foot_W();
-    beads.push_back(bead);
-    growths.push_back({at.time, line, 0, at.gap, hold, continuous});
-    open = true;
-  }
-
-  // From a to b nothing changes but linearly.
-  void extrude(const Point& a, const Point& b, double volume, int line) {
-    const double gap = 0.5 * (a.gap + b.gap);
-    const Hold hold = hold_of(gap);
-    if (open && growths.back().hold != hold) open = false;
-    if (!open) begin_bead(a, hold, line);
-    const double length = (b.foot_W() - a.foot_W()).norm();
-    grow(beads.back(), growths.back(), a, b, length, volume, line);
-    add_to_sums(a.gap, b.gap, length);
-    continuous = true;
-    idle_path = 0;
-    if (beads.back().length >= kElementLength) open = false;
-  }
-
-  void grow(Bead& bead, Growth& growth, const Point& a, const Point& b, double length, double volume,
-            int line) {
-    bead.to_W = b.foot_W();
-    bead.normal_W = b.axis_W;
-    bead.time = b.time;
-    bead.line = line;
-    bead.length += length;
-    bead.volume += volume;
-    bead.sticks = growth.hold == Hold::sticks;
-    if (length > 0) growth.moment += 0.5 * (a.gap + b.gap) * length;
-    bead.gap = bead.length > 0 ? growth.moment / bead.length : b.gap;
-    const auto [low, high] = std::minmax(a.gap, b.gap);
-    growth.worst_gap =
-        growth.hold == Hold::buried ? std::min(growth.worst_gap, low) : std::max(growth.worst_gap, high);
-    if (bead.length > 0) {
-      bead.width = bead_width(bead.volume / bead.length, bead.gap);
-    } else {  // a blob: round, as high as the gap, or a drop where nothing is below
-      const double v = bead.volume / std::numbers::pi;
-      bead.width = bead.gap > 0 && std::isfinite(bead.gap) ? std::sqrt(4 * v / bead.gap) : std::cbrt(6 * v);
+  void move_on(double step) {
+    path += step;
+    const double window = nozzle_flat + 2 * builder.last_width();
+    while (!fresh.empty() && fresh.front() < path - window) {
+      fresh.pop_front();
+      ++fresh_from;
     }
   }
 
-  void add_to_sums(double from, double to, double length) {
-    if (length <= 0) return;
-    sums.length += length;
-    const double below = share_below(from, to, accepted_min - kRounding);
-    sums.below += length * below;
-    sums.in_band += length * (share_below(from, to, accepted_max + kRounding) - below);
-    if (!std::isfinite(from) || !std::isfinite(to)) return;
-    sums.surface_length += length;
-    sums.moment += 0.5 * (from + to) * length;
-    sums.min = std::min({sums.min, from, to});
-    sums.max = std::max({sums.max, from, to});
+  Ground look(const Pose& X_WT, double time, double fan, double temperature) const {
+    Ground seen;
+    const auto hit = workpiece->below(X_WT, fresh_from);
+    if (!hit) return seen;
+    seen.gap = hit->distance;
+    seen.printed = hit->body == Workpiece::Body::bead;
+    if (seen.printed && options.glass_transition > 0) {
+      const double age = time - static_cast<double>(workpiece->beads().bead(hit->bead).laid_at);
+      const double substrate = options.substrate_temperature ? options.substrate_temperature(age, fan) : 0.0;
+      seen.interface_temperature = 0.5 * (temperature + substrate);
+    }
+    return seen;
   }
 
-  // The interval from `fed_from` (a fraction of it) to its end, cut where the gap passes a level.
-  void extrude_interval(const Point& a, const Point& b, double fed_from, double volume, int line) {
+  // Nothing in reach below the middle, but perhaps below half of the width.
+  Ground look_beside(const Snapshot& s, const Vec3& heading) const {
+    const Vec3 axis = tool_axis(s.X_WT), across = axis.cross(heading);
+    Ground best;
+    if (across.norm() < 1e-6 * heading.norm() || heading.norm() == 0) return best;
+    const double reach = kSide * std::max(builder.last_width(), nozzle_flat / 2);
+    for (const double side : {reach, -reach}) {
+      Pose X_WT = s.X_WT;
+      X_WT.translation() += side * across.normalized();
+      const Ground seen = look(X_WT, s.time, s.fan, s.nozzle_temperature);
+      if (seen.printed && seen.gap <= accepted_max + kRounding && seen.gap > -kSoftDepth &&
+          seen.gap < best.gap)
+        best = seen;
+    }
+    return best;
+  }
+
+  Ground ground_at(const Snapshot& s, const Vec3& heading) const {
+    const Ground seen = look(s.X_WT, s.time, s.fan, s.nozzle_temperature);
+    if (seen.gap <= accepted_max + kRounding || workpiece->beads().size() == 0) return seen;
+    const Ground beside = look_beside(s, heading);
+    return std::isfinite(beside.gap) ? beside : seen;
+  }
+
+  Adhesion adhesion_of(double gap, const Ground& below) const {
+    if (gap > accepted_max + kRounding) return Adhesion::loose;
+    if (below.printed && gap > -kSoftDepth && gap < accepted_min - kRounding) return Adhesion::fused;
+    if (gap <= kRounding) return Adhesion::buried;
+    if (below.interface_temperature < options.glass_transition) return Adhesion::cold;
+    return Adhesion::sticks;
+  }
+
+  // From a to b nothing changes but linearly.
+  void extrude(const PathPoint& a, const PathPoint& b, const Ground& below, double volume, int line) {
+    const Adhesion adhesion = adhesion_of(0.5 * (a.gap + b.gap), below);
+    builder.extrude(a, b, adhesion, volume, line, usual_height);
+    const double length = (b.foot_W() - a.foot_W()).norm();
+    if (adhesion == Adhesion::fused) {
+      totals.fused_length += length;
+    } else {
+      sums.add(a.gap, b.gap, length, b.time, line);
+    }
+    conditions.interface_temperature =
+        std::min(conditions.interface_temperature, below.interface_temperature);
+    conditions.on_printed = below.printed;
+  }
+
+  // The interval from `from` (a share of it) to its end, cut where the gap passes a level.
+  void extrude_interval(const PathPoint& a, const PathPoint& b, const Ground& below, double from,
+                        double volume, int line) {
     const bool jump = !(std::abs(b.gap - a.gap) <= kGapJump);
-    std::array<double, 4> cuts{fed_from, 1, 1, 1};
+    std::array<double, 5> cuts{from, 1, 1, 1, 1};
     std::size_t count = 1;
     if (jump && a.gap != b.gap) {
-      if (0.5 > fed_from) cuts[count++] = 0.5;  // nobody saw the edge: half-way
+      if (0.5 > from) cuts[count++] = 0.5;  // nobody saw the edge: half-way
     } else if (a.gap != b.gap) {
-      const bool falls = b.gap < a.gap;
-      for (const double level : {falls ? accepted_max : 0.0, falls ? 0.0 : accepted_max}) {
+      std::array<double, 3> levels{accepted_max, below.printed ? accepted_min : 0.0, -kSoftDepth};
+      if (b.gap > a.gap) std::reverse(levels.begin(), levels.end());
+      for (const double level : levels) {
         const double f = (level - a.gap) / (b.gap - a.gap);
-        if (f > fed_from && f < 1) cuts[count++] = f;
+        if (f > from && f < 1 && (below.printed || level >= 0)) cuts[count++] = f;
       }
     }
     cuts[count] = 1;
     for (std::size_t i = 0; i < count; ++i) {
-      const double f0 = cuts[i], f1 = cuts[i + 1];
-      const auto gap_at = [&](double f, double middle) {
+      const double f0 = cuts[i], f1 = cuts[i + 1], middle = 0.5 * (f0 + f1);
+      const auto gap_at = [&](double f) {
         if (a.gap == b.gap) return a.gap;
         if (jump) return middle < 0.5 ? a.gap : b.gap;
         return a.gap + f * (b.gap - a.gap);
       };
-      const double middle = 0.5 * (f0 + f1);
-      const Point p = between(a, b, f0, gap_at(f0, middle)), q = between(a, b, f1, gap_at(f1, middle));
-      if (!start_gap) start_gap = p.gap;
-      extrude(p, q, volume * (f1 - f0) / (1 - fed_from), line);
+      const PathPoint p = between(a, b, f0, gap_at(f0)), q = between(a, b, f1, gap_at(f1));
+      if (!started) totals.start_gap = p.gap;
+      started = true;
+      extrude(p, q, below, volume * (f1 - f0) / (1 - from), line);
     }
   }
 
   void observe(const Snapshot& now) {
-    const double path = (now.X_WT.translation() - last->X_WT.translation()).norm();
-    const double fed = now.filament - most_filament;
-    if (fed <= 0) {
-      pause(path);
-      last_gap.reset();
+    const Vec3 heading = now.X_WT.translation() - last->X_WT.translation();
+    const double step = heading.norm(), fed = now.filament - last->filament;
+    const Extruder::Flow flow = extruder.advance(now.filament - first_filament, now.time - last->time);
+    most_filament = std::max(most_filament, now.filament);
+    move_on(step);
+    const Ground before = ground;
+    ground = ground_at(now, heading);
+    conditions.nozzle_temperature = now.nozzle_temperature;
+    conditions.fan = now.fan;
+    const double volume = flow.filament * filament_area;
+    flows = volume > 0 && fed > 0;
+    if (!flows) {
+      if (volume > 0) builder.ooze(volume);
+      builder.pause(step);
       return;
     }
-    const double before = last_gap ? *last_gap : true_gap(part.get(), last->X_WT);
-    last_gap = true_gap(part.get(), now.X_WT);
-    // After a retraction the nozzle is full again part of the way.
-    const double fed_from = (most_filament - last->filament) / (now.filament - last->filament);
-    if (fed_from > 0) pause(fed_from * path);
-    const Point a{last->time, last->X_WT.translation(), tool_axis(last->X_WT), before};
-    const Point b{now.time, now.X_WT.translation(), tool_axis(now.X_WT), *last_gap};
-    extrude_interval(a, b, fed_from, fed * filament_area, now.line);
-    most_filament = now.filament;
+    if (flow.from > 0) builder.pause(flow.from * step);  // after a retraction the nozzle fills first
+    const PathPoint a{last->time, last->X_WT.translation(), tool_axis(last->X_WT), before.gap};
+    const PathPoint b{now.time, now.X_WT.translation(), tool_axis(now.X_WT), ground.gap};
+    Ground below = ground;
+    below.printed = below.printed || before.printed;  // on to it or off it
+    extrude_interval(a, b, below, flow.from, volume, now.line);
   }
 };
 
 DepositionObserver::DepositionObserver(const machine::MachineDescription& machine,
-                                       std::shared_ptr<const geometry::Mesh> part)
-    : state_(std::make_unique<State>()) {
-  const double d = machine.tool.filament_diameter;
-  state_->part = std::move(part);
-  state_->filament_area = std::numbers::pi / 4 * d * d;
-  state_->accepted_min = machine.gap.accepted_min;
-  state_->accepted_max = machine.gap.accepted_max;
-}
+                                       std::shared_ptr<Workpiece> workpiece, DepositionOptions options)
+    : state_(std::make_unique<State>(machine, std::move(workpiece), std::move(options))) {}
 
 DepositionObserver::~DepositionObserver() = default;
 
@@ -206,50 +266,33 @@ void DepositionObserver::observe(const Snapshot& snapshot) {
     s.observe(snapshot);
   } else {
     s.first_filament = s.most_filament = snapshot.filament;
+    s.ground = s.look(snapshot.X_WT, snapshot.time, snapshot.fan, snapshot.nozzle_temperature);
   }
   s.last = snapshot;
 }
 
-const std::vector<Bead>& DepositionObserver::beads() const { return state_->beads; }
+void DepositionObserver::finish() {
+  State& s = *state_;
+  if (s.started) s.builder.ooze(s.take_column());
+  s.builder.close();
+  s.loose.finish();
+}
+
+double DepositionObserver::gap() const { return state_->ground.gap; }
+std::size_t DepositionObserver::fresh_from() const { return state_->fresh_from; }
+bool DepositionObserver::flowing() const { return state_->flows; }
 
 DepositionSummary DepositionObserver::summary() const {
   const State& s = *state_;
-  DepositionSummary summary;
-  summary.length = s.sums.length;
-  if (s.sums.length > 0) {
-    summary.in_band_fraction = s.sums.in_band / s.sums.length;
-    summary.below_band_fraction = s.sums.below / s.sums.length;
-    summary.above_band_fraction = std::max(0.0, 1 - summary.in_band_fraction - summary.below_band_fraction);
-  }
-  if (s.sums.surface_length > 0) {
-    summary.gap_min = s.sums.min;
-    summary.gap_mean = s.sums.moment / s.sums.surface_length;
-    summary.gap_max = s.sums.max;
-  }
-  summary.start_gap = s.start_gap.value_or(0);
+  DepositionSummary summary = s.totals;
+  s.sums.fill(summary);
   summary.extruded_volume = (s.most_filament - s.first_filament) * s.filament_area;
-  for (const Bead& bead : s.beads) {
-    if (bead.sticks) summary.deposited_volume += bead.volume;
-  }
+  summary.column_volume = s.column() + s.builder.carried_volume();
   return summary;
 }
 
-std::vector<DepositionObserver::Loose> DepositionObserver::loose_stretches() const {
-  std::vector<Loose> stretches;
-  for (std::size_t i = 0; i < state_->beads.size(); ++i) {
-    const Bead& bead = state_->beads[i];
-    const Growth& growth = state_->growths[i];
-    if (bead.sticks) continue;
-    if (i > 0 && growth.follows && state_->growths[i - 1].hold == growth.hold) {
-      Loose& stretch = stretches.back();
-      stretch.length += bead.length;
-      stretch.worst_gap = growth.hold == Hold::buried ? std::min(stretch.worst_gap, growth.worst_gap)
-                                                      : std::max(stretch.worst_gap, growth.worst_gap);
-      continue;
-    }
-    stretches.push_back({growth.start_line, growth.start_time, bead.length, growth.worst_gap, bead.from_W});
-  }
-  return stretches;
+const std::vector<LooseStretch>& DepositionObserver::loose_stretches() const {
+  return state_->loose.stretches();
 }
 
 }  // namespace understudy::sim

@@ -43,6 +43,10 @@ Microscope::Microscope(const machine::MachineDescription& machine, std::shared_p
 
 Microscope::~Microscope() = default;
 
+void Microscope::set_printed(std::shared_ptr<const geometry::Mesh> beads) {
+  state_->scene.printed = std::move(beads);
+}
+
 Image Microscope::expose(const Pose& X_WT_true, const Region& region, std::uint64_t frame_number) {
   state_->scene.X_WT = X_WT_true;
   state_->scene.frame = frame_number;

@@ -27,6 +27,9 @@ class Microscope {
              std::uint64_t seed, const MicroscopeOptions& options = {});
   ~Microscope();
 
+  /// Beads near the tool, in W, from the next exposure on; nullptr: nothing is printed there.
+  void set_printed(std::shared_ptr<const geometry::Mesh> beads);
+
   /// One exposure with the tool at its true pose. `region` is clipped to the sensor. Equal arguments, equal
   /// bytes. Throws MachineError when the renderer fails.
   Image expose(const Pose& X_WT_true, const Region& region, std::uint64_t frame_number);

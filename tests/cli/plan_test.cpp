@@ -56,5 +56,100 @@ TEST(PlanSurface, RefusesWhatItCannotPlanAndWritesNothing) {
   }
 }
 
+TEST(PlanSurface, RowsOnTheCoreMakeTheShippedConformalFinishAgain) {
+  const Folder folder;
+  const Outcome outcome = understudy(
+      "plan surface crown_core --tilt -17 17 --rows 26 --layers 3 --step 1 --chord 4 --clearance 4 -o " +
+      (folder / "conformal.gcode"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(without_comments(read_file(folder / "conformal.gcode")),
+            without_comments(read_file(kSource + "/scenarios/surface-finish/conformal.gcode")));
+}
+
+TEST(PlanPlanar, MakesTheShippedStaircaseAgain) {
+  const Folder folder;
+  const Outcome outcome = understudy("plan planar crown --core crown_base -o " + (folder / "planar.gcode"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  // 17 layers of 0.13 mm from the base at 18.20 mm to the crown's top at 20.41 mm.
+  EXPECT_THAT(outcome.out, HasSubstr("17 layers of 0.13 mm"));
+  EXPECT_EQ(without_comments(read_file(folder / "planar.gcode")),
+            without_comments(read_file(kSource + "/scenarios/surface-finish/planar.gcode")));
+}
+
+TEST(PlanSpiral, MakesTheShippedSpiralAgain) {
+  const Folder folder;
+  const Outcome outcome = understudy("plan spiral -o " + (folder / "spiral.gcode"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("a helix of 127.2 mm"));  // 2 hypot(2 pi 10, 10)
+  EXPECT_EQ(without_comments(read_file(folder / "spiral.gcode")),
+            without_comments(read_file(kSource + "/scenarios/spiral-in-air/spiral.gcode")));
+}
+
+TEST(PlanLattice, FillsABoxWithThePapersCubes) {
+  const Folder folder;
+  const Outcome outcome = understudy("plan lattice box:20x20x15 --strut 5 -o " + (folder / "lattice.gcode"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  // 4 x 4 x 3 cubes: 80 + 80 struts along x and y, 75 upright, 5 mm each.
+  EXPECT_THAT(outcome.out, HasSubstr("235 struts, 1175.0 mm, 0 with the tool tilted"));
+  const std::string gcode = read_file(folder / "lattice.gcode");
+  EXPECT_THAT(gcode, HasSubstr("F60\n"));          // Ishak 2018: 1 mm/s
+  EXPECT_THAT(gcode, HasSubstr("\nM106 S255\n"));  // forced air
+  EXPECT_THAT(gcode, HasSubstr("\nG4 P3000\n"));
+}
+
+TEST(PlanLattice, PlansAFrameFromAFileAndWarnsOfItsLengths) {
+  const Folder folder;
+  const auto frame = folder.write(
+      "frame.json",
+      R"({"unit": "centimeter", "node_list": [{"point": {"X": 0, "Y": 0, "Z": 0}, "is_grounded": 1},
+          {"point": {"X": 0, "Y": 0, "Z": 2}, "is_grounded": 0}, {"point": {"X": 1, "Y": 0, "Z": 2}, "is_grounded": 0}],
+          "element_list": [{"end_node_ids": [0, 1]}, {"end_node_ids": [1, 2]}]})");
+  const Outcome outcome = understudy("plan lattice " + frame + " -o " + (folder / "frame.gcode"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              HasSubstr("warning: 1 of 2 struts are outside 5..11 mm (Ishak 2018), the longest 20.0 mm"));
+  EXPECT_THAT(outcome.out, HasSubstr("2 struts, 30.0 mm"));
+}
+
+TEST(PlanWaypoints, SetsALayerOnTheTable) {
+  const Folder folder;
+  const auto layer = folder.write("layer.txt", "0 5 0 0 1 0\n1 5 0 0 1 0\n2 5 0 0 1 0\n");
+  const Outcome outcome = understudy(
+      "plan waypoints " + layer + " --machine arm --up y --place 10,20,0.13 -o " + (folder / "layer.gcode"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("1 layers, 1 strokes, 2.0 mm of bead"));
+  EXPECT_THAT(read_file(folder / "layer.gcode"), HasSubstr("G1 X9 Y20 Z0.13 W1 I0 J0 K0"));
+}
+
+TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
+  const Folder folder;
+  const std::string out = " -o " + (folder / "x.gcode");
+  for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
+           {"plan surface crown_core --rows 0", "--rows"},
+           {"plan surface crown_core --rows 2 --pitch -1", "--pitch -1 is outside 0..100"},
+           {"plan planar crown --layer 0", "--layer 0 is outside 0..10"},
+           {"plan planar crown --layer 0.6", "bead width is 0.48 mm, less than its height of 0.6 mm"},
+           {"plan planar crown --machine nothing", "nothing"},
+           {"plan waypoints /nonexistent.txt", "/nonexistent.txt"},
+           {"plan waypoints " + kSource + "/README.md --up w", "--up 'w' is not x, y, z, -x, -y or -z"},
+           {"plan waypoints " + kSource + "/LICENSE", "LICENSE:2:34: 'Apache' is not a finite number"},
+           {"plan lattice box:20x20 ", "'box:20x20' is not a box of three sides in mm"},
+           {"plan lattice box:20x20x20 --strut 4", "strut length is 4 mm, outside 5 to 11 mm"},
+           {"plan lattice box:20x20x20 --place 1,2", "--place '1,2' is not X,Y,Z in mm"},
+           {"plan lattice /nonexistent.json", "/nonexistent.json"},
+           {"plan lattice box:20x20x20 --tilt 91", "--tilt 91 is outside 0..90"},
+           {"plan lattice box:20x20x20 --machine finishing", "its tool does not print"},
+           {"plan spiral --lean 80", "lean is 80 deg, outside 0 to 60 deg"},
+           {"plan spiral --temperature 20", "--temperature 20 C is outside 100..450 C"},
+           {"plan spiral --pitch 0.3", "pitch is 0.3 mm, less than two strands of 0.45 mm"}}) {
+    const Outcome outcome = understudy(words + out);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_THAT(outcome.err, HasSubstr(message)) << words;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << words << outcome.err;
+    EXPECT_EQ(folder.entries(), 0) << words;
+  }
+  EXPECT_EQ(understudy("plan lattice --help").status, 0);
+}
+
 }  // namespace
 }  // namespace understudy::cli_test

@@ -2,14 +2,16 @@
 // of a gap once the dot is measured.
 //
 // Not control-cycle code, and not watched here: MotionPlanner::push() and finish(), which run ahead of the
-// port's queue and grow the lookahead; Feeder, which calls them; close_gap() and vision::measure_dot(), which
-// run while the axes rest, on a frame that owns its pixels, and keep every look for the report.
+// port's queue and grow the lookahead; Feeder, which calls them; close_gap(), GapWatch and
+// vision::measure_dot(), which work on a frame that owns its pixels, ahead of the queue or while the axes
+// rest, and keep every look for the report.
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "control/gap_follower.h"
 #include "control/gap_reading.h"
 #include "control/motion_planner.h"
 #include "core/random.h"
@@ -130,6 +132,30 @@ TEST(LoopbackCycle, CallsNeitherAllocateNorLockNorTouchFiles) {
   EXPECT_EQ(made, Calls{});
   EXPECT_EQ(last, Status::ok);
   EXPECT_EQ(port.state().executed, 3000U);
+}
+
+TEST(GapCycle, FollowingAGapNeitherAllocatesNorLocks) {
+  const GapFollowerOptions options = gap_follower_options(machine::load_machine("hexapod"));
+  Random random(63, "followed cycle");
+  GapFollower follower(options);
+  double most = 0;
+  int used = 0;
+  const Calls made = calls_of([&] {
+    follower.start_unknown(0, 0);
+    GapFollower::Correction c;
+    for (int cycle = 0; cycle < 4000; ++cycle) {
+      const double time = 1e-3 * cycle, path = 5e-3 * time;
+      c = follower.advance(1e-3, path, true);
+      most = std::max(most, std::abs(c.value));
+      if (cycle % 25 != 0) continue;
+      const double gap = options.aim + 50e-6 * time + c.value + 5e-6 * random.normal();
+      if (cycle % 200 == 0) follower.miss(time, path, GapStop::no_dot);
+      used += follower.observe({time, path, c.value, gap, 5e-6}) == GapVerdict::used ? 1 : 0;
+    }
+  });
+  EXPECT_EQ(made, Calls{});
+  EXPECT_GT(used, 140);
+  EXPECT_GT(most, 100e-6);  // 50 um/s over 4 s: it did follow
 }
 
 TEST(GapCycle, ReadingAGapFromAMeasuredDotNeitherAllocatesNorLocks) {

@@ -162,6 +162,19 @@ TEST_F(StlFile, MixedWindingAndInsideOutAreRefused) {
   EXPECT_THAT(rejection(binary(inverted)), HasSubstr("the volume is -24000 mm^3, below 0"));
 }
 
+TEST_F(StlFile, TrianglesWithoutAreaAreRefused) {
+  for (const bool collapsed : {true, false}) {
+    std::string bytes = binary(box_);
+    for (std::size_t number = 0; number < 3; ++number) {
+      set_float(bytes, 4, number, static_cast<float>(number));
+      set_float(bytes, 4, 3 + number, static_cast<float>(collapsed ? number : 2 * number));
+      set_float(bytes, 4, 6 + number, static_cast<float>(4 * number));
+    }
+    EXPECT_THAT(rejection(bytes), AllOf(HasSubstr("triangle 5 at (0.000, 1.000, 2.000) mm has no area"),
+                                        HasSubstr("corners' rounding")));
+  }
+}
+
 TEST_F(StlFile, AWrongUnitShowsInTheSize) {
   const auto scaled = [](double scale) { return binary(box(Vec3::Zero(), scale * Vec3(0.02, 0.03, 0.04))); };
   EXPECT_EQ(rejection(scaled(1e-3)),

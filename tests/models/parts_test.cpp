@@ -22,7 +22,7 @@ TEST(Parts, MakingThemAgainGivesTheSameBytes) {
       std::filesystem::path(::testing::TempDir()) / ("understudy_parts_" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
   ASSERT_EQ(std::system(("\"" MAKE_PARTS "\" \"" + folder.string() + "\"").c_str()), 0);
-  for (const char* name : {"bottle.stl", "slanted_box.stl"})
+  for (const char* name : {"bottle.stl", "slanted_box.stl", "crown.stl", "crown_core.stl", "crown_base.stl"})
     EXPECT_TRUE(read_file(folder / name) == read_file(kParts / name)) << name;
   std::filesystem::remove_all(folder);
 }
@@ -67,6 +67,33 @@ TEST(Parts, TheSlantedBoxHasItsTopAtFifteenDegrees) {
   EXPECT_NEAR(to_deg(std::acos(top->normal.z())), 15, 1e-4);
   EXPECT_GT(top->normal.x(), 0);
   EXPECT_NEAR(top->position.z(), 18e-3 - 3e-3 * std::tan(15 * kDegree), 1e-8);
+}
+
+TEST(Parts, TheCrownAndItsCoreAreCylindersAShellApart) {
+  const auto crown = geometry::read_stl(kParts / "crown.stl"),
+             core = geometry::read_stl(kParts / "crown_core.stl");
+  const auto base = geometry::read_stl(kParts / "crown_base.stl");
+  // Facets of 0.3 mm: a sag of 0.3^2 / 8 / 40 = 0.28 um, and half as much again where they tilt by 17
+  // degrees.
+  for (double x = -11.9; x < 12; x += 0.37) {
+    const double z = 20.41 - 40.39 + std::sqrt(40.39 * 40.39 - x * x);
+    const auto top = crown->ray_hit(from_mm(1) * Vec3(x, 1.3, 100), -Vec3::UnitZ(), 1);
+    ASSERT_TRUE(top);
+    EXPECT_NEAR(to_mm(top->position.z()), z, 5e-4);
+    // The last facet has its crease's normal at the end, and over it the core's own surface has ended.
+    if (std::abs(x) < 11.6) {
+      EXPECT_NEAR(to_deg(std::asin(top->normal.x())), to_deg(std::asin(x / 40.39)), 0.01);
+      EXPECT_NEAR(to_mm(core->signed_distance(top->position)), 0.39, 6e-4);
+    }
+  }
+  EXPECT_NEAR(to_mm(base->upper().z()), 18.2, 1e-5);
+  for (const auto& part : {crown, core, base}) {
+    EXPECT_EQ(part->open_edges(), 0);
+    EXPECT_EQ(part->lower().z(), 0);
+    EXPECT_NEAR(to_mm(part->upper().x()), 12, 1e-5);
+    EXPECT_NEAR(to_mm(part->upper().y()), 6, 1e-5);
+  }
+  EXPECT_NEAR(base->volume() * 1e9, 24 * 12 * 18.2, 0.1);
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ function drawCharts(report, add) {
   }
   const gap = gapChart(report);
   const tip = tipChart(report);
-  for (const chart of [gap, tip, ...axisCharts(report)]) {
+  for (const chart of [gap, tip, profileChart(report), ...axisCharts(report)]) {
     if (!chart) continue;
-    chart.marks = findingMarks(report, chart.onPath);
+    chart.marks = chart.ofSurface ? [] : findingMarks(report, chart.onPath);
     if (chart.marks.length) chart.note += ' Ticks at the top edge: findings.';
     const legend = element('div', { class: 'legend' });
     const canvas = element('div', { class: 'chart' });
@@ -76,6 +76,15 @@ function tipChart(report) {
     onPath: true,
     note: 'Distance of the true tip from where the program asks for it.',
     xLabel: 'path length (mm)', yLabel: 'tip error (µm)' };
+}
+
+function profileChart(report) {
+  if (!report.profile) return null;
+  const { position_mm: x, height_um: y } = report.profile;
+  return { title: 'Profile of the printed surface', ofSurface: true, unit: 'µm', decimals: 1, include: [0],
+    curves: [{ label: 'height', colour: kColour.with, rows: x.map((value, i) => [value, y[i]]) }],
+    note: 'Height of what was printed along the chosen line, form removed. Ra and Rz: ' + report.profile.note + '.',
+    xLabel: 'along the line (mm)', yLabel: 'height (µm)' };
 }
 
 // One chart a unit: lengths and angles do not share a scale.

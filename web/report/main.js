@@ -8,6 +8,8 @@
   add(drawFindings(report));
   add(drawPictures(report));
   drawCharts(report, add);
+  add(drawStrands(report));
+  add(drawDeviation(report));
   add(drawFrames(report));
   add(drawFigures(report));
   add(drawProvenance(report));

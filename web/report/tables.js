@@ -48,6 +48,8 @@ const kFigureLabels = {
   commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
   path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
   in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',
+  max_um: 'Sag, largest', strands: 'Strands in air', unsupported_mm: 'Length in air',
+  ra_um: 'Roughness Ra', rz_um: 'Roughness Rz', deviation_p95_um: 'Deviation from the intended part, 95th percentile',
   min_clearance_mm: 'Least clearance', checks: 'Checks', pairs: 'Pairs of bodies',
   name: 'Name', version: 'Version', timestep_s: 'Time step', steps: 'Steps',
   real_time_factor: 'Simulated time / wall time', closure_max_um: 'Loop closure error, largest',
@@ -71,6 +73,30 @@ function drawFigures(report) {
       element('tbody', {}, ...Object.entries(values).map(([name, value]) => element('tr', {},
         element('th', { scope: 'row' }, kFigureLabels[name] || format.kind(name)),
         element('td', { class: 'number' }, figureText(name, value)))))))));
+}
+
+// Those that sag most, as the record sorts them.
+function drawStrands(report) {
+  if (!report.strands) return null;
+  const all = report.summary.sag.strands;
+  const head = ['Line', 'Time', 'Length', 'Thickness', 'Speed', 'Sag', 'Laid in', 'Solid after', 'Far end'];
+  const rows = report.strands.map((strand) => element('tr', {}, ...[
+    String(strand.line), format.quantity(strand.time_s, 's'), format.quantity(strand.length_mm, 'mm'),
+    format.quantity(strand.diameter_mm, 'mm'), format.quantity(strand.speed_mm_per_s, 'mm/s'),
+    strand.sag_um === undefined ? 'not solved' : (strand.small ? '' : '> ') + format.quantity(strand.sag_um, 'um'),
+    format.quantity(strand.duration_s, 's'), format.quantity(strand.solid_after_s, 's'),
+    strand.held_at_end ? 'held' : 'free'].map((text, i) => element('td', { 'data-label': head[i], class: 'number' }, text))));
+  return section('Strands in air', 'How far each lies from where it was laid, once it is solid.' +
+    (all > rows.length ? ' The ' + rows.length + ' that sag most of ' + all + '.' : ''),
+    element('table', { class: 'findings' },
+      element('thead', {}, element('tr', {}, ...head.map((h) => element('th', { class: 'number' }, h)))),
+      element('tbody', {}, ...rows)));
+}
+
+function drawDeviation(report) {
+  if (!report.deviation_note) return null;
+  return section('Surface as printed', null, element('p', {}, format.message(report.deviation_note[0].toUpperCase() +
+    report.deviation_note.slice(1) + '.')));
 }
 
 function drawProvenance(report) {

@@ -70,7 +70,7 @@ TEST(Gjk, AgreesWithNestedGoldenSectionsOnRandomTriangles) {
     const GjkResult result =
         std::visit([&](const auto& core) { return distance_to_triangle(core, t, kInfinity); }, solid.core);
     EXPECT_NEAR(result.distance, slow_distance(solid, t), kStated) << "trial " << trial;
-    EXPECT_NEAR(std::max(0.0, signed_distance(solid, result.on_triangle)), result.distance, kStated);
+    EXPECT_NEAR(std::max(0.0, signed_distance(solid, result.on_other)), result.distance, kStated);
     EXPECT_LT(result.iterations, 60) << "trial " << trial;
   }
 }

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/units.h"
-#include "sim/process/deposition.h"
+#include "sim/process/true_gap.h"
 
 namespace understudy::sim {
 namespace {

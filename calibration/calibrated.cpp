@@ -1,0 +1,99 @@
+#include "calibration/calibrated.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <cstdio>
+
+namespace understudy::calibration {
+namespace {
+
+/// Standard score of a chi-square value (Wilson and Hilferty 1931).
+double standard_score(double chi_square, int degrees) {
+  const double n = degrees, v = 2 / (9 * n);
+  return (std::cbrt(chi_square / n) - (1 - v)) / std::sqrt(v);
+}
+
+constexpr double kUnsupported = 4;  // standard scores: 3 in 100 000 good calibrations
+
+void warn_of_misfit(Calibration& result) {
+  const int degrees = result.degrees_of_freedom;
+  if (degrees <= 0 || standard_score(result.chi_square, degrees) < kUnsupported) return;
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "residuals are %.2f times what the stated noise explains (chi-square %.1f for %d degrees of "
+                "freedom): the noise is understated or the model lacks something (outliers, dev, play)",
+                std::sqrt(result.chi_square / degrees), result.chi_square, degrees);
+  result.warnings.emplace_back(text);
+}
+
+void warn_of_play(const Unknowns& unknowns, Calibration& result) {
+  for (std::size_t i = 0; unknowns.play && i < kStruts; ++i) {
+    const Eigen::Index row = unknowns.first_play() + static_cast<Eigen::Index>(i);
+    const double play = result.parameters.play[i];
+    if (play >= 0 || result.covariance.size() == 0) continue;
+    const double sigma = std::sqrt(result.covariance(row, row));
+    if (-play < 3 * sigma) continue;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "strut %zu: play of %.1f um is below 0 by %.1f standard deviations: are its approaches "
+                  "named the wrong way round?",
+                  i + 1, play * 1e6, -play / sigma);
+    result.warnings.emplace_back(text);
+  }
+}
+
+}  // namespace
+
+Twist pose_error(const Pose& measured, const Pose& reached) {
+  Twist e;
+  e.head<3>() = measured.translation() - reached.translation();
+  e.tail<3>() = log_rotation(measured.linear() * reached.linear().transpose());
+  return e;
+}
+
+Calibration refused(const Problem& problem, Status status, const std::string& message) {
+  Calibration result;
+  result.status = status;
+  result.message = message;
+  result.parameters = problem.nominal;
+  result.used.assign(problem.samples.size(), true);
+  return result;
+}
+
+Calibration calibrated(const Problem& problem, const Fit& fit, const Unknowns& unknowns,
+                       const std::vector<bool>& used) {
+  Calibration result;
+  result.parameters = fit.machine;
+  result.iterations = fit.iterations;
+  result.used = used;
+  int used_count = 0;
+  for (std::size_t j = 0; j < problem.samples.size(); ++j) {
+    const PoseSample& sample = problem.samples[j];
+    const auto reached =
+        kinematics::forward(fit.machine.geometry, strut_lengths(fit.machine, sample), sample.X_BT);
+    result.residuals.push_back(pose_error(sample.X_BT, reached.X_BT));
+    if (!used[j]) continue;
+    const Twist& e = result.residuals.back();
+    result.chi_square += e.dot(sample.covariance.llt().solve(e));
+    ++used_count;
+  }
+  result.degrees_of_freedom = 6 * used_count - unknowns.count();
+  result.status = fit.converged ? Status::ok : Status::not_converged;
+  if (!fit.converged) {
+    result.message =
+        "the search did not settle after " + std::to_string(fit.iterations) +
+        " iterations: are displacements and poses of the same rows, and the machine the right one?";
+    return result;
+  }
+  if (!fit.equations.invert(result.covariance)) {
+    result.status = Status::rank_deficient;
+    result.message =
+        "at the solution the poses no longer tell all parameters apart: add poses with more tilt";
+    return result;
+  }
+  warn_of_misfit(result);
+  warn_of_play(unknowns, result);
+  return result;
+}
+
+}  // namespace understudy::calibration

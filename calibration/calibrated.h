@@ -1,0 +1,18 @@
+// From a fit to what the user gets: residuals of the measured poses, chi-square and warnings.
+#pragma once
+
+#include "calibration/fit.h"
+
+namespace understudy::calibration {
+
+/// Fills everything but the covariance. Not converged is a status with advice.
+Calibration calibrated(const Problem& problem, const Fit& fit, const Unknowns& unknowns,
+                       const std::vector<bool>& used);
+
+/// The nominal machine with a reason.
+Calibration refused(const Problem& problem, Status status, const std::string& message);
+
+/// Measured less reached: (translation, rotation vector), both in B.
+Twist pose_error(const Pose& measured, const Pose& reached);
+
+}  // namespace understudy::calibration

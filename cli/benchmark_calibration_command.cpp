@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "calibration/study_tables.h"
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/output_file.h"
+#include "core/units.h"
+#include "rehearsal/calibration_benchmark.h"
+#include "rehearsal/camera_study.h"
+
+namespace understudy::cli {
+namespace {
+
+struct BenchmarkCall {
+  rehearsal::CalibrationBenchmarkRequest request;
+  std::string folder, from = "poses", choice = "random", method = "pinhole";
+  std::vector<std::string> disturbances, noise{"20um:0.2mrad"};
+  std::vector<int> poses{8, 12, 24};
+  double board_offset_mm = 0.02, board_rotation_mrad = 0.2;
+  bool tables = false;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& word, const std::string& known) {
+  throw InputError(fmt::format("{} '{}' is not known (known: {})", option, word, known));
+}
+
+/// "20um:0.2mrad", the units in full so that they cannot be mistaken.
+calibration::MeasurementNoise noise_of(const std::string& word) {
+  double um = 0, mrad = 0;
+  int end = -1;
+  if (std::sscanf(word.c_str(), "%lfum:%lfmrad%n", &um, &mrad, &end) != 2 ||
+      end != static_cast<int>(word.size()))
+    throw InputError(fmt::format("--noise '{}' does not read like 20um:0.2mrad", word));
+  if (!(um >= 1e-3 && um <= 1e4) || !(mrad >= 1e-4 && mrad <= 1e3))
+    throw InputError(fmt::format("--noise '{}' is outside 0.001um..10000um and 0.0001mrad..1000mrad", word));
+  return {from_mm(um * 1e-3), mrad * 1e-3};
+}
+
+vision::SightMethod method_of(const std::string& word) {
+  if (word == "polyline") return vision::SightMethod::layer_polyline;
+  if (word == "line") return vision::SightMethod::layer_line;
+  if (word == "pinhole") return vision::SightMethod::pinhole;
+  refuse("--method", word, "polyline line pinhole");
+}
+
+void check_ranges(const BenchmarkCall& call) {
+  const auto& request = call.request;
+  if (request.trials < 1 || request.trials > 100000)
+    throw InputError(fmt::format("--trials {} is outside 1..100000", request.trials));
+  if (request.threads < 1 || request.threads > 1024)
+    throw InputError(fmt::format("-j {} is outside 1..1024", request.threads));
+  if (!(request.plugin_limits.time >= 0.01 && request.plugin_limits.time <= 3600))
+    throw InputError(fmt::format("--plugin-timeout {} is outside 0.01..3600 s", request.plugin_limits.time));
+  if (!(call.board_offset_mm >= 0 && call.board_offset_mm <= 2))
+    throw InputError(fmt::format("--board-offset {} is outside 0..2 mm", call.board_offset_mm));
+  if (!(call.board_rotation_mrad >= 0 && call.board_rotation_mrad <= 50))
+    throw InputError(fmt::format("--board-rotation {} is outside 0..50 mrad", call.board_rotation_mrad));
+  for (const int n : call.poses)
+    if (n < 1 || n > 1000) throw InputError(fmt::format("--poses {} is outside 1..1000", n));
+}
+
+rehearsal::CalibrationBenchmarkRequest request_of(const BenchmarkCall& call) {
+  check_ranges(call);
+  rehearsal::CalibrationBenchmarkRequest request = call.request;
+  if (call.from != "poses" && call.from != "pixels") refuse("--from", call.from, "poses pixels");
+  if (call.from == "pixels") request.from = rehearsal::MeasuredFrom::pixels;
+  if (call.choice != "random" && call.choice != "d-optimal")
+    refuse("--choice", call.choice, "random d-optimal");
+  if (call.choice == "d-optimal") request.choice = calibration::PoseChoice::d_optimal;
+  request.stand.method = method_of(call.method);
+  request.stand.boards = {from_mm(call.board_offset_mm), 1e-3 * call.board_rotation_mrad, 0};
+  request.poses.assign(call.poses.begin(), call.poses.end());
+  request.noise.clear();
+  for (const std::string& word : call.noise) request.noise.push_back(noise_of(word));
+  for (const std::string& word : call.disturbances)
+    request.disturbances.push_back(rehearsal::disturbance_named(word));
+  request.command = command_line();
+  return request;
+}
+
+int run_tables(const BenchmarkCall& call) {
+  const machine::MachineDescription machine = machine::load_machine(call.request.machine);
+  if (machine.chain)
+    throw InputError(
+        fmt::format("--tables: reference sections B and C are of the hexapod, not of {}", machine.name));
+  const auto mechanism = machine.make_mechanism();
+  calibration::StudySetting setting;
+  setting.nominal = machine.hexapod.geometry;
+  setting.mechanism = mechanism.get();
+  setting.region = calibration::reference_region(machine.X_BT_home);
+  const auto line = [](const std::string& text) {
+    stop_if_interrupted();
+    fmt::print("{}\n", text);
+    std::fflush(stdout);
+  };
+  calibration::study_tables(setting, {}, line);
+  line("");
+  rehearsal::camera_study_table(60, line);
+  return kGood;
+}
+
+int run_calibration(const BenchmarkCall& call) {
+  if (call.tables) return run_tables(call);
+  const rehearsal::CalibrationBenchmarkRequest request = request_of(call);
+  const std::string folder = call.folder.empty() ? "out/benchmark-calibration" : call.folder;
+  OutputFolder out(folder, "benchmark.json");
+  rehearsal::CalibrationBenchmark benchmark;
+  {
+    ProgressLine line;
+    benchmark = rehearsal::run_benchmark(
+        request, [&](double share, const std::string& what) { line.show(share, what); });
+  }
+  write_file(out.path() / "benchmark.json", rehearsal::benchmark_json(benchmark));
+  write_file(out.path() / "report.html", rehearsal::benchmark_page(benchmark));
+  stop_if_interrupted();
+  out.commit();
+  const std::filesystem::path written(folder);
+  fmt::print("{}\n{}\n{}\n", rehearsal::benchmark_table(benchmark), (written / "benchmark.json").string(),
+             (written / "report.html").string());
+  return kGood;
+}
+
+void add_condition_options(CLI::App& command, BenchmarkCall& call) {
+  command.add_option("--poses", call.poses, "counts of poses")->delimiter(',')->capture_default_str();
+  command.add_option("--noise", call.noise, "1 sigma per axis of a measured pose, as 20um:0.2mrad")
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      .add_option("--disturbances", call.disturbances,
+                  "none, outliers, boards, play, deviation, drift; else all that the machine can have")
+      ->delimiter(',');
+  command.add_option("--choice", call.choice, "of poses: random, d-optimal")->capture_default_str();
+  command.add_option("--from", call.from, "measured poses: poses (with noise) or pixels (rendered pictures)")
+      ->capture_default_str();
+  command.add_option("--method", call.method, "of the cameras, from pixels: polyline, line, pinhole")
+      ->capture_default_str();
+  command
+      .add_option("--board-offset", call.board_offset_mm, "from pixels: placement of a board, 1 sigma, mm")
+      ->capture_default_str();
+  command.add_option("--board-rotation", call.board_rotation_mrad, "from pixels: of a board, 1 sigma, mrad")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_benchmark_calibration(CLI::App& benchmark, Action& action) {
+  auto call = std::make_shared<BenchmarkCall>();
+  call->request.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  auto* command = benchmark.add_subcommand("calibration",
+                                           "Estimators and plug-ins on built machines whose truth is known");
+  command->add_option("--machine", call->request.machine, "name under models/ or a machine.yaml")
+      ->capture_default_str();
+  command->add_option("--trials", call->request.trials, "built machines")->capture_default_str();
+  command->add_option("--estimators", call->request.estimators, "names, separated by commas; else all")
+      ->delimiter(',');
+  command
+      ->add_option(
+          "--plugin", call->request.plugins,
+          "command that reads one problem and writes one answer, JSON (docs/calibration-plugins.md); "
+          "may be given again")
+      ->allow_extra_args(false);
+  command->add_option("--plugin-timeout", call->request.plugin_limits.time, "of one problem, s")
+      ->capture_default_str();
+  add_condition_options(*command, *call);
+  command->add_option("--seed", call->request.seed, "of all that is drawn")->capture_default_str();
+  command->add_option("-j,--jobs", call->request.threads, "threads; the result does not depend on it")
+      ->capture_default_str();
+  command->add_option("--out", call->folder, "folder of results; else out/benchmark-calibration");
+  command->add_flag("--tables", call->tables,
+                    "print the tables of the literature's set-up beside their figures, and no more");
+  command->callback([=, &action] { action = [=] { return run_calibration(*call); }; });
+}
+
+}  // namespace understudy::cli

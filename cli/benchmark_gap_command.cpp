@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "core/interrupt.h"
+#include "core/output_file.h"
+#include "machine/description.h"
+#include "rehearsal/gap_benchmark.h"
+
+namespace understudy::cli {
+namespace {
+
+struct GapCall {
+  rehearsal::GapBenchmarkRequest request;
+  std::string folder = "out/gap-benchmark";
+};
+
+int run_gap(const GapCall& call) {
+  rehearsal::GapBenchmarkRequest request = call.request;
+  request.command = command_line();
+  if (request.program.empty())
+    request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
+  OutputFolder out(call.folder, "gap.json");
+  rehearsal::GapBenchmark benchmark;
+  {
+    ProgressLine line;
+    benchmark = rehearsal::run_gap_benchmark(
+        request, [&](double share, const std::string& what) { line.show(share, what); });
+  }
+  write_file(out.path() / "gap.json", rehearsal::gap_benchmark_json(benchmark));
+  write_file(out.path() / "gap.html", rehearsal::gap_benchmark_html(benchmark));
+  stop_if_interrupted();
+  out.commit();
+  const std::filesystem::path written(call.folder);
+  fmt::print("{}\n{}\n{}\n", rehearsal::gap_benchmark_table(benchmark), (written / "gap.json").string(),
+             (written / "gap.html").string());
+  return kGood;
+}
+
+}  // namespace
+
+void add_benchmark_gap(CLI::App& benchmark, Action& action) {
+  auto call = std::make_shared<GapCall>();
+  auto& request = call->request;
+  request.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  auto* command = benchmark.add_subcommand(
+      "gap", "How well the gap is measured, closed and followed over surfaces, light and faults");
+  command->add_option("--machine", request.machine, "name under models/ or a machine.yaml")
+      ->capture_default_str();
+  command->add_option("--part", request.parts, "detectors, approach, following, bottle; all unless given")
+      ->delimiter(',');
+  command
+      ->add_option("--trials", request.trials,
+                   "approaches and followed beads for each surface and condition; ten times the frames")
+      ->capture_default_str();
+  command->add_option("--machines", request.machines, "as-built machines that print the bottle's line")
+      ->capture_default_str();
+  command->add_option("--seed", request.seed, "of the machines and of all noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--program", request.program, "of the bottle's line; else scenarios/song-bottle.gcode");
+  command->add_option("-j,--jobs", request.threads, "threads; the result does not depend on it")
+      ->capture_default_str();
+  command->add_option("--out", call->folder, "folder of results")->capture_default_str();
+  command->footer("Writes gap.json and gap.html (docs/gap-control.md).");
+  command->callback([=, &action] { action = [=] { return run_gap(*call); }; });
+}
+
+}  // namespace understudy::cli

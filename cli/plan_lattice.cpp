@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "cli/plan_options.h"
+#include "core/error.h"
+#include "core/units.h"
+#include "rehearsal/rehearse.h"
+#include "toolpath/lattice_planner.h"
+
+namespace understudy::cli {
+namespace {
+
+struct LatticeRequest {
+  PlanOptions options;
+  std::string part, place = "0,0,0";
+  double strut_mm = 5, scale = 1, diameter_mm = 0.48, dwell_s = 3, margin_mm = 0.1, tilt_max_deg = 90;
+  bool force = false, ignore_reach = false;
+};
+
+void check(const LatticeRequest& r) {
+  check_options(r.options);
+  check_option("--scale", r.scale, 1000);
+  check_option("--diameter", r.diameter_mm, 20);
+  check_option("--margin", r.margin_mm, 10);
+  if (!(r.tilt_max_deg >= 0 && r.tilt_max_deg <= 90))
+    throw InputError(fmt::format("--tilt {:g} is outside 0..90", r.tilt_max_deg));
+}
+
+/// box:20x20x15
+Vec3 box_size(const std::string& text) {
+  Vec3 size;
+  const char* at = text.c_str() + std::string("box:").size();
+  for (int k = 0; k < 3; ++k) {
+    char* end = nullptr;
+    size[k] = from_mm(std::strtod(at, &end));
+    if (end == at || *end != (k < 2 ? 'x' : '\0'))
+      throw InputError(fmt::format("'{}' is not a box of three sides in mm, like box:20x20x15", text));
+    at = end + 1;
+  }
+  return size;
+}
+
+toolpath::Lattice lattice_of(const LatticeRequest& r) {
+  if (std::filesystem::path(r.part).extension() == ".json") return toolpath::read_lattice(r.part);
+  const double strut = from_mm(r.strut_mm);
+  const auto fill = r.part.starts_with("box:")
+                        ? toolpath::fill_box(box_size(r.part), strut)
+                        : toolpath::fill_part(*geometry::read_stl(rehearsal::find_fixture(r.part)), strut);
+  if (fill.dropped > 0)
+    fmt::print(stderr, "warning: {} nodes within the part have no struts to the table and were left out\n",
+               fill.dropped);
+  return fill.lattice;
+}
+
+void warn_of_lengths(const toolpath::Lattice& lattice) {
+  std::size_t outside = 0;
+  double longest = 0;
+  for (std::size_t s = 0; s < lattice.struts.size(); ++s) {
+    const double length = lattice.length(s);
+    outside +=
+        length < toolpath::kShortestStrut - kMicrometre || length > toolpath::kLongestStrut + kMicrometre;
+    longest = std::max(longest, length);
+  }
+  if (outside > 0)
+    fmt::print(stderr,
+               "warning: {} of {} struts are outside {:g}..{:g} mm (Ishak 2018), the longest {:.1f} mm\n",
+               outside, lattice.struts.size(), to_mm(toolpath::kShortestStrut),
+               to_mm(toolpath::kLongestStrut), to_mm(longest));
+}
+
+std::function<bool(const Pose&)> reach_of(const machine::MachineDescription& machine) {
+  const std::shared_ptr<kinematics::Mechanism> mechanism = machine.make_mechanism();
+  return [mechanism, X_BW = Pose(machine.X_WB.inverse())](const Pose& X_WT) {
+    std::array<double, kinematics::kMaxAxes> storage{};
+    const auto axes = std::span(storage).first(static_cast<std::size_t>(mechanism->axis_count()));
+    const Pose X_BT = X_BW * X_WT;
+    if (mechanism->inverse(X_BT, {}, axes) != kinematics::Solve::ok) return false;
+    std::vector<kinematics::LimitViolation> violations;
+    mechanism->check(X_BT, axes, violations);
+    return violations.empty();
+  };
+}
+
+toolpath::LatticePlan plan_of(const LatticeRequest& r, const machine::MachineDescription& machine) {
+  toolpath::LatticePlan plan;
+  plan.limits.tool = machine.tool.bodies;
+  plan.limits.strut_diameter = from_mm(r.diameter_mm);
+  plan.limits.ground_gap = machine.gap.aim;
+  plan.limits.margin = from_mm(r.margin_mm);
+  // Where the nozzle's flat still overlaps a strut that leaves the node across the tool's axis.
+  plan.limits.joint = 0.5 * machine.tool.flat_diameter + plan.limits.strut_diameter + plan.limits.margin;
+  plan.limits.lift = from_mm(r.options.clearance_mm);
+  plan.limits.tilt_max = from_deg(r.tilt_max_deg);
+  if (!r.ignore_reach) plan.limits.reachable = reach_of(machine);
+  plan.limits.accept_interference = r.force;
+  plan.feed = from_mm(r.options.feed_mm_per_s);
+  plan.approach_feed = from_mm(r.options.approach_mm_per_s);
+  plan.approach = machine.gap.standoff;
+  plan.dwell = r.dwell_s;
+  plan.filament_diameter = machine.tool.filament_diameter;
+  plan.temperature = r.options.temperature_c + kCelsiusZero;
+  plan.fan = r.options.fan;
+  return plan;
+}
+
+int plan_lattice(const LatticeRequest& r) {
+  check(r);
+  const auto machine = printing_machine(r.options.machine);
+  toolpath::Lattice lattice = lattice_of(r);
+  const Vec3 place = place_from("--place", r.place);
+  // Struts on the table rest on it: their middle is half a diameter above.
+  toolpath::place_lattice(lattice, r.scale, place + from_mm(0.5 * r.diameter_mm) * Vec3::UnitZ());
+  const auto result = toolpath::plan_lattice(lattice, plan_of(r, machine));
+  warn_of_lengths(lattice);
+  for (const std::string& warning : result.sequence.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  write_program(result.program, r.options, result.sequence.warnings);
+  const auto tilted = std::count_if(result.sequence.prints.begin(), result.sequence.prints.end(),
+                                    [](const toolpath::StrutPrint& p) { return p.axis.z() < 1 - 1e-9; });
+  fmt::print("{}: {} struts, {:.1f} mm, {} with the tool tilted\n", r.options.output, lattice.struts.size(),
+             to_mm(result.printed), tilted);
+  return kGood;
+}
+
+}  // namespace
+
+void add_plan_lattice(CLI::App& plan, Action& action) {
+  auto request = std::make_shared<LatticeRequest>();
+  request->options.machine = "arm";
+  request->options.feed_mm_per_s = 1;  // Ishak 2018, as are the diameter and the fan
+  request->options.approach_mm_per_s = 5;
+  request->options.clearance_mm = 2;
+  request->options.temperature_c = 210;
+  request->options.fan = 1;
+  auto* lattice = plan.add_subcommand("lattice", "Struts in the air, one by one, none run into");
+  lattice
+      ->add_option("part", request->part,
+                   "a frame (.json), a part to fill with cubes (STL in mm or a name under models/parts), or "
+                   "box:20x20x15")
+      ->required();
+  add_machine_option(*lattice, request->options);
+  lattice->add_option("--strut", request->strut_mm, "mm, 5..11: side of the cubes that fill a part")
+      ->capture_default_str();
+  lattice->add_option("--scale", request->scale, "of the lattice")->capture_default_str();
+  lattice->add_option("--place", request->place, "X,Y,Z mm: the middle of its lower side stands there")
+      ->capture_default_str();
+  lattice->add_option("--diameter", request->diameter_mm, "mm, of a strut")->capture_default_str();
+  lattice->add_option("--dwell", request->dwell_s, "s at the end of each strut, for it to solidify")
+      ->capture_default_str();
+  lattice->add_option("--margin", request->margin_mm, "mm between tool and struts, at least")
+      ->capture_default_str();
+  lattice->add_option("--tilt", request->tilt_max_deg, "degrees from vertical that the tool may lean")
+      ->capture_default_str();
+  lattice->add_flag("--force", request->force,
+                    "where no way is clear, take the clearest and warn, instead of refusing");
+  lattice->add_flag("--ignore-reach", request->ignore_reach, "do not ask the machine whether it gets there");
+  add_motion_options(*lattice, request->options);
+  add_nozzle_options(*lattice, request->options);
+  add_output_option(*lattice, request->options);
+  lattice->callback([=, &action] { action = [=] { return plan_lattice(*request); }; });
+}
+
+}  // namespace understudy::cli

@@ -1,0 +1,113 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/plan_options.h"
+#include "core/error.h"
+#include "core/units.h"
+#include "rehearsal/rehearse.h"
+#include "toolpath/surface_planner.h"
+
+namespace understudy::cli {
+namespace {
+
+struct SurfaceRequest {
+  PlanOptions options;
+  std::string part, curve;
+  std::vector<double> section{0, 0, 0, 0, 1, 0};  ///< point [mm] and normal of the cutting plane
+  std::vector<double> tilt_deg{-20, 20};
+  double step_mm = 0.5, chord_um = 2;
+  int rows = 1, layers = 1;
+  double pitch_mm = 0;  ///< 0: beads side by side
+};
+
+void check(const SurfaceRequest& r) {
+  check_options(r.options);
+  check_option("--step", r.step_mm, 50);
+  check_option("--chord", r.chord_um, 1000);
+  if (!(r.pitch_mm >= 0 && r.pitch_mm <= 100))
+    throw InputError(fmt::format("--pitch {:g} is outside 0..100", r.pitch_mm));
+  if (r.rows > 1 && !r.curve.empty())
+    throw InputError(fmt::format("--rows {} and --curve exclude each other: rows are cut by planes", r.rows));
+  if (r.tilt_deg[0] >= r.tilt_deg[1])
+    throw InputError(
+        fmt::format("--tilt {:g} {:g}: the first must be smaller", r.tilt_deg[0], r.tilt_deg[1]));
+}
+
+std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const SurfaceRequest& r,
+                                         const toolpath::SurfacePlan& plan) {
+  if (!r.curve.empty()) return {toolpath::read_curve_csv(r.curve)};
+  toolpath::SectionRows rows;
+  rows.point = from_mm(1) * Vec3(r.section[0], r.section[1], r.section[2]);
+  const Vec3 normal(r.section[3], r.section[4], r.section[5]);
+  if (!(normal.norm() > 1e-9)) throw InputError("--section: the plane's normal has no length");
+  rows.normal = normal.normalized();
+  rows.count = r.rows;
+  rows.pitch = r.pitch_mm > 0 ? from_mm(r.pitch_mm)
+                              : toolpath::bead_area(plan.bead_width, plan.bead_height) / plan.bead_height;
+  rows.tilt_min = from_deg(r.tilt_deg[0]);
+  rows.tilt_max = from_deg(r.tilt_deg[1]);
+  return toolpath::section_rows(mesh, rows);
+}
+
+int plan_surface(const SurfaceRequest& r) {
+  check(r);
+  const auto machine = printing_machine(r.options.machine);
+  const auto mesh = geometry::read_stl(rehearsal::find_fixture(r.part));
+  toolpath::SurfacePlan plan;
+  plan.gap = machine.gap.aim;
+  plan.standoff = machine.gap.standoff;
+  plan.clearance = from_mm(r.options.clearance_mm);
+  plan.step = from_mm(r.step_mm);
+  plan.chord_tolerance = r.chord_um * kMicrometre;
+  plan.feed = from_mm(r.options.feed_mm_per_s);
+  plan.approach_feed = from_mm(r.options.approach_mm_per_s);
+  plan.bead_width = from_mm(r.options.bead_width_mm);
+  plan.bead_height = bead_height(r.options, machine);
+  plan.filament_diameter = machine.tool.filament_diameter;
+  plan.temperature = r.options.temperature_c + kCelsiusZero;
+  plan.fan = r.options.fan;
+  plan.tilt_max = from_deg(30);
+  const auto program = toolpath::plan_surface(*mesh, curves_on(*mesh, r, plan), r.layers, plan);
+  write_program(program, r.options);
+  fmt::print("{}: {} steps on {}\n", r.options.output, program.steps.size(), r.part);
+  return kGood;
+}
+
+}  // namespace
+
+void add_plan_surface(CLI::App& plan, Action& action) {
+  auto request = std::make_shared<SurfaceRequest>();
+  auto* surface =
+      plan.add_subcommand("surface", "Curves on any surface, the tool along the surface's normal");
+  surface->add_option("part", request->part, "STL in mm, or a name under models/parts")->required();
+  add_machine_option(*surface, request->options);
+  surface->add_option("--curve", request->curve, "CSV x_mm,y_mm,z_mm of a curve near the surface");
+  surface->add_option("--section", request->section, "without --curve: cut by the plane x y z nx ny nz (mm)")
+      ->expected(6)
+      ->capture_default_str();
+  surface
+      ->add_option("--tilt", request->tilt_deg,
+                   "keep the section where the normal tilts from..to degrees about the plane's normal")
+      ->expected(2)
+      ->capture_default_str();
+  surface
+      ->add_option("--rows", request->rows, "sections side by side, to and fro, the given one in the middle")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  surface->add_option("--pitch", request->pitch_mm, "mm from row to row; 0: as wide as a bead's volume fills")
+      ->capture_default_str();
+  surface->add_option("--layers", request->layers, "one on the other, each a bead's height farther out")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  surface->add_option("--step", request->step_mm, "mm between points at most")->capture_default_str();
+  surface->add_option("--chord", request->chord_um, "um between chord and surface at most")
+      ->capture_default_str();
+  add_motion_options(*surface, request->options);
+  add_bead_options(*surface, request->options);
+  add_nozzle_options(*surface, request->options);
+  add_output_option(*surface, request->options);
+  surface->callback([=, &action] { action = [=] { return plan_surface(*request); }; });
+}
+
+}  // namespace understudy::cli

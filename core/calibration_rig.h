@@ -1,0 +1,75 @@
+// The two-camera measuring set-up (Song 2015, appendix B; reference section C): plain data, SI.
+//
+// Two cameras look at the working volume at right angles. A printed chessboard stands upright before each of
+// them at `layers` depths; three spheres on the moving platform are what is measured later. Frames: G the
+// chessboard's grid (origin in the middle of the corners, x along a row to the right, y down, z away from
+// the camera), C a camera, T the tool, W the world.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/frames.h"
+#include "core/image.h"
+#include "core/random.h"
+
+namespace understudy {
+
+/// A printed chessboard. Exactly one of columns and rows is odd: then it differs from itself upside down.
+struct Board {
+  int columns = 12;        ///< of inner corners
+  int rows = 9;            ///< of inner corners
+  double square = 10e-3;   ///< [m], side
+  double margin = 2.5e-3;  ///< [m] of white paper around the squares
+
+  int corners() const { return columns * rows; }
+  /// In G, row by row; the first is at the upper left.
+  Vec3 corner(int column, int row) const {
+    return {square * (column - 0.5 * (columns - 1)), square * (row - 0.5 * (rows - 1)), 0};
+  }
+};
+
+/// How far a board is from where it is believed to be: p_G is really at exp(rotation) (1 + scale) p + offset.
+struct BoardPlacement {
+  Vec3 offset{0, 0, 0};    ///< [m], along the axes of G
+  Vec3 rotation{0, 0, 0};  ///< [rad], rotation vector in G
+  double scale = 0;        ///< of the print, relative
+
+  Vec3 moved(const Vec3& p_G) const { return exp_rotation(rotation) * ((1 + scale) * p_G) + offset; }
+};
+
+/// Standard deviations, for each axis of each board on its own.
+struct BoardTolerance {
+  double offset = 0;    ///< [m]
+  double rotation = 0;  ///< [rad]
+  double scale = 0;     ///< relative
+};
+
+BoardPlacement sample_placement(const BoardTolerance& tolerance, Random& random);
+
+struct MountedCamera {
+  Camera camera;
+  Pose X_WC = Pose::Identity();
+};
+
+struct CalibrationRig {
+  std::array<MountedCamera, 2> cameras;
+  Board board;
+  int layers = 11;
+  double layer_spacing = 5e-3;   ///< [m]
+  double middle_distance = 0.4;  ///< [m] from a camera to its middle layer
+  std::array<Vec3, 3> targets;   ///< [m], centres of the spheres in T
+  double target_radius = 0;      ///< [m]
+
+  /// Where the board of a layer is meant to be; layer 0 is the nearest to the camera.
+  Pose X_WG(int camera, int layer) const;
+};
+
+/// Reference section C: 1600 x 1200 px, f = 4267 px, so that 150 mm are seen at 400 mm. Camera 0 looks along
+/// +X, camera 1 along +Y, both upright and without distortion. The spheres have 5 mm radius and form an
+/// equilateral triangle of 60 mm side: one in the tool tip, two higher up, symmetric about the plane x = y,
+/// so that no one hides another in either view at tilts to 30 degrees. `home_tip_W`: the tip when the middle
+/// of the triangle is in the middle of the volume.
+CalibrationRig default_calibration_rig(const Vec3& home_tip_W);
+
+}  // namespace understudy

@@ -1,0 +1,32 @@
+// The optional section `calibration` of machine.yaml: a measured geometry that the controller uses in place
+// of the drawn one.
+#pragma once
+
+#include <string>
+
+#include "machine/description.h"
+#include "machine/yaml_reader.h"
+
+namespace understudy::machine {
+
+/// Farther from the drawing, a joint or an axis belongs to another machine, or its file to other units.
+constexpr double kFarFromDrawing = 25e-3;    // [m]
+constexpr double kTurnedFromDrawing = 0.17;  // [rad], 10 deg
+
+/// After the geometry and the axes. Throws InputError for a part that is missing, told twice, or far from
+/// what is drawn.
+void read_calibration(YamlMap& root, MachineDescription& machine);
+
+/// The section for `machine`, whose geometry (or chain) and calibration record are the calibrated ones.
+std::string calibration_section(const MachineDescription& machine);
+
+/// The text of a machine file with its section `calibration` replaced, or added at its end. All else,
+/// comments too, stays as it is.
+std::string with_section(const std::string& text, const std::string& section);
+
+/// Writes the machine file at `path`: that of `machine` with the section above. It appears under its name
+/// only when it can be read back. Throws InputError where it cannot be written, or breaks a limit of the
+/// machine.
+void write_calibrated(const MachineDescription& machine, const std::filesystem::path& path);
+
+}  // namespace understudy::machine

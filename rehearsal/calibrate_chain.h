@@ -1,0 +1,11 @@
+#pragma once
+
+#include "rehearsal/calibrate.h"
+
+namespace understudy::rehearsal {
+
+/// The open chain's half of calibrate(): axes, tool and measuring frame by calibration::calibrate_chain().
+void calibrate_chain_machine(const Measurements& measurements, const machine::MachineDescription& nominal,
+                             CalibrateResult& result);
+
+}  // namespace understudy::rehearsal

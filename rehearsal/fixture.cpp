@@ -1,0 +1,71 @@
+#include "rehearsal/fixture.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "sim/collision/collision.h"
+
+namespace understudy::rehearsal {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kSinks = 0.05e-3;  // [m]: an object that was modelled to stand on the table may round so far
+
+void check_table(const std::string& path, const geometry::Mesh& mesh) {
+  if (mesh.lower().z() >= -kSinks) return;
+  throw InputError({path, 0, 0},
+                   fmt::format("the object reaches {:.3f} mm below the table's top, more than {:g} mm",
+                               -to_mm(mesh.lower().z()), to_mm(kSinks)));
+}
+
+void check_home(const std::string& path, const std::shared_ptr<const geometry::Mesh>& mesh,
+                const machine::MachineDescription& machine) {
+  sim::AsBuilt nominal = sim::make_as_built(machine, "nominal", 0);
+  sim::CollisionObserver bodies(machine, nominal, mesh, {});
+  sim::Snapshot home;
+  home.X_WT = machine.X_WB * machine.X_BT_home;
+  const auto mechanism = machine.make_mechanism();
+  const auto axes = static_cast<std::size_t>(mechanism->axis_count());
+  if (mechanism->inverse(machine.X_BT_home, {}, std::span(home.axes_reached).first(axes)) !=
+      kinematics::Solve::ok)
+    return;  // told when the machine is started
+  bodies.observe(home);
+  for (const sim::Contact& contact : bodies.collisions()) {
+    if (contact.obstacle != "part" && contact.body != "part") continue;
+    throw InputError({path, 0, 0},
+                     fmt::format("the object stands where the {} of {} is at home, {:.3f} mm deep",
+                                 contact.body, machine.name, std::max(0.0, -to_mm(contact.clearance))));
+  }
+}
+
+}  // namespace
+
+std::string find_fixture(const std::string& fixture) {
+  if (fs::is_regular_file(fixture)) return fixture;
+  const fs::path parts = machine::models_folder() / "parts";
+  const fs::path named = parts / (fixture + ".stl");
+  if (fs::is_regular_file(named)) return named.string();
+  std::vector<std::string> known;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(parts, ignored))
+    if (entry.path().extension() == ".stl") known.push_back(entry.path().stem().string());
+  std::sort(known.begin(), known.end());
+  throw InputError(
+      fmt::format("no fixture {}: neither a file nor one of {}", fixture, fmt::join(known, ", ")));
+}
+
+std::shared_ptr<const geometry::Mesh> read_fixture(const std::string& path,
+                                                   const machine::MachineDescription& machine) {
+  auto mesh = geometry::read_stl(path);
+  check_table(path, *mesh);
+  check_home(path, mesh, machine);
+  return mesh;
+}
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,87 @@
+// How well the gap is measured, closed and followed: rendered pictures of surfaces under light that is good
+// and bad, with the truth known (docs/gap-control.md).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rehearsal/rehearse.h"
+
+namespace understudy::rehearsal {
+
+struct GapBenchmarkRequest {
+  std::string machine = "hexapod";
+  std::vector<std::string> parts{"detectors", "approach", "following", "bottle"};
+  int trials =
+      10;  ///< of approaches and of prints that are followed, a surface and condition; frames tenfold
+  int machines = 20;  ///< as-built, of the bottle
+  std::uint64_t seed = 1;
+  int threads = 1;
+  std::string program;  ///< of the bottle: scenarios/song-bottle.gcode unless given
+  std::string command;  ///< for the record
+};
+
+/// Words of `parts`.
+const std::vector<std::string>& gap_benchmark_parts();
+
+struct Spread {
+  double median = 0, p95 = 0;
+};
+
+struct DetectorRow {
+  std::string surface, condition, detector;
+  int frames = 0, missed = 0;
+  double bias_um = 0;   ///< mean of reading less truth
+  double sigma_um = 0;  ///< scatter about that, a frame
+  double p95_um = 0;    ///< of the distance from the truth
+};
+
+struct ApproachRow {
+  std::string surface, condition;
+  bool benign = false;  ///< the light is good: every stop is a false one
+  int runs = 0, reached = 0, touches = 0, false_stops = 0;
+  Spread error_um;  ///< of the gap from the aim, those that reached it
+  Spread settle_s;
+  std::map<std::string, int> stops;  ///< by reason
+};
+
+struct FollowingRow {
+  std::string surface, condition;
+  bool benign = false;
+  int runs = 0, completed = 0, touches = 0, false_stops = 0;
+  double in_band_fraction = 0;   ///< of the path that was printed
+  Spread error_um;               ///< of the gap from the aim along it
+  double followed_fraction = 0;  ///< frames used of those taken
+  std::map<std::string, int> stops;
+};
+
+/// One mode of gap control on the bottle, over all machines.
+struct BottleRow {
+  std::string mode;
+  int machines = 0, printed = 0, touched = 0, kept = 0;  ///< kept: at least 99 % in the band
+  double in_band_fraction = 0;                           ///< of the path, all machines together
+  double in_band_worst = 0;                              ///< of a machine that printed
+  double gap_p01_mm = 0, gap_median_mm = 0, gap_p99_mm = 0;
+  std::map<std::string, int> stops;
+};
+
+struct GapBenchmark {
+  GapBenchmarkRequest request;
+  std::string machine_sha256;
+  double aim_mm = 0, band_min_mm = 0, band_max_mm = 0;
+  std::vector<DetectorRow> detectors;
+  std::vector<ApproachRow> approaches;
+  std::vector<FollowingRow> followings;
+  std::vector<BottleRow> bottle;
+};
+
+/// The result does not depend on the number of threads. Throws InputError, MachineError, Interrupted.
+GapBenchmark run_gap_benchmark(const GapBenchmarkRequest& request, const Progress& progress = {});
+
+std::string gap_benchmark_json(const GapBenchmark& benchmark);
+std::string gap_benchmark_html(const GapBenchmark& benchmark);
+std::string gap_benchmark_table(const GapBenchmark& benchmark);  ///< for a terminal
+
+}  // namespace understudy::rehearsal

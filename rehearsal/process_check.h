@@ -1,0 +1,16 @@
+// What no print can do with its filament, whatever the machine: found before anything runs.
+#pragma once
+
+#include "machine/description.h"
+#include "machine/material.h"
+#include "toolpath/program.h"
+
+namespace understudy::rehearsal {
+
+/// Throws InputError with file and line for extrusion before any temperature is set or at one at which the
+/// material is solid, for a bead that no such nozzle lays, and for filament drawn back farther than a hot end
+/// is long.
+void check_process(const toolpath::Program& program, const machine::MachineDescription& machine,
+                   const machine::Material& material);
+
+}  // namespace understudy::rehearsal

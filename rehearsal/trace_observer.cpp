@@ -1,0 +1,81 @@
+#include "rehearsal/trace_observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+
+namespace understudy::rehearsal {
+
+TraceObserver::TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity)
+    : deposition_(deposition), capacity_(std::max<std::size_t>(2, capacity)) {}
+
+void TraceObserver::observe(const sim::Snapshot& s) {
+  TracePoint point;
+  point.time = s.time;
+  point.line = s.line;
+  point.extruding = count_ > 0 && s.filament > filament_;
+  point.X_WT = s.X_WT;
+  point.X_WT_programmed = s.X_WT_commanded;
+  point.X_WT_programmed.translation() -= offset_at(s.time);
+  point.tip_error = (point.X_WT.translation() - point.X_WT_programmed.translation()).norm();
+  point.orientation_error = angle_between(point.X_WT.linear(), point.X_WT_programmed.linear());
+  point.gap = deposition_.gap();
+  point.axes = s.axes;
+  if (point.extruding) {
+    path_ += (s.X_WT.translation() - newest_.X_WT.translation()).norm();
+    errors_.push_back(static_cast<float>(point.tip_error));
+    square_sum_ += point.tip_error * point.tip_error;
+    tip_max_ = std::max(tip_max_, point.tip_error);
+    orientation_max_ = std::max(orientation_max_, point.orientation_error);
+  }
+  point.path = path_;
+  filament_ = std::max(filament_, s.filament);
+  keep(point);
+}
+
+void TraceObserver::add_offset(const control::OffsetChange& change) { offsets_.push_back(change); }
+
+Vec3 TraceObserver::offset_at(double time) {
+  while (offsets_.size() > 1 && offsets_[1].time <= time) offsets_.pop_front();
+  if (offsets_.empty() || offsets_.front().time > time) return Vec3::Zero();
+  const auto& now = offsets_.front();
+  if (offsets_.size() == 1 || !offsets_[1].gradual) return now.offset_W;
+  const auto& next = offsets_[1];
+  return now.offset_W + (time - now.time) / (next.time - now.time) * (next.offset_W - now.offset_W);
+}
+
+void TraceObserver::keep(const TracePoint& point) {
+  newest_ = point;
+  if (count_++ % static_cast<std::uint64_t>(stride_) != 0) return;
+  if (trace_.size() >= capacity_) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < trace_.size(); i += 2) trace_[kept++] = trace_[i];
+    trace_.resize(kept);
+    stride_ *= 2;
+    if ((count_ - 1) % static_cast<std::uint64_t>(stride_) != 0) return;
+  }
+  trace_.push_back(point);
+}
+
+std::optional<AccuracyFigures> TraceObserver::accuracy() const {
+  if (errors_.empty()) return std::nullopt;
+  std::vector<float> errors = errors_;
+  const auto n = errors.size();
+  const auto p95 = errors.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                        n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n))));
+  std::nth_element(errors.begin(), p95, errors.end());
+  AccuracyFigures figures;
+  figures.tip_rms_um = to_um(std::sqrt(square_sum_ / static_cast<double>(n)));
+  figures.tip_p95_um = to_um(static_cast<double>(*p95));
+  figures.tip_max_um = to_um(tip_max_);
+  figures.orientation_max_mrad = 1e3 * orientation_max_;
+  return figures;
+}
+
+std::vector<TracePoint> TraceObserver::take() {
+  if (!trace_.empty() && trace_.back().time < newest_.time) trace_.push_back(newest_);
+  return std::move(trace_);
+}
+
+}  // namespace understudy::rehearsal

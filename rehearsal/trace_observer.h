@@ -1,0 +1,48 @@
+// Keeps the truth beside the command, and how far apart they were, in bounded memory.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "control/print.h"
+#include "rehearsal/record.h"
+#include "sim/observer.h"
+#include "sim/process/deposition.h"
+
+namespace understudy::rehearsal {
+
+class TraceObserver : public sim::Observer {
+ public:
+  /// Reads the gap from `deposition`, which must have seen each snapshot before. Of the snapshots, a trace of
+  /// at most `capacity` is kept: when it is full, every other one of it goes and from then on twice as few
+  /// are added. The figures are those of all snapshots.
+  explicit TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity = 100'000);
+
+  void observe(const sim::Snapshot& snapshot) override;
+  /// What the gap controller adds to the program from a time on; told in order of time.
+  void add_offset(const control::OffsetChange& change);
+
+  /// Nothing while nothing was extruded.
+  std::optional<AccuracyFigures> accuracy() const;
+  std::vector<TracePoint> take();
+  int stride() const { return stride_; }  ///< snapshots a point of the trace
+
+ private:
+  void keep(const TracePoint& point);
+  Vec3 offset_at(double time);
+
+  const sim::DepositionObserver& deposition_;
+  std::size_t capacity_;
+  int stride_ = 1;
+  std::uint64_t count_ = 0;
+  std::vector<TracePoint> trace_;
+  TracePoint newest_;
+  std::deque<control::OffsetChange> offsets_;  ///< the one in force, and those to come
+  double filament_ = 0;
+  double path_ = 0;
+  std::vector<float> errors_;  // [m], of the tip while extruding
+  double square_sum_ = 0;
+  double tip_max_ = 0, orientation_max_ = 0;
+};
+
+}  // namespace understudy::rehearsal

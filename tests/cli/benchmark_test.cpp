@@ -1,0 +1,72 @@
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/output_file.h"
+#include "tests/cli/program_run.h"
+
+namespace understudy::cli_test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+const std::string kSmall =
+    "benchmark calibration --trials 2 --poses 12 --disturbances none,outliers --estimators whitened,robust ";
+
+TEST(BenchmarkCommand, WritesFiguresAndAPageAndRanksTheEntrants) {
+  const Folder folder;
+  const Outcome outcome =
+      understudy(kSmall + "-j 2 --plugin 'echo nonsense' --plugin 'exit 3' --out " + (folder / "out"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "") << "no progress outside a terminal";
+  EXPECT_EQ(folder.entries(), 1);
+  EXPECT_THAT(outcome.out, HasSubstr("ranking"));
+  EXPECT_THAT(outcome.out, HasSubstr("exit 3: 4 x ended with status 3"));
+  const json value = json::parse(read_file(folder.path() / "out" / "benchmark.json"));
+  EXPECT_EQ(value["schema"], "understudy.calibration-benchmark/1");
+  EXPECT_EQ(value["conditions"].size(), 2u);
+  EXPECT_EQ(value["entrants"].size(), 4u);
+  EXPECT_EQ(value["conditions"][1]["disturbance"], "outliers");
+  EXPECT_EQ(value["conditions"][1]["best"], "robust");
+  EXPECT_EQ(value["provenance"]["machine_sha256"].get<std::string>().size(), 64u);
+  const std::string page = read_file(folder.path() / "out" / "report.html");
+  EXPECT_THAT(page, HasSubstr("<svg"));
+  EXPECT_THAT(page, ::testing::Not(HasSubstr("http")));
+}
+
+TEST(BenchmarkCommand, NothingIsLeftWhereItIsInterrupted) {
+  const Folder folder;
+  const Outcome outcome = understudy_interrupted(
+      "benchmark calibration --trials 1 --estimators whitened --plugin 'sleep 9' --out " + (folder / "out"),
+      0.7);
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
+  EXPECT_EQ(folder.entries(), 0);
+}
+
+TEST(BenchmarkCommand, RefusesBadInputInOneLineAndWritesNothing) {
+  const Folder folder;
+  const auto refused = [&](const std::string& words, const std::string& expected) {
+    const Outcome outcome = understudy("benchmark calibration " + words + " --out " + (folder / "out"));
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_THAT(outcome.err, HasSubstr(expected)) << words;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  };
+  refused("--noise 20:0.2", "does not read like 20um:0.2mrad");
+  refused("--noise 20um:0.2mradX", "does not read like");
+  refused("--noise nanum:0.2mrad", "outside");
+  refused("--estimators robst", "did you mean robust?");
+  refused("--disturbances outlier", "did you mean outliers?");
+  refused("--poses 0", "outside 1..1000");
+  refused("--trials 0", "outside 1..100000");
+  refused("--from camera", "poses pixels");
+  refused("--machine arm --plugin true", "calibrates hexapods");
+  refused("--machine arm --from pixels", "hexapod's platform");
+  EXPECT_EQ(folder.entries(), 0);
+}
+
+}  // namespace
+}  // namespace understudy::cli_test

@@ -1,0 +1,56 @@
+#include "rehearsal/gap_benchmark.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "machine/description.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+GapBenchmarkRequest request_for(std::vector<std::string> parts, int trials) {
+  GapBenchmarkRequest request;
+  request.parts = std::move(parts);
+  request.trials = trials;
+  request.threads = 2;
+  request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
+  return request;
+}
+
+TEST(GapBenchmark, RefusesWhatItDoesNotKnow) {
+  EXPECT_THROW(run_gap_benchmark(request_for({"approaches"}, 1)), InputError);
+  EXPECT_THROW(run_gap_benchmark(request_for({"detectors"}, 0)), InputError);
+  GapBenchmarkRequest blind = request_for({"detectors"}, 1);
+  blind.machine = "finishing";
+  EXPECT_THROW(run_gap_benchmark(blind), InputError);
+}
+
+TEST(GapBenchmark, ItsJsonAndItsPageTellTheRows) {
+  GapBenchmark b;
+  b.request.machine = "hexapod";
+  b.detectors.push_back({"flat <1>", "speckle", "centroid", 100, 1, 0.5, 4.25, 9});
+  b.bottle.push_back({"start", 2, 2, 1, 1, 0.75, 0.5, 0.1, 0.13, 0.2, {{"too close", 1}}});
+  const auto json = nlohmann::json::parse(gap_benchmark_json(b));
+  EXPECT_EQ(json.at("schema"), "understudy.gap-benchmark/1");
+  EXPECT_EQ(json.at("detectors").at(0).at("sigma_um"), 4.25);
+  EXPECT_EQ(json.at("bottle").at(0).at("stops").at("too close"), 1);
+  EXPECT_FALSE(json.contains("approaches"));  // it was not run
+  const std::string page = gap_benchmark_html(b);
+  EXPECT_NE(page.find("flat &lt;1&gt;"), std::string::npos);
+  EXPECT_EQ(page.find("src=\"http"), std::string::npos);
+  EXPECT_NE(gap_benchmark_table(b).find("4.2"), std::string::npos);
+}
+
+TEST(SlowGapBenchmark, AFrameWithSpeckleIsWithinTenMicrometresAndNothingTouches) {
+  const GapBenchmark b = run_gap_benchmark(request_for({"detectors", "approach"}, 10));
+  for (const DetectorRow& row : b.detectors) {
+    if (row.detector != "centroid" || row.condition != "speckle") continue;
+    EXPECT_LE(row.sigma_um, 10) << row.surface;  // the goal of reference D
+    EXPECT_EQ(row.missed, 0) << row.surface;
+  }
+  for (const ApproachRow& row : b.approaches) EXPECT_EQ(row.touches, 0) << row.surface << row.condition;
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

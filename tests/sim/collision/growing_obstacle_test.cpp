@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "sim/collision/collision.h"
+#include "tests/sim/collision/bodies_for_tests.h"
+
+namespace understudy::sim {
+namespace {
+
+Snapshot at(double time, const Vec3& tip, int line) {
+  Snapshot s;
+  s.time = time;
+  s.X_WT = make_pose(Quat::Identity(), tip);
+  s.line = line;
+  return s;
+}
+
+Bead bead(const Vec3& from, const Vec3& to, int line, double width = 0.5e-3, double height = 0.2e-3) {
+  Bead b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    b.from_W[i] = static_cast<float>(from[static_cast<int>(i)]);
+    b.to_W[i] = static_cast<float>(to[static_cast<int>(i)]);
+  }
+  b.width = static_cast<float>(width);
+  b.height = static_cast<float>(height);
+  b.line = line;
+  return b;
+}
+
+struct Stage {
+  explicit Stage(std::function<std::size_t()> fresh = {}) {
+    CollisionOptions options;
+    options.beads = &beads;
+    options.fresh_from = std::move(fresh);
+    const auto machine = test::hexapod();
+    observer = std::make_unique<CollisionObserver>(machine, test::as_designed(machine), nullptr, options);
+  }
+  BeadIndex beads;
+  std::unique_ptr<CollisionObserver> observer;
+};
+
+// A strut printed upright, 4 mm tall, stands in the nozzle's way.
+TEST(GrowingObstacle, TheNozzleHitsWhatWasPrintedBefore) {
+  Stage stage;
+  stage.observer->observe(at(0, {0, 0, 0.05}, 1));
+  stage.beads.add(bead({10e-3, 0, 0.048}, {10e-3, 0, 0.052}, 3, 0.48e-3, 0.48e-3));
+  stage.observer->observe(at(1, {20e-3, 0, 0.05}, 7));
+  const auto hits = stage.observer->collisions();
+  ASSERT_EQ(hits.size(), 1u);
+  EXPECT_EQ(hits[0].body, "nozzle");
+  EXPECT_EQ(hits[0].obstacle, "bead of line 3");
+  EXPECT_EQ(hits[0].line, 7);
+  EXPECT_NEAR(hits[0].place_W.x(), 10e-3, 0.3e-3);
+  EXPECT_LT(hits[0].clearance, -0.1e-3);
+}
+
+TEST(GrowingObstacle, LevelWithItsOwnLayerIsNoCollisionAndAPressOfATenthIsNone) {
+  for (const double deep : {0.0, 0.09e-3, 0.15e-3}) {
+    Stage stage;
+    stage.observer->observe(at(0, {-10e-3, 0, 0.05}, 1));
+    stage.beads.add(bead({0, -5e-3, 0.05 - 0.1e-3}, {0, 5e-3, 0.05 - 0.1e-3}, 2));  // its top is at 50 mm
+    stage.observer->observe(at(1, {-10e-3, 0, 0.05 - deep}, 5));
+    stage.observer->observe(at(2, {10e-3, 0, 0.05 - deep}, 6));
+    EXPECT_EQ(stage.observer->collisions().size(), deep > 0.1e-3 ? 1u : 0u) << deep;
+  }
+}
+
+TEST(GrowingObstacle, TheFreshestMaterialIsContactByDesign) {
+  std::size_t fresh = 0;
+  Stage stage([&] { return fresh; });
+  stage.observer->observe(at(0, {0, 0, 0.05}, 1));
+  stage.beads.add(bead({0, 0, 0.0505}, {1e-3, 0, 0.0505}, 2));
+  stage.observer->observe(at(1, {0.5e-3, 0, 0.05}, 3));
+  EXPECT_TRUE(stage.observer->collisions().empty());
+  fresh = 1;  // it has cooled
+  stage.observer->observe(at(2, {0.6e-3, 0, 0.05}, 4));
+  ASSERT_EQ(stage.observer->collisions().size(), 1u);
+  EXPECT_EQ(stage.observer->collisions()[0].line, 4);
+}
+
+// The heater block starts 12 mm above the tip; fresh or not, it may touch nothing.
+TEST(GrowingObstacle, OtherBodiesMindFreshBeadsToo) {
+  Stage stage([] { return std::size_t{0}; });
+  stage.observer->observe(at(0, {0, 0, 0.05}, 1));
+  stage.beads.add(bead({7e-3, 0, 0.05}, {7e-3, 0, 0.0635}, 2));
+  stage.observer->observe(at(1, {0.01e-3, 0, 0.05}, 3));
+  const auto hits = stage.observer->collisions();
+  EXPECT_TRUE(
+      std::any_of(hits.begin(), hits.end(), [](const Contact& c) { return c.body == "heater block"; }));
+}
+
+TEST(GrowingObstacle, ABeadLaidBesideARestingBodyIsMindedAtTheNextMotion) {
+  Stage stage;
+  // Far flights give every pair a large budget of motion; the new bead must take it away.
+  stage.observer->observe(at(0, {-30e-3, 0, 0.06}, 1));
+  stage.observer->observe(at(1, {0, 0, 0.06}, 2));
+  stage.beads.add(bead({2e-3, -5e-3, 0.061}, {2e-3, 5e-3, 0.061}, 3));
+  stage.observer->observe(at(2, {1.5e-3, 0, 0.06}, 4));
+  EXPECT_EQ(stage.observer->collisions().size(), 1u);
+}
+
+}  // namespace
+}  // namespace understudy::sim
