@@ -14,13 +14,19 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "machine/model_files.h"
 #include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path materials_folder() { return models_folder() / "materials"; }
+/// A models folder of the user's own need not hold materials: the shipped ones serve then.
+fs::path materials_folder() {
+  std::error_code error;
+  const fs::path own = models_folder() / "materials";
+  return fs::is_directory(own, error) ? own : shipped_models_folder() / "materials";
+}
 
 fs::path find_material(const std::string& name_or_path) {
   if (name_or_path.empty()) throw InputError("the material has no name");

@@ -25,6 +25,10 @@ bool looks_like_path(const std::string& text) {
 
 fs::path models_folder() {
   if (const char* set = std::getenv("UNDERSTUDY_MODELS"); set && *set) return set;
+  return shipped_models_folder();
+}
+
+fs::path shipped_models_folder() {
   std::error_code error;
   if (fs::is_directory(UNDERSTUDY_SOURCE_MODELS, error)) return UNDERSTUDY_SOURCE_MODELS;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);

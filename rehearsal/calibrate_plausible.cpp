@@ -89,7 +89,7 @@ void check_pose_unit(const Measurements& m, const std::vector<Pose>& expected) {
     std::vector<double> scaled;
     for (std::size_t j = 0; j < expected.size(); ++j)
       scaled.push_back((expected[j].translation() - unit.factor * m.poses[j].X_WT.translation()).norm());
-    if (kMuchNearer * quantile(scaled, 0.5) < typical)
+    if (quantile(scaled, 0.5) < kFar && kMuchNearer * quantile(scaled, 0.5) < typical)
       throw InputError({m.file, m.poses.front().line, 0},
                        fmt::format("x_mm, y_mm, z_mm fit the axes only if they are {0}: {0} given for "
                                    "millimetres?",
@@ -124,10 +124,20 @@ void check_orientation(const Measurements& m, const std::vector<Pose>& expected)
                       : ": another frame, machine or order of rows?"));
 }
 
+bool some_axis_stands_still(const Measurements& m, int axes) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    const auto same = [&](const MeasuredPose& pose) { return pose.axes[i] == m.poses.front().axes[i]; };
+    if (std::all_of(m.poses.begin(), m.poses.end(), same)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void check_plausible(const Measurements& m, const machine::MachineDescription& machine) {
   const auto mechanism = machine.make_mechanism();
+  // Poses and axes cannot fit then; which axis it is, the check of what can be known says.
+  if (some_axis_stands_still(m, mechanism->axis_count())) return;
   if (!machine.chain)
     check_struts(m, machine);
   else if (mechanism->axis_is_angle(0))

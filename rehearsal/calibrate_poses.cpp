@@ -130,9 +130,9 @@ class Measurer {
   const MeasuringStand* stand() const { return stand_.get(); }
 
   /// False where the cameras find no pose.
-  bool measure(const Pose& X_BT_true, const Pose& X_BT_asked, std::uint64_t frame, MeasuredPose& pose) {
+  bool measure(const Pose& X_BT_true, std::uint64_t frame, MeasuredPose& pose) {
     if (stand_) {
-      const PixelPose seen = stand_->measure(*view_, X_BT_true, X_BT_asked, frame);
+      const PixelPose seen = stand_->measure(*view_, X_BT_true, roughly(X_BT_true), frame);
       pose.X_WT = X_WB_ * seen.X_BT;
       pose.covariance = told_in(X_WB_.linear(), seen.covariance);
       return seen.ok();
@@ -147,6 +147,13 @@ class Measurer {
   }
 
  private:
+  /// An uncalibrated machine may miss by more than a target's size: somebody points at the targets.
+  Pose roughly(const Pose& X_BT) {
+    Twist e;
+    for (Eigen::Index k = 0; k < 6; ++k) e[k] = (k < 3 ? 1e-3 : 5e-3) * noise_.normal();  // [m], [rad]
+    return make_pose(Mat3(exp_rotation(e.tail<3>()) * X_BT.linear()), X_BT.translation() + e.head<3>());
+  }
+
   Pose X_WB_;
   Mat6 covariance_;
   Random noise_;
@@ -180,7 +187,7 @@ Measurements sample_poses(const SamplePosesRequest& request, const MachineDescri
     if (built) {
       Pose X_true;
       if (!true_pose(machine, *built, pose.axes, X_BT, X_true)) continue;
-      if (!measurer.measure(X_true, X_BT, ++frame, pose)) continue;
+      if (!measurer.measure(X_true, ++frame, pose)) continue;
     }
     sample.poses.push_back(std::move(pose));
   }

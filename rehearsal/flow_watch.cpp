@@ -32,8 +32,8 @@ void FlowWatch::add(const sim::LaidBead& bead) {
   const auto line = static_cast<std::size_t>(std::max(0, bead.line));
   const double asked = line < areas_.size() ? static_cast<double>(areas_[line]) : 0;
   if (!bead.follows) end();
-  if (asked <= 0 || bead.length < kShortestPath) return end();
-  const double ratio = bead.volume / bead.length / asked;
+  if (asked <= 0 || bead.path < kShortestPath) return end();
+  const double ratio = bead.volume / bead.path / asked;
   if (std::abs(ratio - 1) <= kFlowTolerance) return end();
   const bool same_side = (ratio > 1) == (open_.ratio > 1);
   if (!is_open_ || !same_side) {
@@ -41,7 +41,7 @@ void FlowWatch::add(const sim::LaidBead& bead) {
     open_ = {bead.start_line, bead.start_time, bead.from_W, 0, ratio};
     is_open_ = true;
   }
-  open_.length += bead.length;
+  open_.length += bead.path;
   if (std::abs(ratio - 1) > std::abs(open_.ratio - 1)) open_.ratio = ratio;
 }
 

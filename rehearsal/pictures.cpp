@@ -12,7 +12,7 @@ namespace understudy::rehearsal {
 namespace {
 
 using Colour = std::array<float, 3>;
-constexpr std::size_t kBeadsDrawn = 60'000, kBeadsBesideMachine = 15'000;
+constexpr std::size_t kBeadsDrawn = 12'000, kBeadsBesideMachine = 4'000;
 constexpr Colour kMetal{0.55f, 0.58f, 0.62f}, kStrut{0.25f, 0.42f, 0.62f}, kBrass{0.80f, 0.60f, 0.22f},
     kPart{0.86f, 0.88f, 0.84f}, kTable{0.90f, 0.90f, 0.91f}, kPath{0.85f, 0.25f, 0.10f},
     kHeater{0.45f, 0.20f, 0.18f}, kFilament{0.90f, 0.45f, 0.15f};

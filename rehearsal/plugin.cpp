@@ -165,8 +165,13 @@ bool feed(Descriptor& end, const std::string& text, std::size_t& written) {
 }
 
 std::string ending(int status) {
-  if (WIFSIGNALED(status))
-    return fmt::format("crashed with signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  // A shell tells the death of its command as 128 and the signal.
+  const bool by_shell =
+      WIFEXITED(status) && WEXITSTATUS(status) > 128 && WEXITSTATUS(status) < 128 + SIGRTMIN;
+  if (WIFSIGNALED(status) || by_shell) {
+    const int signal = by_shell ? WEXITSTATUS(status) - 128 : WTERMSIG(status);
+    return fmt::format("crashed with signal {} ({})", signal, ::strsignal(signal));
+  }
   if (WEXITSTATUS(status) == 127) return "the command was not found (status 127)";
   return fmt::format("ended with status {}", WEXITSTATUS(status));
 }

@@ -111,6 +111,11 @@ std::string scene(const MachineDescription& machine, const Pose& X_WT, ordered_j
   if (const auto solved = mechanism->inverse(machine.X_WB.inverse() * X_WT, {}, axes);
       solved != kinematics::Solve::ok)
     throw InputError(fmt::format("{} cannot take this pose: {}", machine.name, to_string(solved)));
+  std::vector<kinematics::LimitViolation> violations;
+  mechanism->check(machine.X_WB.inverse() * X_WT, axes, violations);
+  if (!violations.empty())
+    throw InputError(
+        fmt::format("{} cannot take this pose: {}", machine.name, to_string(violations.front())));
   for (int i = 0; i < mechanism->axis_count(); ++i) {
     const bool angle = mechanism->axis_is_angle(i);
     const double value = axes[static_cast<std::size_t>(i)];

@@ -13,7 +13,7 @@
 namespace understudy::sim {
 namespace {
 
-constexpr double kWidest = 0.1;             // [m]: no nozzle lays more, and the tree holds it
+constexpr double kWidest = 0.3;             // [m]: no nozzle lays more, and the tree holds it
 constexpr double kFarthest = 100;          // [m] from the origin; beyond, floats are coarser than 8 um
 constexpr double kDepthAccuracy = 0.5e-6;  // [m], along each direction of the core
 constexpr double kEntryAccuracy = 1e-13;   // [m]

@@ -41,8 +41,9 @@ struct CollisionOptions {
   /// Number of the first bead that is still under the nozzle, which presses it by design; asked at every
   /// snapshot. Without it no bead is fresh.
   std::function<std::size_t()> fresh_from;
-  /// [m]: the nozzle runs level with the beads of its own layer and presses into them; deeper is a contact.
-  double bead_press = 0.1e-3;
+  /// [m]: the nozzle runs level with the beads of its own layer and presses into them by half a usual layer and
+  /// a machine's play; deeper is a contact.
+  double bead_press = 0.12e-3;
 };
 
 /// Watches every snapshot. Between snapshots the motion is bounded by the swept distance of each body, and

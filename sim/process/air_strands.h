@@ -26,12 +26,12 @@ struct AirStrand {
   double solid_after = 0;  ///< [s], from the start of the strand until all of it is solid
   double duration = 0;     ///< [s], of laying it
   bool solved = true;      ///< false: a curved strand too long to be solved
-  bool lies = false;  ///< it sags down to what lies below (or kGapReach, where nothing does)
+  bool lies = false;       ///< it sags down to what lies below (or kGapReach, where nothing does)
   bool small = true;       ///< the model of small rotations holds; else the sag says no more than "large"
 };
 
-/// A stretch no longer than one of its widths for each end that is held: the groove between two rows below, or a
-/// notch. A bead reaches across that by its own thickness.
+/// A stretch no longer than one of its widths for each end that is held: the groove between two rows below,
+/// or a notch. A bead reaches across that by its own thickness.
 bool spans_a_groove(const LooseStretch& stretch);
 
 /// A stretch is a strand in air when its beginning is held and either the way to what lies below is more than

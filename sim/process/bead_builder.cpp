@@ -13,6 +13,7 @@ constexpr double kLongest = 2e-3;          // [m]: sag, cooling and pictures see
 constexpr double kPause = 10e-6;           // [m], path without feed that ends an element; less is jitter
 constexpr double kSettled = 1e-3;          // [m], path without feed after which an element is done
 constexpr double kStraight = 5e-6;         // [m], a path farther beside the element's line begins a new one
+constexpr double kSteepest = 1.5;       // surface's way over the tip's
 constexpr double kSameGap = 2e-6;          // [m]
 constexpr double kSameSection = 0.03;      // of the area
 constexpr double kSameAxis = 0.02;         // [rad]
@@ -74,6 +75,7 @@ void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double length, do
   bead.time = b.time;
   bead.line = line;
   bead.length += length;
+  bead.path += (b.tip_W - a.tip_W).norm();
   bead.volume += volume;
   if (length > 0) moment_ += 0.5 * (a.gap + b.gap) * length;
   bead.gap = bead.length > 0 ? moment_ / bead.length : b.gap;
@@ -89,12 +91,13 @@ void BeadBuilder::settle_section() {
   const bool pressed =
       bead.adhesion != Adhesion::loose && bead.adhesion != Adhesion::buried && std::isfinite(gap) && gap > 0;
   if (bead.length > 0) {
-    const double area = bead.volume / bead.length;
+    // Where the ground falls away the surface's way is longer than what was drawn out.
+    const double area = bead.volume / std::min(bead.length, kSteepest * bead.path);
     bead.width = bead_width(area, gap);
     bead.height = pressed ? std::min(gap, bead.width) : round_diameter(area);
   }
   // Wider than long: a blob rather than a line.
-  if (bead.width > bead.length) settle_blob(pressed ? gap : 0);
+  if (bead.length == 0 || bead.width > bead.length) settle_blob(pressed ? gap : 0);
   last_width_ = bead.width;
 }
 

@@ -74,7 +74,7 @@ struct DepositionObserver::State {
         accepted_max(machine.gap.accepted_max),
         extruder(machine.process.extruder_lag),
         builder([this](const Element& element) { keep(element); }),
-        loose(*workpiece, machine.gap.accepted_max),
+        loose(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter),
         sums(machine.gap.accepted_min - kRounding, machine.gap.accepted_max + kRounding),
         usual_height(machine.gap.aim) {}
 
@@ -198,19 +198,20 @@ struct DepositionObserver::State {
   }
 
   // The interval from `from` (a share of it) to its end, cut where the gap passes a level.
-  void extrude_interval(const PathPoint& a, const PathPoint& b, const Ground& below, double from,
+  void extrude_interval(const PathPoint& a, const PathPoint& b, const Ground& before, double from,
                         double volume, int line) {
-    const bool jump = !(std::abs(b.gap - a.gap) <= kGapJump);
+    // On to a bead or off it is an edge as well.
+    const bool jump = !(std::abs(b.gap - a.gap) <= kGapJump) || before.printed != ground.printed;
     std::array<double, 5> cuts{from, 1, 1, 1, 1};
     std::size_t count = 1;
     if (jump && a.gap != b.gap) {
       if (0.5 > from) cuts[count++] = 0.5;  // nobody saw the edge: half-way
     } else if (a.gap != b.gap) {
-      std::array<double, 3> levels{accepted_max, below.printed ? accepted_min : 0.0, -kSoftDepth};
+      std::array<double, 3> levels{accepted_max, ground.printed ? accepted_min : 0.0, -kSoftDepth};
       if (b.gap > a.gap) std::reverse(levels.begin(), levels.end());
       for (const double level : levels) {
         const double f = (level - a.gap) / (b.gap - a.gap);
-        if (f > from && f < 1 && (below.printed || level >= 0)) cuts[count++] = f;
+        if (f > from && f < 1 && (ground.printed || level >= 0)) cuts[count++] = f;
       }
     }
     cuts[count] = 1;
@@ -224,7 +225,7 @@ struct DepositionObserver::State {
       const PathPoint p = between(a, b, f0, gap_at(f0)), q = between(a, b, f1, gap_at(f1));
       if (!started) totals.start_gap = p.gap;
       started = true;
-      extrude(p, q, below, volume * (f1 - f0) / (1 - from), line);
+      extrude(p, q, jump && middle < 0.5 ? before : ground, volume * (f1 - f0) / (1 - from), line);
     }
   }
 
@@ -248,9 +249,7 @@ struct DepositionObserver::State {
     if (flow.from > 0) builder.pause(flow.from * step);  // after a retraction the nozzle fills first
     const PathPoint a{last->time, last->X_WT.translation(), tool_axis(last->X_WT), before.gap};
     const PathPoint b{now.time, now.X_WT.translation(), tool_axis(now.X_WT), ground.gap};
-    Ground below = ground;
-    below.printed = below.printed || before.printed;  // on to it or off it
-    extrude_interval(a, b, below, flow.from, volume, now.line);
+    extrude_interval(a, b, before, flow.from, volume, now.line);
   }
 };
 

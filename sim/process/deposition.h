@@ -37,6 +37,7 @@ struct LaidBead {
   Vec3 to_W{0, 0, 0};
   Vec3 normal_W{0, 0, 1};  ///< tool axis
   double length = 0;       ///< [m] of path on the surface
+  double path = 0;         ///< [m] of the tip's path
   double gap = 0;          ///< [m], mean over the element
   double width = 0;        ///< [m], from conserved volume at this gap
   double height = 0;       ///< [m]

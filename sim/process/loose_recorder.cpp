@@ -29,7 +29,7 @@ void LooseRecorder::begin(const Element& element, const Conditions& conditions) 
   stretch.interface_temperature = conditions.interface_temperature;
   stretch.nozzle_temperature = conditions.nozzle_temperature;
   stretch.fan = conditions.fan;
-  stretch.width = last_held_width_;
+  stretch.width = std::max(least_width_, last_held_width_);
   stretch.on_printed = bead.follows && last_on_printed_;
   first_bead_ = workpiece_.beads().size();
   if (bead.adhesion == Adhesion::loose) {

@@ -9,7 +9,8 @@ namespace understudy::sim {
 
 class LooseRecorder {
  public:
-  LooseRecorder(const Workpiece& workpiece, double reach) : workpiece_(workpiece), reach_(reach) {}
+  LooseRecorder(const Workpiece& workpiece, double reach, double least_width)
+      : workpiece_(workpiece), reach_(reach), least_width_(least_width) {}
 
   /// What the extrusion was like when the element was laid.
   struct Conditions {
@@ -29,14 +30,15 @@ class LooseRecorder {
   bool touches_something(const Vec3& p_W, double diameter, std::size_t before) const;
 
   const Workpiece& workpiece_;
-  double reach_;  // [m], between a strand's surface and what holds it
+  double reach_;        // [m], between a strand's surface and what holds it
+  double least_width_;  // [m]: no row is narrower, however thin it starts
   std::vector<LooseStretch> stretches_;
   bool open_ = false;
-  bool last_held_ = false;      // the element before this one sticks
+  bool last_held_ = false;        // the element before this one sticks
   double last_held_width_ = 0;    // [m]
   bool last_on_printed_ = false;  // to printed material
-  std::size_t first_bead_ = 0;  // of the open stretch
-  double diameter_ = 0;         // [m], of its last element
+  std::size_t first_bead_ = 0;    // of the open stretch
+  double diameter_ = 0;           // [m], of its last element
 };
 
 }  // namespace understudy::sim

@@ -26,7 +26,7 @@ class FifthMachine : public testing::Test {
 
   std::string program() const {
     return folder_.write("line.gcode",
-                         "G21\nG90\nM82\nG94\n"
+                         "G21\nG90\nM82\nG94\nM109 S210\n"
                          "G0 X50 Y-5 Z5\nG1 X50 Y-5 Z0.2 F300\n"
                          "G1 X56 Y5 Z0.2 E0.4 F600\nG1 X62 Y-5 Z0.2 E0.8\nG0 Z10\n");
   }

@@ -95,7 +95,7 @@ TEST_F(CalibrationSection, LeavesTheRestOfTheFileAsItIsAndReplacesAnOlderOne) {
   const std::string middle = once + "\n# of the table\nextra:\n  key: 1\n";
   const std::string moved = with_section(middle, calibration_section(m));
   EXPECT_THAT(moved, HasSubstr("# of the table\nextra:\n  key: 1\n"));
-  EXPECT_EQ(moved.find("calibration:"), moved.rfind("calibration:"));
+  EXPECT_EQ(moved.find("\ncalibration:"), moved.rfind("\ncalibration:"));
 }
 
 TEST_F(CalibrationSection, ACalibratedArmReachesPosesByItsMeasuredAxes) {
@@ -134,9 +134,9 @@ TEST_F(CalibrationSection, MustLeaveHomeWithinTheLimits) {
   MachineDescription m = calibrated_hexapod();
   m.hexapod.limits.strut_max = 0.19;  // does not matter: the file's own limits do
   EXPECT_NO_THROW(back(m));
-  // All base joints 24 mm higher: struts at home are longer than 240 mm.
-  for (auto& b : m.hexapod.geometry.base_joint) b.z() += 24e-3;
-  for (auto& a : m.hexapod.geometry.platform_joint) a.z() -= 24e-3;
+  // Base joints 24 mm lower, ball joints 24 mm higher: struts at home are some 45 mm shorter than 189 mm, below 170.
+  for (auto& b : m.hexapod.geometry.base_joint) b.z() -= 24e-3;
+  for (auto& a : m.hexapod.geometry.platform_joint) a.z() += 24e-3;
   try {
     back(m);
     FAIL() << "accepted";

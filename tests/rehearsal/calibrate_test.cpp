@@ -191,7 +191,7 @@ TEST_F(Calibrate, SummaryAndPageHaveWhatTheTextSays) {
   EXPECT_LT(summary["residual"]["tip_rms_after_um"], summary["residual"]["tip_rms_before_um"]);
   const std::string page = calibration_html(result);
   EXPECT_THAT(page, AllOf(HasSubstr("base joint 6 z"), HasSubstr("Parameters are correlated")));
-  for (const char* outside : {"http://", "https://", "nan", "inf<"})
+  for (const char* outside : {"http://", "https://", ">nan", ">inf"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   EXPECT_EQ(calibration_html(calibrated("hexapod", 5, 24)), page);
 }

@@ -40,6 +40,7 @@ json comparable(const CalibrationBenchmark& benchmark) {
 
 TEST(CalibrationBenchmark, IsTheSameForEveryNumberOfThreads) {
   CalibrationBenchmarkRequest request = small();
+  request.trials = 2;
   request.disturbances = {Disturbance::none, Disturbance::outliers, Disturbance::play};
   request.estimators = {"whitened", "robust"};
   request.threads = 1;
@@ -118,7 +119,7 @@ TEST(CalibrationBenchmark, CountsFailuresWithTheirReasons) {
   EXPECT_THAT(benchmark_table(b), HasSubstr("failed"));
   const std::string page = benchmark_page(b);
   EXPECT_THAT(page, HasSubstr("not one JSON value: &quot;no&quot;"));
-  EXPECT_THAT(page, ::testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(page, ::testing::Not(HasSubstr(">nan")));
 }
 
 TEST(CalibrationBenchmark, APluginThatHangsCostsItsTimeOnly) {

@@ -25,7 +25,7 @@ class FaultyRehearsal : public testing::Test {
   FaultyRehearsal() {
     std::filesystem::create_directories(folder_);
     // From -3 to +3 mm in 6 s, 45 mm over the table; struts 1 and 2 move steadily.
-    std::ofstream(folder_ / "line.gcode") << "G21\nG90\nM82\nG94\nG0 X-3 Y0 Z45\nG1 X3 Y0 Z45 E0.5 F60\n";
+    std::ofstream(folder_ / "line.gcode") << "G21\nG90\nM82 M109 S230\nG94\nG0 X-3 Y0 Z45\nG1 X3 Y0 Z45 E0.5 F60\n";
   }
   ~FaultyRehearsal() override { std::filesystem::remove_all(folder_); }
 

@@ -148,8 +148,8 @@ TEST_F(ScenarioFile, UnknownWordsNameTheNearest) {
   const std::string good = std::string(kHead) + kExpect;
   EXPECT_THAT(error_of(replaced(good, "as_built: sampled", "as_built: sampeld")),
               HasSubstr("did you mean 'sampled'"));
-  EXPECT_THAT(error_of(replaced(good, "gap_control: start", "gap_control: continuous")),
-              HasSubstr("off, start"));
+  EXPECT_THAT(error_of(replaced(good, "gap_control: start", "gap_control: always")),
+              HasSubstr("off, start, continuous"));
   EXPECT_THAT(error_of(replaced(good, "engine: mujoco", "engine: mojoco")),
               HasSubstr("did you mean 'mujoco'"));
   EXPECT_THAT(error_of_expectation("metric: verdict, equals: nogo"), HasSubstr("did you mean 'no-go'"));
