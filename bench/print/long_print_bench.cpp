@@ -19,7 +19,7 @@ constexpr double kRow = 0.45, kLayer = 0.2, kPiece = 0.4, kWidth = 60;  // [mm]
 
 /// Rows to and fro in layers, in pieces of 0.4 mm, every other layer the other way.
 std::string program_of(std::size_t moves) {
-  std::string text = "M109 S210\nM106\nG0 X-30 Y-30 Z0.2\nG1 F3000\n";
+  std::string text = "M109 S210\nM106 S255\nG0 X-30 Y-30 Z0.2\nG1 F3000\n";
   const double filament = kRow * kLayer * kPiece / 2.40528;  // of 1.75 mm
   double e = 0, along = 0, across = 0, z = kLayer;
   int way = 1;
