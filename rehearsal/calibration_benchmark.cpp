@@ -1,19 +1,16 @@
 #include "rehearsal/calibration_benchmark.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
+#include <memory>
 #include <numeric>
 #include <optional>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/interrupt.h"
+#include "core/parallel.h"
 #include "core/units.h"
 #include "rehearsal/quantile.h"
 
@@ -61,38 +58,6 @@ std::vector<Condition> conditions_of(const CalibrationBenchmarkRequest& request,
     for (const auto& level : noise)
       for (const std::size_t poses : request.poses) conditions.push_back({level, poses, d});
   return conditions;
-}
-
-/// Runs work(n, view) for n in 0..count-1. The view exists where pictures are drawn.
-void in_parallel(std::size_t count, int threads, bool pictures, const Progress& progress,
-                 const std::string& what,
-                 const std::function<void(std::size_t, renderer::CalibrationView*)>& work) {
-  std::atomic<std::size_t> next{0};
-  std::size_t done = 0;
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto run = [&] {
-    try {
-      std::optional<renderer::CalibrationView> view;
-      if (pictures) view.emplace();
-      for (std::size_t n = next++; n < count; n = next++) {
-        stop_if_interrupted();
-        work(n, view ? &*view : nullptr);
-        const std::lock_guard lock(mutex);
-        ++done;
-        if (progress) progress(static_cast<double>(done) / static_cast<double>(count), what);
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-      next = count;
-    }
-  };
-  std::vector<std::thread> workers;
-  for (int t = 1; t < threads && static_cast<std::size_t>(t) < count; ++t) workers.emplace_back(run);
-  run();
-  for (std::thread& worker : workers) worker.join();
-  if (failure) std::rethrow_exception(failure);
 }
 
 double mean_square(const std::vector<double>& values) {
@@ -201,11 +166,17 @@ CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, c
   const auto room = chain ? make_chain_trials(setting) : make_hexapod_trials(setting);
   const auto machines = static_cast<std::size_t>(request.trials);
   std::vector<std::vector<Trial>> trials(conditions.size(), std::vector<Trial>(machines));
-  in_parallel(conditions.size() * machines, request.threads, pixels, progress, "calibrating",
-              [&](std::size_t n, renderer::CalibrationView* view) {
-                const std::size_t c = n / machines, m = n % machines;
-                trials[c][m] = room->run(conditions[c], static_cast<int>(m), view);
-              });
+  const std::size_t count = conditions.size() * machines;
+  const auto calibrator = [&] {
+    const auto view = pixels ? std::make_shared<renderer::CalibrationView>() : nullptr;
+    return IndexedWork([&, view](std::size_t n) {
+      const std::size_t c = n / machines, m = n % machines;
+      trials[c][m] = room->run(conditions[c], static_cast<int>(m), view.get());
+    });
+  };
+  in_parallel_with(count, request.threads, calibrator, [&](std::size_t, std::size_t done) {
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(count), "calibrating");
+  });
   for (std::size_t c = 0; c < conditions.size(); ++c)
     benchmark.conditions.push_back(score_condition(conditions[c], trials[c], benchmark.entrants.size()));
   benchmark.ranking = rank(benchmark);

@@ -38,10 +38,11 @@ void FlowWatch::add(const sim::LaidBead& bead) {
   const bool same_side = (ratio > 1) == (open_.ratio > 1);
   if (!is_open_ || !same_side) {
     end();
-    open_ = {bead.start_line, bead.start_time, bead.from_W, 0, ratio};
+    open_ = {bead.start_line, bead.start_time, bead.from_W, 0, ratio, 0};
     is_open_ = true;
   }
   open_.length += bead.path;
+  open_.amount += (ratio - 1) * bead.path;
   if (std::abs(ratio - 1) > std::abs(open_.ratio - 1)) open_.ratio = ratio;
 }
 
@@ -53,7 +54,8 @@ void FlowWatch::end() {
 std::vector<FlowStretch> FlowWatch::stretches() const {
   std::vector<FlowStretch> all = stretches_;
   if (is_open_) all.push_back(open_);
-  std::erase_if(all, [](const FlowStretch& s) { return s.length < kFlowLength; });
+  std::erase_if(
+      all, [](const FlowStretch& s) { return s.length < kFlowLength && std::abs(s.amount) < kFlowLength; });
   return all;
 }
 

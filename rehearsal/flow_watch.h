@@ -16,16 +16,18 @@ struct FlowStretch {
   Vec3 place_W{0, 0, 0};
   double length = 0;  ///< [m]
   double ratio = 1;   ///< laid over programmed cross-section, the farthest from 1
+  double amount = 0;  ///< [m], too much (> 0) or too little, as length of the programmed bead
 };
 
 constexpr double kFlowTolerance = 0.2;
-constexpr double kFlowLength = 1e-3;  ///< [m]: a shorter stretch is a start, an end or a corner
+/// [m]: a shorter stretch is a start, an end or a corner, unless as much bead as this is missing or too much.
+constexpr double kFlowLength = 1e-3;
 
 class FlowWatch {
  public:
   FlowWatch(const toolpath::Program& program, const machine::MachineDescription& machine);
   void add(const sim::LaidBead& bead);
-  /// Those of at least kFlowLength.
+  /// Those where length or amount is at least kFlowLength.
   std::vector<FlowStretch> stretches() const;
 
  private:

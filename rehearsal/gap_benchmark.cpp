@@ -1,18 +1,15 @@
 #include "rehearsal/gap_benchmark.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <functional>
-#include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/parallel.h"
 #include "core/units.h"
 #include "machine/model_files.h"
 #include "rehearsal/gap_bench.h"
@@ -24,7 +21,8 @@ namespace {
 using control::GapControl;
 using control::GapStop;
 
-constexpr int kFramesPerTrial = 10;  // of detectors
+constexpr int kFramesPerTrial = 10;    // of detectors
+constexpr std::size_t kStations = 45;  // along the bottle's line: one in 0.25 mm
 
 Spread spread_of(const std::vector<double>& values) {
   if (values.empty()) return {};
@@ -37,38 +35,19 @@ double mean_of(const std::vector<double>& values) {
   return values.empty() ? 0 : sum / static_cast<double>(values.size());
 }
 
-/// Jobs on threads; each writes where nobody else does. Throws what the first one in order threw.
+/// Jobs, and what to call each.
 class Jobs {
  public:
   void add(std::string what, std::function<void()> job) {
     jobs_.push_back({std::move(what), std::move(job)});
   }
-  void run(int threads, const Progress& progress) {
-    std::vector<std::exception_ptr> failures(jobs_.size());
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> give_up{false};
-    std::mutex mutex;
-    std::size_t done = 0;
-    const auto work = [&] {
-      for (std::size_t i = next++; i < jobs_.size() && !give_up; i = next++) {
-        try {
-          stop_if_interrupted();
-          jobs_[i].job();
-        } catch (...) {
-          failures[i] = std::current_exception();
-          give_up = true;
-        }
-        const std::lock_guard lock(mutex);
-        ++done;
-        if (progress) progress(static_cast<double>(done) / static_cast<double>(jobs_.size()), jobs_[i].what);
-      }
-    };
-    std::vector<std::thread> workers;
-    for (int i = 1; i < threads; ++i) workers.emplace_back(work);
-    work();
-    for (auto& worker : workers) worker.join();
-    for (const auto& failure : failures)
-      if (failure) std::rethrow_exception(failure);
+  void run(int threads, const Progress& progress) const {
+    in_parallel(
+        jobs_.size(), threads, [this](std::size_t i) { jobs_[i].job(); },
+        [&](std::size_t i, std::size_t done) {
+          if (progress)
+            progress(static_cast<double>(done) / static_cast<double>(jobs_.size()), jobs_[i].what);
+        });
   }
 
  private:
@@ -94,7 +73,7 @@ std::vector<DetectorRow> measure_detectors(const Cell& cell) {
   std::vector<DetectorRow> rows;
   for (const auto& [name, measure] : detectors)
     rows.push_back({cell.surface.name, cell.condition.name, name, 0, 0, 0, 0, 0});
-  GapScene scene(cell.machine, cell.surface, cell.condition, cell.seed);
+  GapScene scene(cell.machine, cell.surface, cell.condition, Since::always, cell.seed);
   Random random(cell.seed, "detectors " + cell.surface.name + cell.condition.name);
   const auto options = control::dot_options(cell.machine);
   std::vector<std::vector<double>> errors(rows.size());
@@ -134,7 +113,7 @@ std::vector<DetectorRow> measure_detectors(const Cell& cell) {
 
 ApproachRow measure_approaches(const Cell& cell) {
   ApproachRow row{cell.surface.name, cell.condition.name, cell.condition.benign, 0, 0, 0, 0, {}, {}, {}};
-  GapScene scene(cell.machine, cell.surface, cell.condition, cell.seed);
+  GapScene scene(cell.machine, cell.surface, cell.condition, Since::always, cell.seed);
   std::vector<double> errors, times;
   for (int i = 0; i < cell.trials; ++i) {
     stop_if_interrupted();
@@ -164,7 +143,7 @@ FollowingRow measure_followings(const Cell& cell) {
   row.condition = cell.condition.name;
   row.benign = cell.condition.benign;
   // The approach is in good light: what is asked is how the path is followed.
-  GapScene scene(cell.machine, cell.surface, cell.condition, cell.seed);
+  GapScene scene(cell.machine, cell.surface, cell.condition, Since::bead, cell.seed);
   std::vector<double> errors;
   int inside = 0, all = 0, frames = 0, used = 0;
   for (int i = 0; i < cell.trials; ++i) {
@@ -226,6 +205,20 @@ BottleRun print_bottle(const RehearsalRequest& request) {
   return run;
 }
 
+/// A print that a stop has cut short has no place for its points.
+std::vector<GapStation> gap_along(const std::vector<BottleRun>& runs) {
+  std::vector<GapStation> along;
+  for (std::size_t s = 0; s < kStations; ++s) {
+    std::vector<double> here;
+    for (const BottleRun& run : runs)
+      if (run.printed && run.stop.empty())
+        here.push_back(run.gaps_mm[(run.gaps_mm.size() - 1) * s / (kStations - 1)]);
+    if (here.empty()) return {};
+    along.push_back({quantile(here, 0.05), quantile(here, 0.5), quantile(here, 0.95)});
+  }
+  return along;
+}
+
 BottleRow bottle_row(const std::string& mode, const std::vector<BottleRun>& runs) {
   BottleRow row;
   row.mode = mode;
@@ -248,6 +241,7 @@ BottleRow bottle_row(const std::string& mode, const std::vector<BottleRun>& runs
   row.gap_p01_mm = quantile(gaps, 0.01);
   row.gap_median_mm = quantile(gaps, 0.5);
   row.gap_p99_mm = quantile(gaps, 0.99);
+  row.along = gap_along(runs);
   return row;
 }
 

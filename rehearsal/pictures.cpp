@@ -13,7 +13,7 @@ namespace understudy::rehearsal {
 namespace {
 
 using Colour = std::array<float, 3>;
-constexpr std::size_t kBeadsDrawn = 15'000, kBeadsBesideMachine = 4'000;
+constexpr std::size_t kBeadsDrawn = 15'000;
 constexpr Colour kMetal{0.55f, 0.58f, 0.62f}, kStrut{0.25f, 0.42f, 0.62f}, kBrass{0.80f, 0.60f, 0.22f},
     kPart{0.86f, 0.88f, 0.84f}, kTable{0.90f, 0.90f, 0.91f}, kPath{0.85f, 0.25f, 0.10f},
     kHeater{0.45f, 0.20f, 0.18f}, kFilament{0.90f, 0.45f, 0.15f};
@@ -69,12 +69,14 @@ float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Beads that go on in nearly the same direction as one: for pictures of large prints.
-std::vector<sim::Bead> joined(const sim::BeadIndex& beads) {
+/// What was laid by a time, beads that go on in nearly the same direction as one: for pictures of large
+/// prints.
+std::vector<sim::Bead> joined(const sim::BeadIndex& beads, double by) {
   constexpr float kApart = 0.4e-3f, kLongest = 5e-3f, kStraight = 0.9f;  // [m], [m], cosine
   std::vector<sim::Bead> pieces;
   for (std::size_t i = 0; i < beads.size(); ++i) {
     const sim::Bead bead = beads.bead(i);
+    if (static_cast<double>(bead.laid_at) > by) break;
     if (!pieces.empty()) {
       sim::Bead& last = pieces.back();
       const auto gap = less(bead.from_W, last.to_W), way = less(last.to_W, last.from_W),
@@ -91,20 +93,20 @@ std::vector<sim::Bead> joined(const sim::BeadIndex& beads) {
   return pieces;
 }
 
-/// What was laid; of a very large print evenly chosen pieces, so that there are at most `most`.
-std::optional<renderer::ColouredShape> printed_shape(const sim::BeadIndex& beads, std::size_t most) {
-  const std::vector<sim::Bead> pieces = joined(beads);
-  const std::size_t stride = pieces.size() / most + 1;
+/// What was laid by a time; of a very large print evenly chosen pieces.
+std::optional<renderer::ColouredShape> printed_shape(const sim::BeadIndex& beads, double by = HUGE_VAL) {
+  const std::vector<sim::Bead> pieces = joined(beads, by);
+  const std::size_t stride = pieces.size() / kBeadsDrawn + 1;
   sim::BeadMesh shells;
   for (std::size_t i = 0; i < pieces.size(); i += stride)
     sim::append_shell(pieces[i], pieces.size() > kPathPointsMost ? 4 : 8, shells);
   if (shells.triangles.empty()) return std::nullopt;
   const auto mesh = std::make_shared<geometry::Mesh>(std::move(shells.vertices), std::move(shells.triangles));
-  return renderer::ColouredShape{{"printed", geometry::MeshShape{mesh}}, kFilament};
+  return renderer::ColouredShape{{"printed", geometry::MeshShape{mesh}}, kFilament, false};
 }
 
 renderer::PictureScene build_scene(const Stage& stage, const sim::Workpiece* printed,
-                                   const sim::Posture& posture) {
+                                   const sim::Posture& posture, double time) {
   renderer::PictureScene scene;
   const auto& machine = stage.machine;
   for (auto& shape : sim::machine_bodies(machine, stage.as_built, posture))
@@ -121,7 +123,7 @@ renderer::PictureScene build_scene(const Stage& stage, const sim::Workpiece* pri
   if (path_is_short(stage.program)) {
     add_path(stage.program, scene);
   } else if (printed) {
-    if (auto shape = printed_shape(printed->beads(), kBeadsBesideMachine)) scene.shapes.push_back(*shape);
+    if (auto shape = printed_shape(printed->beads(), time)) scene.shapes.push_back(*shape);
   }
   return scene;
 }
@@ -149,7 +151,7 @@ machine::AxisArray home_axes(const machine::MachineDescription& machine) {
 /// What was laid, without the machine.
 void add_printed_part(const Stage& stage, const sim::Workpiece& printed, Record& record) {
   const sim::BeadIndex& beads = printed.beads();
-  const auto shape = printed_shape(beads, kBeadsDrawn);
+  const auto shape = printed_shape(beads);
   if (!shape) return;
   const auto& mesh = *std::get<geometry::MeshShape>(shape->shape.form).mesh;
   renderer::PictureScene scene;
@@ -169,7 +171,7 @@ void add_pictures(const Stage& stage, const sim::Workpiece* printed, Record& rec
   const TracePoint* point = middle_of_print(record);
   const Pose X_WT = point ? point->X_WT : Pose(stage.machine.X_WB * stage.machine.X_BT_home);
   const sim::Posture posture{X_WT, point ? point->axes : home_axes(stage.machine)};
-  renderer::PictureScene scene = build_scene(stage, printed, posture);
+  renderer::PictureScene scene = build_scene(stage, printed, posture, point ? point->time : 0);
   const Ball around = enclose(scene);
   scene.target_W = around.centre;
   scene.eye_W = around.centre + 3.5 * around.radius * Vec3(0.62, -0.74, 0.24).normalized();

@@ -1,17 +1,14 @@
 #include "rehearsal/pixel_measurement.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <thread>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "calibration/pose_choice.h"
 #include "core/error.h"
-#include "core/interrupt.h"
+#include "core/parallel.h"
 #include "core/units.h"
 #include "vision/chessboard.h"
 
@@ -21,7 +18,8 @@ namespace {
 constexpr double kDepth = 50e-3;         // [m] from the first layer to the last
 constexpr double kCornerSigma = 0.04;    // [px], of a measured corner in u or v
 constexpr double kPrincipalSigma = 0.1;  // [px]: the lens's axis was found before, on a bench
-constexpr double kMiss = 90;             // [px] by which a machine before calibration may miss: 8 mm
+constexpr double kMiss = 90;             // [px] by which a machine before calibration usually misses: 8 mm
+constexpr double kSearch = 180;          // [px], second look; targets are 400 px apart or more
 constexpr double kOutlineMargin = 14;    // [px] that a target's edge search needs around it
 
 Vec3 normal_vector(Random& random, double sigma) {
@@ -73,30 +71,17 @@ std::array<vision::CameraLayers, 2> photograph_boards(const CalibrationRig& desi
                                                       const std::function<void(double)>& progress) {
   const int count = 2 * built.layers;
   std::vector<vision::BoardLayer> boards(static_cast<std::size_t>(count));
-  std::atomic<int> next{0}, done{0};
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto work = [&] {
-    try {
-      renderer::CalibrationView view;
-      for (int n = next++; n < count; n = next++) {
-        stop_if_interrupted();
-        boards[static_cast<std::size_t>(n)] =
-            photograph_board(view, designed, built, options, n / built.layers, n % built.layers);
-        const std::lock_guard lock(mutex);
-        if (progress) progress(static_cast<double>(++done) / count);
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-      next = count;
-    }
+  const auto photographer = [&] {
+    const auto view = std::make_shared<renderer::CalibrationView>();
+    return IndexedWork([&, view](std::size_t n) {
+      const auto number = static_cast<int>(n);
+      boards[n] =
+          photograph_board(*view, designed, built, options, number / built.layers, number % built.layers);
+    });
   };
-  std::vector<std::thread> workers;
-  for (int t = 1; t < std::min(threads, count); ++t) workers.emplace_back(work);
-  work();
-  for (std::thread& worker : workers) worker.join();
-  if (failure) std::rethrow_exception(failure);
+  in_parallel_with(boards.size(), threads, photographer, [&](std::size_t, std::size_t done) {
+    if (progress) progress(static_cast<double>(done) / count);
+  });
   std::array<vision::CameraLayers, 2> layers;
   for (int n = 0; n < count; ++n) {
     const auto camera = static_cast<std::size_t>(n / built.layers);
@@ -114,6 +99,12 @@ Region around(const std::array<Vec2, 3>& centres, double margin) {
             y = static_cast<int>(std::floor(low.y() - margin));
   return {x, y, static_cast<int>(std::ceil(high.x() + margin)) - x,
           static_cast<int>(std::ceil(high.y() + margin)) - y};
+}
+
+Region on_sensor(const Region& wanted, const Camera& camera) {
+  const int x = std::clamp(wanted.x, 0, camera.width - 1), y = std::clamp(wanted.y, 0, camera.height - 1);
+  return {x, y, std::clamp(wanted.x + wanted.width, x + 1, camera.width) - x,
+          std::clamp(wanted.y + wanted.height, y + 1, camera.height) - y};
 }
 
 double radius_px(const CalibrationRig& rig) {
@@ -191,8 +182,13 @@ PixelPose MeasuringStand::measure(renderer::CalibrationView& view, const Pose& X
     vision::TargetOptions options;
     options.camera = designed_.cameras[k].camera;
     options.radius_px = radius_px(designed_);
-    const Region region = around(expected, 1.15 * options.radius_px + kOutlineMargin + kMiss);
-    seen[k] = vision::measure_targets(view.render(scene, region), expected, options);
+    const double rim = 1.15 * options.radius_px + kOutlineMargin;
+    for (const double miss : {kMiss, kSearch}) {
+      options.search_px = miss;
+      const Region region = on_sensor(around(expected, rim + miss), options.camera);
+      seen[k] = vision::measure_targets(view.render(scene, region), expected, options);
+      if (seen[k].status == vision::TargetStatus::ok) break;
+    }
   }
   const auto found = vision::measure_pose(model_, designed_.targets, seen);
   PixelPose pose;

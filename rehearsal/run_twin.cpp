@@ -76,10 +76,12 @@ std::unique_ptr<sim::Plant> make_plant(const Stage& stage) {
 }
 
 /// What the printed material knows of its own temperature.
-sim::DepositionOptions deposition_options(const Stage& stage, FlowWatch& flow) {
+sim::DepositionOptions deposition_options(const Stage& stage, FlowWatch& flow,
+                                          sim::AirStrandSolver& strands) {
   sim::DepositionOptions options;
   options.laid = [&flow](const sim::LaidBead& bead) { flow.add(bead); };
   if (!stage.machine.tool.prints()) return options;
+  options.loose = [&strands](const sim::LooseStretch& stretch) { strands.add(stretch); };
   options.glass_transition = stage.material.glass_transition;
   options.substrate_temperature = sim::BeadTemperature(stage.machine, stage.material);
   return options;
@@ -92,7 +94,8 @@ struct Watch {
   explicit Watch(const Stage& stage, const RunOptions& options)
       : workpiece(std::make_shared<sim::Workpiece>(stage.part)),
         flow(stage.program, stage.machine),
-        deposition(stage.machine, workpiece, deposition_options(stage, flow)),
+        strands(stage.machine, stage.material),
+        deposition(stage.machine, workpiece, deposition_options(stage, flow, strands)),
         trace(deposition),
         collision(stage.machine, stage.as_built, stage.part, collision_options()),
         thread(options.watch_collisions ? std::vector<sim::Observer*>{&deposition, &trace, &collision}
@@ -113,6 +116,7 @@ struct Watch {
 
   std::shared_ptr<sim::Workpiece> workpiece;
   FlowWatch flow;
+  sim::AirStrandSolver strands;
   sim::DepositionObserver deposition;
   TraceObserver trace;
   sim::CollisionObserver collision;
@@ -175,7 +179,7 @@ TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& 
   run.loose = watch.deposition.loose_stretches();
   run.flow = watch.flow.stretches();
   run.workpiece = watch.workpiece;
-  if (stage.machine.tool.prints()) run.strands = sim::air_strands(run.loose, stage.machine, stage.material);
+  run.strands = watch.strands.finish();
   if (options.watch_collisions) {
     run.collisions = watch.collision.collisions();
     run.near_collisions = watch.collision.near_collisions();

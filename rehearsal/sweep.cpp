@@ -1,15 +1,11 @@
 #include "rehearsal/sweep.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
-#include "core/interrupt.h"
+#include "core/parallel.h"
 #include "core/units.h"
 #include "rehearsal/quantile.h"
 #include "rehearsal/report.h"
@@ -79,33 +75,15 @@ std::string line_of(const std::string& name, const Distribution& d, double low, 
 std::vector<SweepRow> sweep(const RehearsalRequest& request, std::uint64_t first, int count, int threads,
                             const Progress& progress) {
   std::vector<SweepRow> rows(static_cast<std::size_t>(count));
-  std::vector<std::exception_ptr> failures(rows.size());
-  std::atomic<std::size_t> next{0}, done{0};
-  std::atomic<bool> give_up{false};
-  std::mutex progress_mutex;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < rows.size() && !give_up; i = next++) {
-      try {
-        stop_if_interrupted();
-        RehearsalRequest one = request;
-        one.seed = first + i;
-        one.pictures = false;
-        rows[i] = row_of(rehearse(one), one.seed);
-      } catch (...) {
-        failures[i] = std::current_exception();
-        give_up = true;
-      }
-      const std::lock_guard lock(progress_mutex);
-      if (progress)
-        progress(static_cast<double>(++done) / count, fmt::format("machine {} of {}", done.load(), count));
-    }
+  const auto run = [&](std::size_t i) {
+    RehearsalRequest one = request;
+    one.seed = first + i;
+    one.pictures = false;
+    rows[i] = row_of(rehearse(one), one.seed);
   };
-  std::vector<std::thread> workers;
-  for (int i = 1; i < threads; ++i) workers.emplace_back(work);
-  work();
-  for (auto& worker : workers) worker.join();
-  for (const auto& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  in_parallel(rows.size(), threads, run, [&](std::size_t, std::size_t done) {
+    if (progress) progress(static_cast<double>(done) / count, fmt::format("machine {} of {}", done, count));
+  });
   return rows;
 }
 

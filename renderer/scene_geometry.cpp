@@ -148,6 +148,7 @@ PictureGeometry picture_geometry(const PictureScene& scene) {
     const Surface surface = tessellate(coloured.shape, kSegments);
     put_surface(g.solids, surface, coloured.colour);
     shape_ends.push_back(g.solids.size());
+    if (!coloured.outlined) continue;
     Colour dark = coloured.colour;
     for (float& channel : dark) channel *= kCreaseShade;
     for (const auto& [a, b] : surface.creases)

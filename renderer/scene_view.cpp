@@ -133,6 +133,18 @@ struct Drawing {
   const GlVertices &solids, &ground, &creases;
 };
 
+/// Depth first, so that only what is seen is shaded: the sky costs most where beads lie behind beads.
+void draw_depth(const GlFunctions& gl, const Mat4f& clip, const Drawing& drawing) {
+  const GlProgram program(gl, "depth", shader_source("depth.vert"), shader_source("depth.frag"));
+  program.use();
+  gl.UniformMatrix4fv(program.uniform("clip"), 1, GL_FALSE, clip.data());
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  drawing.solids.draw(GL_TRIANGLES);
+  drawing.ground.draw(GL_TRIANGLES);
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl.DepthFunc(GL_LEQUAL);
+}
+
 /// Light from the sky on what is seen, in a picture of half the size.
 void draw_sky(const GlFunctions& gl, const PictureScene& scene, const PictureGeometry& g,
               const Lights& lights, const Drawing& drawing, const GlTarget& atlas, const GlTarget& target) {
@@ -141,9 +153,10 @@ void draw_sky(const GlFunctions& gl, const PictureScene& scene, const PictureGeo
   const float nothing[] = {1, 1e9f, 0, 0};
   gl.ClearBufferfv(GL_COLOR, 0, nothing);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
+  const Mat4f clip = eye_clip(scene, g);
+  draw_depth(gl, clip, drawing);
   compare_when_sampled(gl, GL_TEXTURE0, atlas);
   program.use();
-  const Mat4f clip = eye_clip(scene, g);
   const Eigen::Vector3f eye = (scene.eye_W - g.centre).cast<float>();
   gl.UniformMatrix4fv(program.uniform("clip"), 1, GL_FALSE, clip.data());
   gl.Uniform3fv(program.uniform("eye"), 1, eye.data());
@@ -154,6 +167,7 @@ void draw_sky(const GlFunctions& gl, const PictureScene& scene, const PictureGeo
   gl.Uniform1i(program.uniform("sky_atlas"), 0);
   drawing.solids.draw(GL_TRIANGLES);
   drawing.ground.draw(GL_TRIANGLES);
+  gl.DepthFunc(GL_LESS);
 }
 
 void draw_picture(const GlFunctions& gl, const PictureScene& scene, const PictureGeometry& g,

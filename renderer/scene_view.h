@@ -15,6 +15,7 @@ namespace understudy::renderer {
 struct ColouredShape {
   geometry::Shape shape;          ///< X_FS is the pose in W
   std::array<float, 3> colour{};  ///< linear RGB 0..1
+  bool outlined = true;           ///< its sharp edges are drawn
 };
 
 /// A line in space, drawn as a round tube: a tool path, a bead, a beam.

@@ -41,14 +41,14 @@ float sky(vec3 n) {
 float lamp(vec3 n) {
   vec3 at = 0.5 * (lamp_clip * vec4(place + 2.0 * lamp_texel * n, 1.0)).xyz + 0.5;
   if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
-  vec2 step_size = 1.5 / vec2(textureSize(lamp_depth, 0));
+  vec2 step_size = 2.5 / vec2(textureSize(lamp_depth, 0));
   float sum = 0.0;
-  for (int i = -2; i <= 2; ++i) {
-    for (int j = -2; j <= 2; ++j) {
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
       sum += textureLod(lamp_depth, vec3(at.xy + vec2(i, j) * step_size, min(at.z, 1.0)), 0.0);
     }
   }
-  return sum / 25.0;
+  return sum / 9.0;
 }
 
 void main() {

@@ -16,6 +16,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTie = 2e-9;       // [m], twice the accuracy of a distance
 constexpr double kRounding = 1e-9;  // [m], by which the next step of a way out must go on
+// Of the width: a ball about a bead holds its half length and half width, and rounding.
+constexpr double kAround = 0.501;
 
 // The least of the distances offered, and whose they are: of those that tie with it the lowest number, in
 // whatever order they come.
@@ -49,20 +51,67 @@ double distance_to_box(const BeadTree::Box& box, const Vec3& p) {
   return ((p - box.centre).cwiseAbs() - box.half).cwiseMax(0).norm();
 }
 
+struct Ray {
+  Vec3 origin, direction;
+  Vec3 inverse = direction.cwiseInverse();
+};
+
 // Where the ray enters the box; infinite where it misses.
-double entry_of_box(const BeadTree::Box& box, const Vec3& origin, const Vec3& direction) {
+double entry_of_box(const BeadTree::Box& box, const Ray& ray) {
   double first = 0, last = kInfinity;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double from = box.centre[i] - origin[i];
-    if (direction[i] == 0) {
+    const double from = box.centre[i] - ray.origin[i];
+    if (ray.direction[i] == 0) {
       if (std::abs(from) > box.half[i]) return kInfinity;
       continue;
     }
-    const double middle = from / direction[i], half = box.half[i] / std::abs(direction[i]);
+    const double middle = from * ray.inverse[i], half = box.half[i] * std::abs(ray.inverse[i]);
     first = std::max(first, middle - half);
     last = std::min(last, middle + half);
   }
   return first <= last ? first : kInfinity;
+}
+
+struct Around {
+  Vec3 centre;
+  double radius;
+};
+
+// Holds the whole bead: its section is no wider than its width, its ends are round.
+Around ball_of(const Bead& bead) {
+  const Vec3 from(bead.from_W[0], bead.from_W[1], bead.from_W[2]),
+      to(bead.to_W[0], bead.to_W[1], bead.to_W[2]);
+  return {0.5 * (from + to), 0.5 * (to - from).norm() + kAround * static_cast<double>(bead.width)};
+}
+
+// Whether the ray (of unit direction) passes the ball within `limit`.
+bool meets(const Ray& ray, const Around& ball, double limit) {
+  const Vec3 way = ball.centre - ray.origin;
+  const double along = way.dot(ray.direction);
+  return along - ball.radius <= limit && along >= -ball.radius &&
+         way.squaredNorm() - along * along <= ball.radius * ball.radius;
+}
+
+BeadTree::Bounds around(const Vec3& p, double reach) {
+  const Vec3 half = Vec3::Constant(std::max(0.0, reach));
+  return {p - half, p + half};
+}
+
+BeadTree::Bounds along(const Ray& ray, double reach) {
+  constexpr double kBeyondAll = 1e6;  // [m]; infinity times a direction's 0 is no number
+  const Vec3 end = ray.origin + std::min(reach, kBeyondAll) * ray.direction;
+  return {ray.origin.cwiseMin(end), ray.origin.cwiseMax(end)};
+}
+
+template <typename Core>
+BeadTree::Bounds bounds_of(const Core& core, const Pose& X_WS) {
+  BeadTree::Bounds bounds;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Vec3 axis_S = X_WS.linear().row(i).transpose();
+    bounds.upper[i] = (X_WS * core.farthest(axis_S))[i];
+    bounds.lower[i] = (X_WS * core.farthest(-axis_S))[i];
+  }
+  return bounds;
 }
 
 // How far apart a plane between a core and a box holds them, at most their distance; below 0 where none does.
@@ -140,8 +189,13 @@ std::optional<BeadIndex::Near> BeadIndex::State::nearest(const Core& core, doubl
     const Separation s = separation(core, radius, X_WS, core_of(bead), closest.limit() + kTie);
     closest.offer(s.distance, index);
   };
+  const BeadTree::Bounds here = bounds_of(core, X_WS);
+  const auto region = [&] {
+    const Vec3 reach = Vec3::Constant(std::max(0.0, radius + closest.limit()));
+    return BeadTree::Bounds{here.lower - reach, here.upper + reach};
+  };
   tree.search(
-      bound, [&] { return closest.limit(); }, visit);
+      region, bound, [&] { return closest.limit(); }, visit);
   const auto winner = closest.winner();
   if (!winner) return std::nullopt;
   return Near{separation(core, radius, X_WS, core_of(tree.bead(*winner)), kInfinity), *winner};
@@ -159,13 +213,15 @@ std::optional<BeadIndex::Hit> BeadIndex::ray_hit(const Vec3& origin_W, const Vec
                                                  std::size_t before) const {
   require_finite(origin_W.allFinite() && direction_W.allFinite() && !std::isnan(reach));
   const BeadTree& tree = state_->tree;
+  const Ray ray{origin_W, direction_W};
   Closest closest(reach);
   const auto visit = [&](std::size_t index, const Bead& bead) {
-    if (index >= before) return;
+    if (index >= before || !meets(ray, ball_of(bead), closest.limit())) return;
     const auto t = entry(core_of(bead), origin_W, direction_W, closest.limit());
     if (t) closest.offer(*t, index);
   };
-  tree.search([&](const BeadTree::Box& box) { return entry_of_box(box, origin_W, direction_W); },
+  tree.search([&] { return along(ray, closest.limit()); },
+              [&](const BeadTree::Box& box) { return entry_of_box(box, ray); },
               [&] { return closest.limit(); }, visit);
   const auto winner = closest.winner();
   if (!winner) return std::nullopt;
@@ -191,8 +247,7 @@ std::optional<BeadIndex::Hit> BeadIndex::nearest_surface(const Vec3& p_W, double
     const double distance = distance_to_box(box, p_W);
     return distance > 0 ? distance : -kInfinity;
   };
-  tree.search(
-      bound, [&] { return closest.limit(); }, visit);
+  tree.search([&] { return around(p_W, closest.limit()); }, bound, [&] { return closest.limit(); }, visit);
   const auto winner = closest.winner();
   if (!winner) return std::nullopt;
   const BeadCore core = core_of(tree.bead(*winner));
@@ -215,12 +270,15 @@ std::optional<BeadIndex::Hit> BeadIndex::way_out(const Vec3& p_W, const Vec3& di
     Closest farthest(kInfinity);  // of minus the ways, so that the longest is the least
     const auto visit = [&](std::size_t index, const Bead& bead) {
       if (index >= before) return;
+      const Around ball = ball_of(bead);
+      if ((ball.centre - p).squaredNorm() > (ball.radius + slack) * (ball.radius + slack)) return;
       const BeadCore core = core_of(bead);
       const double distance = signed_distance(core, p);
       if (first && slack == 0 ? distance >= 0 : distance > slack) return;
       if (const auto way = leaving(core, p, direction_W)) farthest.offer(-*way, index);
     };
-    tree.search([&](const BeadTree::Box& box) { return distance_to_box(box, p); }, [&] { return slack; },
+    tree.search([&] { return around(p, slack); },
+                [&](const BeadTree::Box& box) { return distance_to_box(box, p); }, [&] { return slack; },
                 visit);
     const auto winner = farthest.winner();
     if (!winner) return out;

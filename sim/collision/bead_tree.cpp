@@ -44,10 +44,6 @@ double from_half(std::uint16_t half) {
 
 std::uint64_t bit_of(int slot) { return std::uint64_t{1} << slot; }
 
-std::size_t place_of(std::uint64_t taken, int slot) {
-  return static_cast<std::size_t>(std::popcount(taken & (bit_of(slot) - 1)));
-}
-
 // In steps small enough that hardly anything is held without use.
 template <typename T>
 T& insert(std::vector<T>& items, std::size_t at, T item) {
@@ -70,6 +66,27 @@ Vec3 BeadTree::middle_of(const Cell& leaf_cell) {
     middle[static_cast<Eigen::Index>(i)] = (cell + 0.5) * kLeaf;
   }
   return middle;
+}
+
+std::uint64_t BeadTree::slots_within(const Bounds& region, double overhang, const Cell& cell, int level) {
+  // Bits of the slots whose x, y or z is one of four chosen: slot = x + 4 y + 16 z.
+  static constexpr std::array<std::uint64_t, 3> kEvery{0x1111111111111111, 0x000f000f000f000f, 0xffff};
+  const double size = kLeaf * static_cast<double>(std::uint64_t{1} << 2 * (level - 1));
+  std::uint64_t slots = ~std::uint64_t{0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double corner =
+        kLeaf * static_cast<double>(static_cast<std::int64_t>(std::uint64_t{cell[i]} << 2 * level) -
+                                    std::int64_t{kOrigin});
+    const auto first =
+        static_cast<int>(std::clamp(std::floor((region.lower[k] - overhang - corner) / size), 0.0, 4.0));
+    const auto last =
+        static_cast<int>(std::clamp(std::floor((region.upper[k] + overhang - corner) / size), -1.0, 3.0));
+    std::uint64_t chosen = 0;
+    for (int s = first; s <= last; ++s) chosen |= kEvery[i] << (s << 2 * i);
+    slots &= chosen;
+  }
+  return slots;
 }
 
 BeadTree::Box BeadTree::box_of(const WideBox& box) {
@@ -124,7 +141,7 @@ void BeadTree::widen_to(const Cell& leaf_cell, const Bounds& bounds) {
   while (at_root() != root_cell_) {
     const int slot =
         static_cast<int>((root_cell_[0] & 3) | (root_cell_[1] & 3) << 2 | (root_cell_[2] & 3) << 4);
-    Node higher{root_.box, bit_of(slot), {}, {}};
+    Node higher{root_.box, root_.overhang, bit_of(slot), {}, {}};
     higher.nodes.push_back(std::move(root_));
     root_ = std::move(higher);
     ++root_level_;
@@ -139,8 +156,12 @@ void BeadTree::enter(const Cell& leaf_cell, const Bounds& bounds, std::uint32_t 
     box.lower[i] = below(bounds.lower[static_cast<Eigen::Index>(i)]);
     box.upper[i] = above(bounds.upper[static_cast<Eigen::Index>(i)]);
   }
+  const Vec3 middle = middle_of(leaf_cell);
+  const float overhang =
+      above((bounds.upper - middle).cwiseMax(middle - bounds.lower).maxCoeff() - 0.5 * kLeaf);
   Node* node = &root_;
   for (int level = root_level_;; --level) {
+    node->overhang = std::max(node->overhang, overhang);
     for (std::size_t i = 0; i < 3; ++i) {
       node->box.lower[i] = std::min(node->box.lower[i], box.lower[i]);
       node->box.upper[i] = std::max(node->box.upper[i], box.upper[i]);
@@ -148,12 +169,11 @@ void BeadTree::enter(const Cell& leaf_cell, const Bounds& bounds, std::uint32_t 
     if (level == 1) break;
     const int slot = slot_of(leaf_cell, level);
     const std::size_t at = place_of(node->taken, slot);
-    if (!(node->taken & bit_of(slot))) insert(node->nodes, at, Node{box, 0, {}, {}});
+    if (!(node->taken & bit_of(slot))) insert(node->nodes, at, Node{box, 0, 0, {}, {}});
     node->taken |= bit_of(slot);
     node = &node->nodes[at];
   }
 
-  const Vec3 middle = middle_of(leaf_cell);
   SmallBox small;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);

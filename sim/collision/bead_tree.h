@@ -48,11 +48,18 @@ class BeadTree {
   const Bead& bead(std::size_t index) const { return records_[index].bead; }
   std::size_t bytes() const;
 
+  struct Bounds {
+    Vec3 lower, upper;  ///< [m], in W
+  };
+
   /// Visits all beads of boxes whose `bound(box)` is not above `limit()`, nearest boxes first; a long bead
-  /// perhaps more than once. The limit may fall meanwhile.
-  template <typename Bound, typename Limit, typename Visit>
-  void search(const Bound& bound, const Limit& limit, const Visit& visit) const {
-    if (size() > 0) descend(root_, root_cell_, root_level_, Search<Bound, Limit, Visit>{bound, limit, visit});
+  /// perhaps more than once. The limit may fall meanwhile. `region()` holds all that can be within the limit:
+  /// beads that lie wholly outside may be passed over before their box is looked at.
+  template <typename Region, typename Bound, typename Limit, typename Visit>
+  void search(const Region& region, const Bound& bound, const Limit& limit, const Visit& visit) const {
+    if (size() > 0)
+      descend(root_, root_cell_, root_level_,
+              Search<Region, Bound, Limit, Visit>{region, bound, limit, visit});
   }
 
  private:
@@ -80,15 +87,14 @@ class BeadTree {
   };
   struct Node {
     WideBox box;
+    float overhang = 0;       // [m], how far what was entered below reaches out of its leaf's cell
     std::uint64_t taken = 0;  // a bit a cell that exists; children stand in the order of the bits
     std::vector<Node> nodes;
     std::vector<Leaf> leaves;  // of the lowest nodes
   };
-  struct Bounds {
-    Vec3 lower, upper;
-  };
-  template <typename Bound, typename Limit, typename Visit>
+  template <typename Region, typename Bound, typename Limit, typename Visit>
   struct Search {
+    const Region& region;
     const Bound& bound;
     const Limit& limit;
     const Visit& visit;
@@ -107,6 +113,12 @@ class BeadTree {
     return {cell[0] << 2 | (s & 3), cell[1] << 2 | (s >> 2 & 3), cell[2] << 2 | s >> 4};
   }
 
+  /// The cells of a node whose contents can reach into the region.
+  static std::uint64_t slots_within(const Bounds& region, double overhang, const Cell& cell, int level);
+  static std::size_t place_of(std::uint64_t taken, int slot) {
+    return static_cast<std::size_t>(std::popcount(taken & ((std::uint64_t{1} << slot) - 1)));
+  }
+
   template <typename Of>
   void descend(const Node& node, const Cell& cell, int level, const Of& search) const;
   template <typename Of>
@@ -123,24 +135,25 @@ template <typename Of>
 void BeadTree::descend(const Node& node, const Cell& cell, int level, const Of& search) const {
   struct Child {
     double bound;
-    int index, slot;
+    std::size_t index;
+    int slot;
   };
   std::array<Child, 64> near;
   std::size_t count = 0;
-  int index = 0;
-  for (std::uint64_t rest = node.taken; rest != 0; rest &= rest - 1, ++index) {
+  const std::uint64_t within = slots_within(search.region(), static_cast<double>(node.overhang), cell, level);
+  for (std::uint64_t rest = node.taken & within; rest != 0; rest &= rest - 1) {
     const int slot = std::countr_zero(rest);
-    const auto i = static_cast<std::size_t>(index);
+    const std::size_t i = place_of(node.taken, slot);
     const double bound = search.bound(level == 1 ? box_of(node.leaves[i].box, child_cell(cell, slot))
                                                  : box_of(node.nodes[i].box));
-    if (bound <= search.limit()) near[count++] = {bound, index, slot};
+    if (bound <= search.limit()) near[count++] = {bound, i, slot};
   }
   std::sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Child& a, const Child& b) {
               return a.bound < b.bound || (a.bound == b.bound && a.slot < b.slot);
             });
   for (std::size_t k = 0; k < count && near[k].bound <= search.limit(); ++k) {
-    const auto i = static_cast<std::size_t>(near[k].index);
+    const std::size_t i = near[k].index;
     if (level == 1)
       visit_leaf(node.leaves[i], search);
     else

@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <exception>
 #include <map>
+#include <mutex>
 #include <numbers>
+#include <thread>
+#include <utility>
 
 #include "core/units.h"
 #include "sim/process/bead_temperature.h"
@@ -176,13 +182,83 @@ bool hangs_in_air(const LooseStretch& stretch) {
   return stretch.worst_gap > kInAir * diameter || (stretch.held_at_end && stretch.on_printed);
 }
 
-std::vector<AirStrand> air_strands(std::span<const LooseStretch> stretches,
-                                   const machine::MachineDescription& machine,
-                                   const machine::Material& material) {
+struct AirStrandSolver::State {
+  const machine::MachineDescription& machine;
+  const machine::Material& material;
+  std::mutex mutex{};
+  std::condition_variable changed{};
+  std::deque<LooseStretch> waiting{};
+  std::map<std::size_t, AirStrand> solved{};
+  std::size_t taken = 0;  // the number of the next that waits
+  bool no_more = false;
+  std::exception_ptr failure{};
+  std::thread thread{};  // from the first strand on
+
+  void solve() {
+    Solver solver(machine, material);
+    std::unique_lock lock(mutex);
+    for (;;) {
+      changed.wait(lock, [this] { return no_more || !waiting.empty(); });
+      if (waiting.empty()) return;
+      const LooseStretch stretch = std::move(waiting.front());
+      waiting.pop_front();
+      const std::size_t number = taken++;
+      lock.unlock();
+      AirStrand strand;
+      std::exception_ptr thrown;
+      try {
+        strand = solver.solve(stretch);
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+      lock.lock();
+      solved[number] = strand;
+      if (thrown && !failure) failure = thrown;
+    }
+  }
+
+  void end() {
+    {
+      const std::lock_guard lock(mutex);
+      no_more = true;
+    }
+    changed.notify_all();
+  }
+};
+
+AirStrandSolver::AirStrandSolver(const machine::MachineDescription& machine,
+                                 const machine::Material& material)
+    : state_(new State{machine, material}) {}
+
+AirStrandSolver::~AirStrandSolver() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->waiting.clear();
+  }
+  state_->end();
+  if (state_->thread.joinable()) state_->thread.join();
+}
+
+void AirStrandSolver::add(const LooseStretch& stretch) {
+  if (!hangs_in_air(stretch)) return;
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->waiting.push_back(stretch);
+  }
+  if (!state_->thread.joinable()) state_->thread = std::thread([this] { state_->solve(); });
+  state_->changed.notify_one();
+}
+
+std::vector<AirStrand> AirStrandSolver::finish() {
+  State& state = *state_;
+  state.end();
+  if (state.thread.joinable()) {
+    state.solve();
+    state.thread.join();
+  }
+  if (state.failure) std::rethrow_exception(state.failure);
   std::vector<AirStrand> strands;
-  Solver solver(machine, material);
-  for (const LooseStretch& stretch : stretches)
-    if (hangs_in_air(stretch)) strands.push_back(solver.solve(stretch));
+  for (const auto& [number, strand] : state.solved) strands.push_back(strand);
   return strands;
 }
 

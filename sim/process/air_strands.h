@@ -41,9 +41,24 @@ bool hangs_in_air(const LooseStretch& stretch);
 
 /// Straight strands, a corner of up to 5 % of the length beside the chord included, by sag_of(), others by
 /// droop_of(). A strand that is fed faster than it leaves the nozzle freely is slack, one that is fed slower
-/// is drawn thinner. Strands alike to 0.1 mm of length, 1 % of speed and so on are solved once.
-std::vector<AirStrand> air_strands(std::span<const LooseStretch> stretches,
-                                   const machine::MachineDescription& machine,
-                                   const machine::Material& material);
+/// is drawn thinner. Strands alike to 0.1 mm of length, 1 % of speed and so on are solved once a thread.
+///
+/// They are solved on a thread beside the print; the results are the same whatever is solved where.
+class AirStrandSolver {
+ public:
+  AirStrandSolver(const machine::MachineDescription& machine, const machine::Material& material);
+  ~AirStrandSolver();
+  AirStrandSolver(const AirStrandSolver&) = delete;
+  AirStrandSolver& operator=(const AirStrandSolver&) = delete;
+
+  /// What hangs_in_air(); others are passed over. Not from two threads at once.
+  void add(const LooseStretch& stretch);
+  /// All strands in the order they came; the calling thread solves beside. Throws what solving threw.
+  std::vector<AirStrand> finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace understudy::sim

@@ -74,7 +74,7 @@ struct DepositionObserver::State {
         accepted_max(machine.gap.accepted_max),
         extruder(machine.process.extruder_lag),
         builder([this](const Element& element) { keep(element); }),
-        loose(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter),
+        loose(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter, options.loose),
         sums(machine.gap.accepted_min - kRounding, machine.gap.accepted_max + kRounding),
         usual_height(machine.gap.aim) {}
 

@@ -89,6 +89,8 @@ struct DepositionOptions {
   std::function<double(double age, double fan)> substrate_temperature;
   double glass_transition = 0;                ///< [K]; an interface below it does not weld
   std::function<void(const LaidBead&)> laid;  ///< called for every element, in order
+  std::function<void(const LooseStretch&)>
+      loose;  ///< called for every stretch that does not stick, at its end
 };
 
 /// Between snapshots tip, gap and feed are taken as linear, so that fractions and the ends of loose stretches

@@ -64,6 +64,7 @@ void LooseRecorder::end(bool held) {
   if (stretch.adhesion == Adhesion::loose)
     stretch.held_at_end = held || touches_something(stretch.path_W.back(), diameter_, first_bead_);
   open_ = false;
+  if (done_) done_(stretch);
 }
 
 void LooseRecorder::add(const Element& element, const Conditions& conditions) {

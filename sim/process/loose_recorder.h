@@ -1,6 +1,8 @@
 // Stretches of elements that do not stick, as they come.
 #pragma once
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "sim/process/bead_builder.h"
@@ -9,8 +11,10 @@ namespace understudy::sim {
 
 class LooseRecorder {
  public:
-  LooseRecorder(const Workpiece& workpiece, double reach, double least_width)
-      : workpiece_(workpiece), reach_(reach), least_width_(least_width) {}
+  /// `done`, unless empty, is called for each stretch at its end.
+  LooseRecorder(const Workpiece& workpiece, double reach, double least_width,
+                std::function<void(const LooseStretch&)> done)
+      : workpiece_(workpiece), reach_(reach), least_width_(least_width), done_(std::move(done)) {}
 
   /// What the extrusion was like when the element was laid.
   struct Conditions {
@@ -32,6 +36,7 @@ class LooseRecorder {
   const Workpiece& workpiece_;
   double reach_;        // [m], between a strand's surface and what holds it
   double least_width_;  // [m]: no row is narrower, however thin it starts
+  std::function<void(const LooseStretch&)> done_;
   std::vector<LooseStretch> stretches_;
   bool open_ = false;
   bool last_held_ = false;        // the element before this one sticks

@@ -90,7 +90,9 @@ class Fixture : public testing::Test {
     }
     return "accepted";
   }
-  const std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "understudy_fixture.stl";
+  const std::filesystem::path path_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("fixture.") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".stl");
 };
 
 TEST_F(Fixture, StandsOnTheTable) {
