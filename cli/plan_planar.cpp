@@ -14,19 +14,22 @@ namespace {
 struct PlanarRequest {
   PlanOptions options;
   std::string part, core;
-  double layer_mm = 0.13;
+  double layer_mm = 0.13, pitch_mm = 0;
   int walls = 0;
 };
 
 int plan_planar(const PlanarRequest& r) {
   check_options(r.options);
   check_option("--layer", r.layer_mm, 10);
+  if (!(r.pitch_mm >= 0 && r.pitch_mm <= 100))
+    throw InputError(fmt::format("--pitch {:g} is outside 0..100", r.pitch_mm));
   const auto machine = printing_machine(r.options.machine);
   const auto part = geometry::read_stl(rehearsal::find_fixture(r.part));
   const auto core = r.core.empty() ? nullptr : geometry::read_stl(rehearsal::find_fixture(r.core));
   toolpath::PlanarPlan plan;
   plan.layer_height = from_mm(r.layer_mm);
   plan.bead_width = from_mm(r.options.bead_width_mm);
+  plan.pitch = from_mm(r.pitch_mm);
   plan.walls = r.walls;
   plan.feed = from_mm(r.options.feed_mm_per_s);
   plan.approach_feed = from_mm(r.options.approach_mm_per_s);
@@ -55,6 +58,9 @@ void add_plan_planar(CLI::App& plan, Action& action) {
   planar->add_option("--layer", request->layer_mm, "mm, height of the layers")->capture_default_str();
   planar->add_option("--walls", request->walls, "beads from the outline inwards; 0: until the layer is full")
       ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  planar
+      ->add_option("--pitch", request->pitch_mm, "mm from bead to bead; 0: as wide as a bead's volume fills")
       ->capture_default_str();
   add_motion_options(*planar, request->options);
   planar->add_option("--width", request->options.bead_width_mm, "mm, width of the bead")

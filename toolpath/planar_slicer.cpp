@@ -69,7 +69,7 @@ class PlanarPrint {
   PlanarPrint(const geometry::Mesh* core, const PlanarPlan& plan)
       : core_(core), plan_(plan), builder_(plan.filament_diameter) {
     area_ = bead_area(plan.bead_width, plan.layer_height);
-    pitch_ = area_ / plan.layer_height;
+    pitch_ = plan.pitch > 0 ? plan.pitch : area_ / plan.layer_height;
   }
 
   void add_layer(const std::vector<Contour>& contours, double z_middle) {

@@ -8,7 +8,8 @@ namespace understudy::toolpath {
 
 struct PlanarPlan {
   double layer_height = 0;       ///< [m], of every layer, and of every bead
-  double bead_width = 0;         ///< [m]; beads lie side by side at the pitch that their volume fills
+  double bead_width = 0;         ///< [m]
+  double pitch = 0;              ///< [m], from bead to bead; 0: what their volume fills
   int walls = 0;                 ///< beads from the outline inwards; 0: until the section is full
   double feed = 0;               ///< [m/s]
   double approach_feed = 0;      ///< [m/s]
@@ -27,11 +28,11 @@ struct PlanarProgram {
 };
 
 /// Cuts the closed part by planes through the middle of each layer, from its lowest point upwards, and lays
-/// beads along the outline and inside it, half a bead from it; bead after bead inwards, at area / height, so
-/// that a filled layer has the volume of its section. With a `core`, an object that is there already, beads
-/// lie only where their middle is outside of it and the nozzle's flat misses it. The tip runs at the top of
-/// the layer, the tool upright. Throws InputError for values out of range, an open part or core, a part lower
-/// than a layer or under the table, or when nothing is left to print.
+/// beads along the outline and inside it, half a bead from it; bead after bead inwards, at area / height
+/// unless a pitch is given, so that a filled layer has the volume of its section. With a `core`, an object
+/// that is there already, beads lie only where their middle is outside of it and the nozzle's flat misses it.
+/// The tip runs at the top of the layer, the tool upright. Throws InputError for values out of range, an open
+/// part or core, a part lower than a layer or under the table, or when nothing is left to print.
 PlanarProgram plan_planar(const geometry::Mesh& part, const geometry::Mesh* core, const PlanarPlan& plan);
 
 }  // namespace understudy::toolpath

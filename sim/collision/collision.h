@@ -43,7 +43,7 @@ struct CollisionOptions {
   std::function<std::size_t()> fresh_from;
   /// [m]: the nozzle runs level with the beads of its own layer and presses into them by half a usual layer and
   /// a machine's play; deeper is a contact.
-  double bead_press = 0.12e-3;
+  double bead_press = 0.10e-3;
 };
 
 /// Watches every snapshot. Between snapshots the motion is bounded by the swept distance of each body, and

@@ -12,17 +12,20 @@ constexpr double kElementLength = 0.1e-3;  // [m], at least
 constexpr double kLongest = 2e-3;          // [m]: sag, cooling and pictures see no coarser
 constexpr double kPause = 10e-6;           // [m], path without feed that ends an element; less is jitter
 constexpr double kSettled = 1e-3;          // [m], path without feed after which an element is done
-constexpr double kStraight = 0.02;         // widths (5 um at least) beside the element's line begin a new one
+constexpr double kStraight = 5e-6;         // [m], a path farther beside the element's line begins a new one
 constexpr double kSteepest = 1.5;          // surface's way over the tip's
-constexpr double kSameGap = 0.05;          // of the gap (2 um at least)
-constexpr double kSameSection = 0.05;      // of the area
+constexpr double kSameGap = 2e-6;          // [m]
+constexpr double kSameSection = 0.03;      // of the area
 constexpr double kSameAxis = 0.02;         // [rad]
 
 double round_diameter(double area) { return std::sqrt(4 * area / std::numbers::pi); }
 
 }  // namespace
 
-Vec3 PathPoint::foot_W() const { return std::isfinite(gap) ? Vec3(tip_W - gap * axis_W) : tip_W; }
+// Under the surface it lies where it comes out: not on top of what the nozzle ploughs through.
+Vec3 PathPoint::foot_W() const {
+  return std::isfinite(gap) ? Vec3(tip_W - std::max(0.0, gap) * axis_W) : tip_W;
+}
 
 bool BeadBuilder::goes_on(const PathPoint& a, const PathPoint& b, Adhesion adhesion, double volume) const {
   const LaidBead& bead = element_->bead;
@@ -30,13 +33,12 @@ bool BeadBuilder::goes_on(const PathPoint& a, const PathPoint& b, Adhesion adhes
   if (bead.length < kElementLength) return true;
   if (bead.length > kLongest) return false;
   const Vec3 reach = b.foot_W() - bead.from_W;
-  if ((reach - reach.dot(heading_) * heading_).norm() > std::max(5e-6, kStraight * last_width_)) return false;
+  if ((reach - reach.dot(heading_) * heading_).norm() > kStraight) return false;
   const double piece = (b.foot_W() - a.foot_W()).norm();
   if (piece == 0) return true;
   const double area = bead.volume / bead.length;
   if (std::abs(volume / piece - area) > kSameSection * area) return false;
-  if (adhesion != Adhesion::fused && std::abs(b.gap - bead.gap) > std::max(2e-6, kSameGap * bead.gap))
-    return false;
+  if (adhesion != Adhesion::fused && std::abs(b.gap - bead.gap) > kSameGap) return false;
   return (b.axis_W - bead.normal_W).norm() < kSameAxis;
 }
 
@@ -97,8 +99,11 @@ void BeadBuilder::settle_section() {
     bead.width = bead_width(area, gap);
     bead.height = pressed ? std::min(gap, bead.width) : round_diameter(area);
   }
-  // Wider than long: a blob rather than a line.
-  if (bead.length == 0 || bead.width > bead.length) settle_blob(pressed ? gap : 0);
+  // Wider than long by itself, or wider than any line: a blob. A short piece of a line is as wide as the
+  // line.
+  const bool alone = !bead.follows && !continuous_;
+  if (bead.length == 0 || (bead.width > bead.length && (alone || bead.width > widest_line_)))
+    settle_blob(pressed ? gap : 0);
   last_width_ = bead.width;
 }
 

@@ -25,7 +25,9 @@ struct Element {
 
 class BeadBuilder {
  public:
-  explicit BeadBuilder(std::function<void(const Element&)> done) : done_(std::move(done)) {}
+  /// What is wider than `widest_line` [m] and than its own length is no line.
+  BeadBuilder(double widest_line, std::function<void(const Element&)> done)
+      : done_(std::move(done)), widest_line_(widest_line) {}
 
   /// From a to b nothing changes but linearly. `height` is that of a fused element.
   void extrude(const PathPoint& a, const PathPoint& b, Adhesion adhesion, double volume, int line,
@@ -57,6 +59,7 @@ class BeadBuilder {
   double idle_path_ = 0;     // [m] since then
   double carried_ = 0;       // [m^3], oozed where no element was open
   double last_width_ = 0;
+  double widest_line_;  // [m]
 };
 
 }  // namespace understudy::sim

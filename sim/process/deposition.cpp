@@ -20,6 +20,7 @@ constexpr double kRounding = 1e-9;   // [m], of a gap: coordinates of 0.1 m thro
 constexpr double kThinnest = 1e-6;   // [m]: what is thinner has a volume but is in nobody's way
 constexpr double kFills = 0.99;      // of the gap
 constexpr double kSide = 0.35;       // of the width, where an overhang is felt for
+constexpr double kWidestLine = 3;    // bores: no flat presses more wide
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PathPoint between(const PathPoint& a, const PathPoint& b, double f, double gap) {
@@ -73,7 +74,8 @@ struct DepositionObserver::State {
         accepted_min(machine.gap.accepted_min),
         accepted_max(machine.gap.accepted_max),
         extruder(machine.process.extruder_lag),
-        builder([this](const Element& element) { keep(element); }),
+        builder(kWidestLine * machine.tool.nozzle_diameter,
+                [this](const Element& element) { keep(element); }),
         loose(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter, options.loose),
         sums(machine.gap.accepted_min - kRounding, machine.gap.accepted_max + kRounding),
         usual_height(machine.gap.aim) {}

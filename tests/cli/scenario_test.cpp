@@ -66,6 +66,13 @@ TEST(SlowScenarioRun, TwoHundredMachinesStartInTheBandAndNoneTouches) {
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
 }
 
+// Song 2015, figure 17: a minute.
+TEST(SlowScenarioRun, AConformalFinishIsATenthOfTheStaircase) {
+  const std::string folder = kSource + "/scenarios/surface-finish/";
+  const Outcome outcome = understudy("scenario run " + folder + "planar.yaml " + folder + "conformal.yaml");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
 TEST(ScenarioList, NamesTheShippedScenarios) {
   const Outcome outcome = understudy("scenario list " + kSource + "/scenarios");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
