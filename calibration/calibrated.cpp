@@ -15,17 +15,6 @@ double standard_score(double chi_square, int degrees) {
 
 constexpr double kUnsupported = 4;  // standard scores: 3 in 100 000 good calibrations
 
-void warn_of_misfit(Calibration& result) {
-  const int degrees = result.degrees_of_freedom;
-  if (degrees <= 0 || standard_score(result.chi_square, degrees) < kUnsupported) return;
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "residuals are %.2f times what the stated noise explains (chi-square %.1f for %d degrees of "
-                "freedom): the noise is understated or the model lacks something (outliers, dev, play)",
-                std::sqrt(result.chi_square / degrees), result.chi_square, degrees);
-  result.warnings.emplace_back(text);
-}
-
 void warn_of_play(const Unknowns& unknowns, Calibration& result) {
   for (std::size_t i = 0; unknowns.play && i < kStruts; ++i) {
     const Eigen::Index row = unknowns.first_play() + static_cast<Eigen::Index>(i);
@@ -49,6 +38,26 @@ Twist pose_error(const Pose& measured, const Pose& reached) {
   e.head<3>() = measured.translation() - reached.translation();
   e.tail<3>() = log_rotation(measured.linear() * reached.linear().transpose());
   return e;
+}
+
+std::string misfit_warning(double chi_square, int degrees, const char* lacking) {
+  const double score = degrees > 0 ? standard_score(chi_square, degrees) : 0;
+  if (std::abs(score) < kUnsupported) return {};
+  char text[400];
+  const int begin =
+      std::snprintf(text, sizeof text,
+                    "residuals are %.2f times what the stated noise explains (chi-square %.1f for %d "
+                    "degrees of freedom): ",
+                    std::sqrt(chi_square / degrees), chi_square, degrees);
+  if (score > 0)
+    std::snprintf(text + begin, sizeof text - static_cast<std::size_t>(begin),
+                  "the noise is understated or the model lacks something (%s)", lacking);
+  else
+    std::snprintf(
+        text + begin, sizeof text - static_cast<std::size_t>(begin),
+        "the noise is overstated, or most of it is the same in all poses, and then the tip's uncertainty "
+        "is larger than told");
+  return text;
 }
 
 Calibration refused(const Problem& problem, Status status, const std::string& message) {
@@ -91,7 +100,9 @@ Calibration calibrated(const Problem& problem, const Fit& fit, const Unknowns& u
         "at the solution the poses no longer tell all parameters apart: add poses with more tilt";
     return result;
   }
-  warn_of_misfit(result);
+  const std::string misfit =
+      misfit_warning(result.chi_square, result.degrees_of_freedom, "outliers, dev, play");
+  if (!misfit.empty()) result.warnings.push_back(misfit);
   warn_of_play(unknowns, result);
   return result;
 }

@@ -1,6 +1,8 @@
 // From a fit to what the user gets: residuals of the measured poses, chi-square and warnings.
 #pragma once
 
+#include <string>
+
 #include "calibration/fit.h"
 
 namespace understudy::calibration {
@@ -8,6 +10,10 @@ namespace understudy::calibration {
 /// Fills everything but the covariance. Not converged is a status with advice.
 Calibration calibrated(const Problem& problem, const Fit& fit, const Unknowns& unknowns,
                        const std::vector<bool>& used);
+
+/// Where residuals are not what the stated noise explains, on either side; empty where they are. `lacking`:
+/// what a model may lack.
+std::string misfit_warning(double chi_square, int degrees, const char* lacking);
 
 /// The nominal machine with a reason.
 Calibration refused(const Problem& problem, Status status, const std::string& message);

@@ -16,6 +16,17 @@ namespace {
 
 constexpr std::size_t kFindingsShown = 10;
 
+void print_calibration(const rehearsal::CalibrationFigures& figures) {
+  fmt::print("  tip error without gap control {:.0f} um RMS, {:.0f} um at most", figures.after.tip_rms_um,
+             figures.after.tip_max_um);
+  if (figures.before)
+    fmt::print("; before calibration {:.0f} um RMS, {:.0f} um at most", figures.before->tip_rms_um,
+               figures.before->tip_max_um);
+  else if (!figures.not_run_before.empty())
+    fmt::print("; before calibration the program could not run: {}", figures.not_run_before);
+  fmt::print("\n");
+}
+
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, record.go ? "GO" : "NO-GO");
   std::size_t shown = 0;
@@ -39,6 +50,7 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
   if (record.accuracy)
     fmt::print("  tip error {:.0f} um RMS, {:.0f} um at most\n", record.accuracy->tip_rms_um,
                record.accuracy->tip_max_um);
+  if (record.calibration) print_calibration(*record.calibration);
   if (record.collision)
     fmt::print("  smallest clearance {:.2f} mm over {} checks\n", record.collision->min_clearance_mm,
                record.collision->checks);
@@ -84,24 +96,30 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
       ->capture_default_str()
       ->group("Programs of other machines");
   command
-      .add_option("--coordinates", dialect.coordinates,
-                  "what X Y Z mean beside B C: tip (on the work), machine (the slides), crossing (the slides of a "
-                  "machine whose turning axes cross at the program's origin)")
+      .add_option(
+          "--coordinates", dialect.coordinates,
+          "what X Y Z mean beside B C: tip (on the work), machine (the slides), crossing (the slides of a "
+          "machine whose turning axes cross at the program's origin)")
       ->group("Programs of other machines");
 }
 
 void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
-  command.add_option("--as-printed", surface.as_printed, "write the printed part: FILE.stl, or FILE.ply with its "
-                                                         "deviation from --intended as colour")
+  command
+      .add_option("--as-printed", surface.as_printed,
+                  "write the printed part: FILE.stl, or FILE.ply with its "
+                  "deviation from --intended as colour")
       ->group("Surface of the print");
-  command.add_option("--intended", surface.intended, "what the print was to become: an STL in mm, or a name "
-                                                     "under models/parts")
+  command
+      .add_option("--intended", surface.intended,
+                  "what the print was to become: an STL in mm, or a name "
+                  "under models/parts")
       ->group("Surface of the print");
   command.add_option("--profile", surface.profile_mm, "x,y,z,x,y,z in mm: measure Ra and Rz along this line")
       ->delimiter(',')
       ->expected(6)
       ->group("Surface of the print");
-  command.add_option("--probe", surface.probe, "x,y,z: the direction in which the line looks for the surface")
+  command
+      .add_option("--probe", surface.probe, "x,y,z: the direction in which the line looks for the surface")
       ->delimiter(',')
       ->expected(3)
       ->group("Surface of the print");
@@ -117,7 +135,13 @@ void add_rehearse(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--machine", request->machine, "name under models/ or a machine.yaml")
       ->capture_default_str();
-  command->add_option("--engine", request->engine, "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
+  command->add_option(
+      "--before", request->before,
+      "the machine before its calibration, a name or a machine.yaml: the same print on the same "
+      "twin, driven by that; the report compares tip errors");
+  command
+      ->add_option("--engine", request->engine,
+                   "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
       ->capture_default_str();
   command->add_option("--fixture", request->fixture,
                       "the inserted part: an STL in mm, or a name under models/parts");
@@ -131,13 +155,14 @@ void add_rehearse(CLI::App& app, Action& action) {
   command->add_option("--seed", request->seed, "of the as-built errors and of all noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command
-      ->add_option("--gap-control", request->gap_control,
-                   "off; start: close the gap before each print move by laser and camera; continuous: and follow "
-                   "it along the path; start where the machine has them");
+  command->add_option(
+      "--gap-control", request->gap_control,
+      "off; start: close the gap before each print move by laser and camera; continuous: and follow "
+      "it along the path; start where the machine has them");
   add_dialect(*command, request->dialect);
   add_surface(*command, request->surface);
-  command->add_flag("!--no-pictures", request->pictures, "leave the drawings of machine and part out of the report");
+  command->add_flag("!--no-pictures", request->pictures,
+                    "leave the drawings of machine and part out of the report");
   command->add_option("--out", *folder, "folder of results")->capture_default_str();
   command->callback([=, &action] { action = [=] { return rehearse(*request, *folder); }; });
 }

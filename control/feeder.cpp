@@ -15,7 +15,8 @@ constexpr double kPatience = 30.0;   // [s], port clock: a call that takes longe
 constexpr double kLead = 0.05;       // [s], a stretch begins this far ahead: time to plan its first batch
 constexpr double kSlice = 0.25;      // [s], between looks at the interrupt flag
 constexpr double kLook = 0.01;       // [s], between looks whether the last setpoint was executed
-constexpr double kReserve = 0.02;    // of the axes' velocity and acceleration, for what a watch adds
+constexpr double kBraking = 0.1;   // [s], of motion within which a port that is told to stop has come to rest
+constexpr double kReserve = 0.02;  // of the axes' velocity and acceleration, for what a watch adds
 
 MotionLimits limits_for(const machine::MachineDescription& machine, bool watched) {
   MotionLimits limits = motion_limits(machine);
@@ -104,7 +105,24 @@ Status Feeder::queue_watched(const PlannedPoint& point) {
   return watch_->stop() == GapStop::none ? Status::ok : Status::rejected;
 }
 
+/// A port brakes along what is queued, and a watched queue is shorter than that.
+Status Feeder::queue_braking_way() {
+  if (!planner_) return Status::ok;
+  planner_->finish();
+  const double until = port_.now() + kBraking;
+  bool on = true;
+  for (PlannedPoint point; on && planner_->next(point);) {
+    point.setpoint.filament += filament_at_start_;
+    on = point.setpoint.time < until;
+    machine::Setpoint ready = point.setpoint;
+    if (!watch_ || watch_->shift(point, ready)) batch_.push_back(ready);
+  }
+  if (machine::Setpoint last; on && watch_ && watch_->flush(last)) batch_.push_back(last);
+  return hand_over();
+}
+
 Status Feeder::abandon(double filament) {
+  if (const Status s = queue_braking_way(); s != Status::ok) return s;
   planner_.reset();
   batch_.clear();
   filament_ = filament;

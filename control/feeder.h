@@ -36,7 +36,8 @@ class Feeder {
   machine::Status push(const toolpath::Step& step);
   /// Ends the stretch: everything queued is executed and the tool rests.
   machine::Status come_to_rest();
-  /// Drops what is queued, waits until the tool rests and goes on from there. `filament` was fed by then [m].
+  /// Brakes, drops what is queued, waits until the tool rests and goes on from there. `filament` was fed by
+  /// then [m].
   machine::Status abandon(double filament);
   /// At rest: the tool stands off the pushed pose by this, as the watch has shifted it.
   void shift_rest(const Vec3& offset_W) { X_WT_rest_.translation() += offset_W; }
@@ -47,6 +48,7 @@ class Feeder {
  private:
   machine::Status pump();
   machine::Status queue_watched(const PlannedPoint& point);
+  machine::Status queue_braking_way();
   machine::Status hand_over();
   /// wait_until in slices, so that an interrupt (thrown as Interrupted) is not slept through.
   machine::Status wait_until(double time);

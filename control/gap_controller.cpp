@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "control/gap_look.h"
+#include "control/gap_proof.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/units.h"
@@ -22,11 +23,10 @@ constexpr double kTrusted = 3;         // standard deviations kept between a ste
 constexpr double kScaleError = 0.15;   // of a step: wrong slope or calibration that still counts as plausible
 constexpr double kUnmodelled = 20e-6;  // [m]: surface roughness and facets, as-built curvature of the motion
 constexpr double kJump = 10e-6;        // [m], beyond noise: the mechanism has moved, older looks do not count
-constexpr double kStallStep = 15e-6;   // [m], a step whose effect must show through the noise of one look
-constexpr double kStallShare = 0.3;    // of a step: a gap that closes by less has not followed
 constexpr int kStallsMax = 2;
-constexpr double kProbe = 0.2e-3;  // [m], a step while no reading has followed one yet: a ghost stands still
-constexpr double kStepMin = 1e-6;  // [m], about two microsteps: less is no motion
+constexpr double kProbe = 0.1e-3;   // [m], a step while no reading has followed one yet
+constexpr double kBlind = 0.25e-3;  // [m], in all until then: two such steps, and noise
+constexpr double kStepMin = 1e-6;   // [m], about two microsteps: less is no motion
 
 /// Gap minus commanded height, averaged over the last looks: motion along the axis changes both alike, so
 /// looks at different heights add up.
@@ -81,6 +81,7 @@ class Approach {
         options_(options),
         aim_(options.aim > 0 ? options.aim : machine.gap.aim),
         play_(machine.tip_play()),
+        proof_(limits_.accepted_min / 2, kBlind),
         eye_(machine, surface, options, motion.port()),
         height_(standoff) {
     if (aim_ <= limits_.accepted_min || aim_ >= limits_.accepted_max)
@@ -103,7 +104,6 @@ class Approach {
   GapStop look(GapEstimate& estimate, std::optional<Expectation>& expected);
   GapStop judge(const GapEstimate& estimate);
   bool reached(const GapEstimate& estimate) const;
-  void count_stall(double gap);
   double next_step(const GapEstimate& estimate) const;
   GapStop try_again_from_above();
   GapStop move_to(double height);
@@ -120,11 +120,9 @@ class Approach {
   const GapControllerOptions& options_;
   const double aim_;
   const double play_;
+  StepProof proof_;
   GapEye eye_;
-  double height_;                                    ///< [m], commanded tip above S along the tool axis
-  double last_look_height_ = 0, last_look_gap_ = 0;  ///< [m]
-  int stalls_ = 0;                                   ///< steps in a row that the gap did not follow
-  bool confirmed_ = false;                           ///< the readings are those of the part: they follow
+  double height_;  ///< [m], commanded tip above S along the tool axis
   GapOutcome outcome_;
 };
 
@@ -163,21 +161,11 @@ GapStop Approach::look(GapEstimate& estimate, std::optional<Expectation>& expect
   const GapStop s = eye_.take(expected, look);
   std::string why = look.why;
   if (s == GapStop::none) {
-    count_stall(look.reading.gap);
+    proof_.add(height_, look.reading.gap, look.reading.sigma);
     estimate.add(height_, look.reading, look.reading.gap - aim_ <= options_.slow_zone);
   }
   outcome_.looks.push_back(std::move(look));
   return s == GapStop::none ? s : stop_for(s, std::move(why));
-}
-
-/// A picture that stands still while the tip moves would lead it into the part.
-void Approach::count_stall(double gap) {
-  const double moved = last_look_height_ - height_;
-  const bool followed = last_look_gap_ - gap >= kStallShare * moved;
-  if (moved >= kStallStep) stalls_ = followed ? 0 : stalls_ + 1;
-  if (moved >= kProbe / 2 && followed) confirmed_ = true;
-  last_look_height_ = height_;
-  last_look_gap_ = gap;
 }
 
 bool Approach::reached(const GapEstimate& estimate) const {
@@ -196,9 +184,15 @@ GapStop Approach::judge(const GapEstimate& estimate) {
         fmt::format("the gap reads {:.3f} mm at {:.3f} mm above the start: the surface is {:.3f} mm lower "
                     "than programmed, at most {:.3f} mm are allowed",
                     to_mm(gap), to_mm(height_), to_mm(depth), to_mm(options_.depth_max)));
-  if (stalls_ >= kStallsMax)
-    return stop_for(GapStop::no_progress,
-                    fmt::format("the gap still reads {:.3f} mm after {} steps down", to_mm(gap), stalls_));
+  if (proof_.stalls() >= kStallsMax)
+    return stop_for(GapStop::no_progress, fmt::format("the gap still reads {:.3f} mm after {} steps down",
+                                                      to_mm(gap), proof_.stalls()));
+  if (!reached(estimate) && proof_.room(height_) < kStepMin)
+    return stop_for(
+        GapStop::no_progress,
+        fmt::format("the gap reads {:.3f} mm, but by the steps since a reading last followed one {:.3f} mm "
+                    "are sure: what shines may not be the dot",
+                    to_mm(gap), to_mm(proof_.room(height_) + limits_.accepted_min / 2)));
   if (reached(estimate) && kTrusted * sigma > aim_ - limits_.accepted_min)
     return stop_for(
         GapStop::implausible,
@@ -209,22 +203,20 @@ GapStop Approach::judge(const GapEstimate& estimate) {
 }
 
 /// Far away a fraction of what is left. In the slow zone what is left is shared between the looks still to be
-/// averaged, and no step uses up more than half of the way to the accepted band's end. Never upwards.
+/// averaged, and no step uses up more than half of the way to the accepted band's end. Never farther than is
+/// proved, never upwards.
 double Approach::next_step(const GapEstimate& estimate) const {
-  const double gap = estimate.gap(height_), left = gap - aim_;
-  if (left > options_.slow_zone) {
-    const double step = options_.step_fraction * left;
-    return confirmed_ ? step : std::min(step, kProbe);
-  }
+  const double gap = estimate.gap(height_), left = gap - aim_, room = proof_.room(height_);
+  if (left > options_.slow_zone)
+    return std::min(options_.step_fraction * left, proof_.proved() ? room : std::min(room, kProbe));
   const double share = left / std::max(1, estimate.missing());
   const double safe = gap - kTrusted * estimate.sigma() - limits_.accepted_min;
-  return std::max(0.0, std::min({share, safe, (gap - limits_.accepted_min) / 2}));
+  return std::max(0.0, std::min({share, safe, (gap - limits_.accepted_min) / 2, room}));
 }
 
 GapStop Approach::try_again_from_above() {
   const std::string first = outcome_.why;
-  stalls_ = 0;
-  confirmed_ = false;
+  proof_.restart();
   const double height = std::max(standoff_, height_ + options_.retreat);
   if (const GapStop s = move_to(height); s != GapStop::none) return s;
   const GapStop s = descend();

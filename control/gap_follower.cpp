@@ -17,6 +17,7 @@ GapFollowerOptions gap_follower_options(const machine::MachineDescription& machi
   options.aim = machine.gap.aim;
   options.speckle_length = machine.laser.waist_diameter;
   options.floor = options.step_max = machine.gap.accepted_min / 2;
+  options.unproved_max = (options.aim - options.floor) / 2;
   return options;
 }
 
@@ -86,7 +87,7 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
   }
   if (!known_) {
     begin(o);
-    judge(o.correction);
+    judge(o);
     return known_ ? GapVerdict::used : GapVerdict::not_yet;
   }
   predict(o.time, o.path);
@@ -94,17 +95,23 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
   const double fresh = std::clamp((o.path - used_path_) / options_.speckle_length, kSpeckleShare, 1.0);
   const double variance = o.sigma * o.sigma / fresh + options_.unmodelled * options_.unmodelled;
   const double innovation = o.gap - o.correction - error_;
+  if (o.path - used_path_ > options_.extrapolated_max) proof_.forget();
   const double spread = std::sqrt(p_ee_ + o.sigma * o.sigma) + options_.unmodelled;
   if (std::abs(innovation) > options_.gate * spread && !lasting_step(innovation, o.sigma * o.sigma)) {
     miss(o.time, o.path, GapStop::implausible);
     return GapVerdict::jump;
   }
-  if (steps_ < options_.step_looks) correct(innovation, variance);
+  if (steps_ >= options_.step_looks) {
+    proof_.forget();
+  } else {
+    if (proof_.observe(o.gap - o.still, variance, innovation, p_ee_ + variance)) proof_.restart(o.correction);
+    correct(innovation, variance);
+  }
   steps_ = 0;
   step_sum_ = step_squares_ = 0;
   used_path_ = o.path;
   resume(o.time, o.path);
-  judge(o.correction);
+  judge(o);
   return GapVerdict::used;
 }
 
@@ -156,6 +163,8 @@ void GapFollower::begin(const GapObservation& o) {
 void GapFollower::pass(double dt, double way) {
   seen_time_ += dt;
   seen_path_ += way;
+  held_time_ += dt;
+  held_path_ += way;
 }
 
 void GapFollower::miss(double time, double path, GapStop why) {
@@ -167,10 +176,28 @@ void GapFollower::miss(double time, double path, GapStop why) {
     raise(static_cast<GapStop>(std::max_element(reasons_.begin(), reasons_.end()) - reasons_.begin()));
 }
 
-void GapFollower::judge(double correction) {
+void GapFollower::judge(const GapObservation& o) {
   if (!known_) return;
-  if (gap(correction) - kTrusted * sigma() < options_.floor) raise(GapStop::too_close);
+  if (gap(o.correction) - kTrusted * sigma() < options_.floor) raise(GapStop::too_close);
   if (std::abs(wanted()) > options_.travel_max + kTrusted * sigma()) raise(GapStop::too_far);
+  judge_proof(o);
+}
+
+/// The part's own dot would have come down with the tool, or risen while the tool waits.
+void GapFollower::judge_proof(const GapObservation& o) {
+  const bool held = wanted() < lowest() - options_.unproved_max / 2 - kTrusted * sigma();
+  if (held && !held_) {
+    held_time_ = o.time;
+    held_path_ = o.path;
+  }
+  held_ = held;
+  if (held && o.time - held_time_ >= options_.blind_time && o.path - held_path_ >= options_.blind_path)
+    raise(GapStop::no_progress);
+}
+
+/// The correction that is proved to be safe.
+double GapFollower::lowest() const {
+  return std::max(-options_.travel_max, proof_.highest() - options_.unproved_max);
 }
 
 /// Rate and acceleration are limited; what is left is taken over within settle_time, and the line's own climb
@@ -181,7 +208,7 @@ GapFollower::Correction GapFollower::advance(double dt, double path, bool follow
   double rate = 0;
   if (follow && known_) {
     const double wanted = options_.aim - predicted_error(path);
-    const double target = std::clamp(wanted, -options_.travel_max, options_.travel_max);
+    const double target = std::clamp(wanted, lowest(), options_.travel_max);
     const double left = target - correction_.value;
     const bool on_line = path > path_ && path < used_path_ + options_.extrapolated_max && wanted == target;
     const double line_rate = on_line ? -slope_ * climb / dt : 0;
@@ -194,6 +221,7 @@ GapFollower::Correction GapFollower::advance(double dt, double path, bool follow
   const double next = correction_.rate + std::clamp(rate - correction_.rate, -change, change);
   correction_.value += 0.5 * (correction_.rate + next) * dt;
   correction_.rate = next;
+  proof_.reach(correction_.value);
   return correction_;
 }
 

@@ -4,13 +4,15 @@
 // decided since (a Smith predictor), and the line gives the gap where the next setpoint will be.
 //
 // Speckle is averaged by a Kalman filter whose noise is that of the readings. What jumps is not followed: a
-// fresh bead or an edge lifts the reading by more than its noise explains. Nothing here allocates or throws.
+// fresh bead or an edge lifts the reading by more than its noise explains. What does not move when the
+// correction does is not believed for long (control/gap_proof.h). Nothing here allocates or throws.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
 #include "control/gap_controller.h"
+#include "control/gap_proof.h"
 
 namespace understudy::control {
 
@@ -19,6 +21,9 @@ struct GapFollowerOptions {
   double rate_max = 0.5e-3;         ///< [m/s], of the correction
   double acceleration_max = 20e-3;  ///< [m/s^2], of the correction: it is smooth
   double travel_max = 0.5e-3;       ///< [m], of the correction: the open-loop error of the paper's machine
+  /// [m], of the correction towards the part until readings show that they follow it: a spot that stands
+  /// still in the picture leads no farther.
+  double unproved_max = 40e-6;
   double settle_time = 0.03;        ///< [s], in which a small step of the estimate is taken over
   double gate = 4;                  ///< standard deviations that a reading may be off
   double unmodelled = 2e-6;         ///< [m], a reading may be off besides: facets and roughness
@@ -35,8 +40,8 @@ struct GapFollowerOptions {
   double floor = 50e-6;             ///< [m], the gap less three sigma must stay above this
 };
 
-/// For a machine: its aim, its speckle, and half of its smallest accepted gap as floor and as the largest
-/// step.
+/// For a machine: its aim, its speckle, half of its smallest accepted gap as floor and as the largest step,
+/// and half of what lies between aim and floor as unproved travel.
 GapFollowerOptions gap_follower_options(const machine::MachineDescription& machine);
 
 /// One reading, brought together with what was commanded in the middle of its exposure.
@@ -46,6 +51,8 @@ struct GapObservation {
   double correction = 0;  ///< [m], in force then
   double gap = 0;         ///< [m], as read
   double sigma = 0;       ///< [m]
+  /// [m], what a spot that stands still in the picture would read here, up to a constant; NaN: it begins anew
+  double still = 0;
 };
 
 enum class GapVerdict { used, jump, repeated, not_yet };
@@ -94,7 +101,9 @@ class GapFollower {
   void correct(double innovation, double variance);
   bool lasting_step(double innovation, double variance);
   void begin(const GapObservation& o);
-  void judge(double correction);
+  void judge(const GapObservation& o);
+  void judge_proof(const GapObservation& o);
+  double lowest() const;
   void raise(GapStop reason) { stop_ = stop_ == GapStop::none ? reason : stop_; }
 
   GapFollowerOptions options_;
@@ -109,6 +118,9 @@ class GapFollower {
   double step_sum_ = 0, step_squares_ = 0;
   double seen_time_ = 0, seen_path_ = 0;  // of the last good reading, or where looking began
   int missed_ = 0;
+  PathProof proof_;
+  double held_time_ = 0, held_path_ = 0;  // since when readings ask for more than is proved
+  bool held_ = false;
   std::array<int, 16> reasons_{};  // of those, by GapStop
   GapStop stop_ = GapStop::none;
   Correction correction_;

@@ -58,6 +58,7 @@ void GapWatch::start_unknown(const Vec3& offset_W) {
   active_ = true;
   measurable_ = false;
   height_known_ = false;
+  still_dot_.reset();
   offset_W_ = reported_W_ = offset_W;
   correction_ = 0;
   filled_ = head_ = 0;
@@ -119,7 +120,8 @@ void GapWatch::remember(const PlannedPoint& point) {
     if (!next.printing) follower_.pass(next.time - last.time, way);
   }
   const double dt = machine_.cycle_time;
-  const auto correction = follower_.advance(dt, next.path, next.printing && measurable_);
+  const auto correction =
+      follower_.advance(dt, next.path, next.printing && measurable_ && following_.stop == GapStop::none);
   correction_ = next.correction = correction.value;
   ring_[head_] = next;
   head_ = (head_ + 1) % ring_.size();
@@ -154,6 +156,7 @@ bool GapWatch::shift(const PlannedPoint& point, Setpoint& ready) {
       raise_stop(GapStop::unreachable,
                  fmt::format("with {:+.3f} mm along the tool's axis {}", to_mm(correction_), limit),
                  passed(0));
+      shift = shift_held_;
     }
     const Vec3 offset_W = offset_W_ + correction_ * tool_axis(point.X_WT);
     if (report_ && point.setpoint.time >= reported_at_ + kReportEvery &&
@@ -260,7 +263,9 @@ void GapWatch::judge(GapLook& look, GapStop seen, const Passed& at) {
     return;
   }
   const double expected = follower_.predicted_gap(at.path, at.correction);
-  switch (follower_.observe({at.time, at.path, at.correction, look.reading.gap, look.reading.sigma})) {
+  const GapObservation seen_there{
+      at.time, at.path, at.correction, look.reading.gap, look.reading.sigma, still_reading(look.dot)};
+  switch (follower_.observe(seen_there)) {
     case GapVerdict::used:
       look.used = true;
       ++following_.used;
@@ -278,6 +283,14 @@ void GapWatch::judge(GapLook& look, GapStop seen, const Passed& at) {
   }
 }
 
+/// What a spot that has not moved in the picture would read on the surface as it is now.
+double GapWatch::still_reading(const vision::DotMeasurement& dot) {
+  GapReading still;
+  if (still_dot_ && read_gap(machine_, surface_, *still_dot_, still)) return still.gap;
+  still_dot_ = dot;
+  return std::nan("");
+}
+
 void GapWatch::raise_follower_stop(const GapLook& look, const Passed& at) {
   const GapStop reason = follower_.stop();
   std::string why;
@@ -287,6 +300,11 @@ void GapWatch::raise_follower_stop(const GapLook& look, const Passed& at) {
   else if (reason == GapStop::too_far && look.used)
     why = fmt::format("the surface lies {:.3f} mm off the programmed one, at most {:.3f} mm are followed",
                       to_mm(-follower_.wanted()), to_mm(options_.travel_max));
+  else if (reason == GapStop::no_progress && look.used)
+    why = fmt::format(
+        "the gap reads {:.3f} mm and has not followed the tool, which may come nearer by {:.3f} mm "
+        "until it does: what shines may not be the dot",
+        to_mm(look.reading.gap), to_mm(options_.unproved_max));
   else
     why = fmt::format("{} looks in {:.2f} s could not be used; the last: {}", follower_.missed(),
                       at.time - follower_.blind_since(), look.why);

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "control/feeder.h"
@@ -74,6 +75,7 @@ class GapWatch : public FeedWatch {
   machine::Status look(const Passed& expected);
   GapStop read(const Passed& expected, GapLook& look, Passed& at);
   void judge(GapLook& look, GapStop seen, const Passed& at);
+  double still_reading(const vision::DotMeasurement& dot);
   void keep(GapLook look);
   void raise_stop(GapStop reason, std::string why, const Passed& at);
   void raise_follower_stop(const GapLook& look, const Passed& at);
@@ -92,6 +94,7 @@ class GapWatch : public FeedWatch {
   Vec3 offset_W_{0, 0, 0};
   double height_at_start_ = 0;  // [m], programmed over the nominal part
   bool height_known_ = false;
+  std::optional<vision::DotMeasurement> still_dot_;  // of an earlier look of this bead
 
   std::vector<Passed> ring_;
   std::size_t head_ = 0, filled_ = 0;

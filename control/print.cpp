@@ -223,7 +223,6 @@ class PrintLoop {
   bool stop_following() {
     GapFollowing& following = watch_->following();
     const double filament = watch_->filament_at(port_.now());
-    static_cast<void>(watch_->release());
     const double retreat = options_.gap.retreat;
     const std::string failed = lift(retreat, filament);
     following.why += failed.empty() ? fmt::format("; retreated by {:.3f} mm", to_mm(retreat))
@@ -239,7 +238,9 @@ class PrintLoop {
   /// Says why not; empty: done.
   std::string lift(double height, double filament) {
     try {
-      if (const Status s = feeder_.abandon(filament); s != Status::ok) return to_string(s);
+      const Status braked = feeder_.abandon(filament);
+      static_cast<void>(watch_->release());  // the tool rests where it was shifted to
+      if (braked != Status::ok) return to_string(braked);
       Step up;
       up.kind = StepKind::travel;
       up.line = last_line_;

@@ -17,14 +17,6 @@ namespace {
 using calibration::ChainCalibration;
 using calibration::ChainParameters;
 
-constexpr double kUnsupported = 4;  // standard scores, as for the hexapod
-
-/// Wilson and Hilferty 1931.
-double standard_score(double chi_square, int degrees) {
-  const double v = 2.0 / (9.0 * degrees);
-  return (std::cbrt(chi_square / degrees) - (1 - v)) / std::sqrt(v);
-}
-
 /// How far every listed parameter of `found` is from `drawn`, in the order of chain_parameter_names().
 std::vector<double> changes(const ChainParameters& drawn, const ChainParameters& found) {
   std::vector<double> values;
@@ -131,12 +123,9 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
   result.chi_square = found.chi_square;
   result.degrees_of_freedom = found.degrees_of_freedom;
   result.iterations = found.iterations;
-  if (found.degrees_of_freedom > 0 &&
-      standard_score(found.chi_square, found.degrees_of_freedom) > kUnsupported)
-    result.warnings.push_back(fmt::format(
-        "residuals are {:.2f} times what the stated noise explains (chi-square {:.1f} for {} degrees of "
-        "freedom): the noise is understated or the model lacks something (outliers, play, bending)",
-        std::sqrt(found.chi_square / found.degrees_of_freedom), found.chi_square, found.degrees_of_freedom));
+  const std::string misfit =
+      calibration::misfit_warning(found.chi_square, found.degrees_of_freedom, "outliers, play, bending");
+  if (!misfit.empty()) result.warnings.push_back(misfit);
   result.tip = tip_map(nominal, result.machine, chain_tip(result.machine, found));
 }
 

@@ -12,7 +12,7 @@ namespace understudy::rehearsal {
 namespace {
 
 constexpr const char* kColours[3] = {"#0072b2", "#d55e00", "#009e73"};
-constexpr int kWidth = 560, kHeight = 300, kLeft = 56, kRight = 12, kTop = 12, kBottom = 40;
+constexpr int kWidth = 560, kHeight = 300, kLeft = 56, kRight = 12, kTop = 24, kBottom = 40;
 
 /// 1, 2 or 5 times a power of ten, so that about five steps fill the range.
 double tick_step(double range) {
@@ -62,7 +62,7 @@ class Plot {
   }
   void key(int place, const char* colour, const std::string& name) {
     out_ += fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\" font-weight=\"600\">{}</text>",
-                        kLeft + 8 + 44 * place, kTop + 14, colour, name);
+                        kLeft + 8 + 44 * place, kTop - 10, colour, name);
   }
   std::string finish() { return out_ + "</svg>"; }
 
@@ -132,7 +132,7 @@ std::string pose_chart(const CalibrateResult& result) {
     for (Eigen::Index i = 0; p.used && i < 3; ++i) all.push_back(to_um(p.after[i]));
   const double top = span_of(all, 1);
   Plot plot(0, static_cast<double>(result.poses.size() + 1), -top, top);
-  plot.y_axis("tip residual, um");
+  plot.y_axis("tip residual, µm");
   plot.x_ticks("pose");
   for (int i = 0; i < 3; ++i) plot.key(i, kColours[i], std::string(1, "xyz"[i]));
   for (std::size_t j = 0; j < result.poses.size(); ++j)
@@ -142,7 +142,7 @@ std::string pose_chart(const CalibrateResult& result) {
       const double v = std::clamp(to_um(p.after[i]), -top, top);
       plot.dot(static_cast<double>(j + 1) + 0.18 * static_cast<double>(i - 1), v,
                p.used ? kColours[i] : "#9aa3ab",
-               fmt::format("line {}, {}: {:.1f} um{}", p.line, "xyz"[i], to_um(p.after[i]),
+               fmt::format("line {}, {}: {:.1f} µm{}", p.line, "xyz"[i], to_um(p.after[i]),
                            p.used ? "" : ", rejected"));
     }
   return plot.finish();
@@ -187,25 +187,40 @@ std::string quantile_chart(const CalibrateResult& result) {
   return plot.finish();
 }
 
+std::string heat_key(double top) {
+  constexpr int kSteps = 40, kStep = 6;
+  std::string out = fmt::format(
+      "<svg viewBox=\"0 0 {} 34\" style=\"width:{}px\" role=\"img\" font-size=\"12\" fill=\"#5a6570\">",
+      kSteps * kStep + 60, kSteps * kStep + 60);
+  for (int i = 0; i < kSteps; ++i)
+    out += fmt::format("<rect x=\"{}\" y=\"2\" width=\"{}\" height=\"12\" fill=\"{}\"/>", 2 + i * kStep,
+                       kStep + 1, heat((i + 0.5) / kSteps));
+  for (int i = 0; i <= 2; ++i)
+    out +=
+        fmt::format("<text x=\"{}\" y=\"29\" text-anchor=\"{}\">{:.3g}{}</text>", 2 + i * kSteps * kStep / 2,
+                    i == 0 ? "start" : "middle", to_um(0.5 * i * top), i == 2 ? " µm" : "");
+  return out + "</svg>";
+}
+
 std::string slice_chart(const TipMap::Slice& slice, double top) {
   const int cell = 380 / std::max(slice.columns, slice.rows);
   const int width = cell * slice.columns, height = cell * slice.rows;
   std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" font-size=\"12\" fill=\"#5a6570\">",
-                                width + 70, height + 48);
+                                width + 70, height + 32);
   for (int row = 0; row < slice.rows; ++row)
     for (int column = 0; column < slice.columns; ++column) {
       const double sigma = slice.sigma[static_cast<std::size_t>(row * slice.columns + column)];
       if (!std::isfinite(sigma)) continue;
       out += fmt::format(
           "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"><title>{} {:.0f}, {} {:.0f} "
-          "mm: {:.1f} um</title></rect>",
+          "mm: {:.1f} µm</title></rect>",
           58 + column * cell, 6 + (slice.rows - 1 - row) * cell, cell, cell, heat(sigma / top), slice.u,
           to_mm(slice.u0 + column * slice.step), slice.v, to_mm(slice.v0 + row * slice.step), to_um(sigma));
     }
   const auto text = [&](int x, int y, const std::string& words, const char* anchor) {
     out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>", x, y, anchor, words);
   };
-  const auto mm = [](double v) { return fmt::format("{:.0f}", to_mm(v)); };
+  const auto mm = [](double v) { return fmt::format("{:.0f}", std::round(to_mm(v)) + 0.0); };  // no -0
   text(58, height + 22, mm(slice.u0), "start");
   text(58 + width / 2, height + 22, fmt::format("{} mm", slice.u), "middle");
   text(58 + width, height + 22, mm(slice.u0 + (slice.columns - 1) * slice.step), "end");

@@ -14,6 +14,8 @@ std::string pose_chart(const CalibrateResult& result);
 std::string spread_chart(const CalibrateResult& result);
 /// Ordered whitened residuals against a normal distribution.
 std::string quantile_chart(const CalibrateResult& result);
+/// The colours of a slice, from 0 to `top` [m].
+std::string heat_key(double top);
 /// Tip uncertainty on one plane of the work space; `top` is the scale's end [m].
 std::string slice_chart(const TipMap::Slice& slice, double top);
 

@@ -38,7 +38,9 @@ std::string warnings(const CalibrateResult& result) {
 }
 
 std::string key_figures(const CalibrateResult& result) {
-  const auto um = [](double v) { return fmt::format("{:.1f} um", to_um(v)); };
+  const auto um = [](double v) {
+    return v < 1e-3 ? fmt::format("{:.1f} µm", to_um(v)) : fmt::format("{:.3f} mm", to_mm(v));
+  };
   return "<dl class=\"key-figures\">" +
          figure("Tip uncertainty left, 1 sigma", um(result.tip.median),
                 "median; worst " + um(result.tip.worst)) +
@@ -62,7 +64,8 @@ std::string residual_section(const CalibrateResult& result) {
          chart(quantile_chart(result),
                "Ordered residuals in units of the stated noise, enlarged for the fitted parameters. On the "
                "line: the "
-               "noise is as stated. Steeper: it is understated. Tails that bend away: outliers.") +
+               "noise is as stated. Steeper: it is understated; flatter: overstated, or alike in all poses. "
+               "Tails that bend away: outliers.") +
          "</div></section>";
 }
 
@@ -76,10 +79,10 @@ std::string tip_section(const CalibrateResult& result) {
       "the "
       "calibrated machine sends it; play, thermal drift and the frame of the measuring device are not in it. "
       "Planes "
-      "through home at home's orientation, pale 0 to deep {:.1f} um; white cannot be reached. The figures "
+      "through home at home's orientation; white cannot be reached. The figures "
       "above are "
-      "over {} poses of the 100 mm cube about home, tilted to 20 degrees.</p><div class=\"pictures\">",
-      to_um(top), result.tip.poses);
+      "over {} poses of the 100 mm cube about home, tilted to 20 degrees.</p>{}<div class=\"pictures\">",
+      result.tip.poses, heat_key(std::max(top, 1e-12)));
   for (const auto& slice : result.tip.slices)
     out += chart(slice_chart(slice, std::max(top, 1e-12)), fmt::format("{}, {} plane", slice.u, slice.v));
   return out + "</div></section>";
@@ -98,7 +101,7 @@ std::string parameter_section(const CalibrateResult& result) {
     out += fmt::format(
         "<tr><td>{}</td><td class=\"number\">{:.4f}</td><td class=\"number\">{:.4f}</td><td "
         "class=\"number\">{:+.4f}</td><td class=\"number\">{:.4f}</td><td>{}</td></tr>",
-        escaped(p.name), p.before, p.after, p.after - p.before, p.sigma, p.unit);
+        escaped(p.name), p.before, p.after, p.after - p.before, p.sigma, p.unit == "um" ? "µm" : p.unit);
   out += "</tbody></table>";
   if (!result.redundant.empty()) {
     out += "<p class=\"note\">Redundant beside these, and left as they are:";

@@ -182,6 +182,8 @@ std::string reasons_text(const EntrantScore& score) {
 }
 
 std::string figures(const CalibrationBenchmark& benchmark, const ConditionScore& c) {
+  std::string name = to_string(c.condition, benchmark.request.from);
+  if (const auto unit = name.find(" um "); unit != std::string::npos) name.replace(unit, 4, " µm ");
   std::string rows;
   for (std::size_t e = 0; e < c.scores.size(); ++e) {
     const EntrantScore& s = c.scores[e];
@@ -200,8 +202,7 @@ std::string figures(const CalibrationBenchmark& benchmark, const ConditionScore&
       "<th class=\"number\">RMS µm</th><th class=\"number\">efficiency</th>"
       "<th class=\"number\">time ms</th><th class=\"number\">failed</th><th>why</th></tr></thead>"
       "<tbody>\n{}</tbody></table></details>\n",
-      to_string(c.condition, benchmark.request.from), um(c.uncalibrated),
-      c.bound > 0 ? fmt::format(", bound {} µm", um(c.bound)) : "",
+      name, um(c.uncalibrated), c.bound > 0 ? fmt::format(", bound {} µm", um(c.bound)) : "",
       c.lost_poses > 0 ? fmt::format(", {} poses not measured", c.lost_poses) : "", rows);
 }
 

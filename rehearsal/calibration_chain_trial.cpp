@@ -8,6 +8,7 @@
 
 #include "calibration/chain_calibration.h"
 #include "core/error.h"
+#include "rehearsal/calibration_chain_exchange.h"
 #include "rehearsal/calibration_disturbance.h"
 #include "rehearsal/calibration_trial.h"
 #include "sim/as_built/as_built.h"
@@ -27,7 +28,7 @@ class ChainTrials : public TrialRoom {
         description_(machine_.chain->kinematics),
         nominal_{description_.chain, {}} {
     for (const Entrant& entrant : setting.entrants)
-      if (entrant.plugin || entrant.name != "chain")
+      if (!entrant.plugin && entrant.name != "chain")
         throw InputError(fmt::format("'{}' calibrates hexapods: of {}, an open chain, the estimator is chain",
                                      entrant.name, machine_.name));
     Random random(setting.seed, "calibration benchmark/held-out readings");
@@ -43,21 +44,38 @@ class ChainTrials : public TrialRoom {
     Trial trial;
     trial.uncalibrated = tip_errors(truth, nominal_);
     trial.bound = bound(truth, exact);
-    const auto start = std::chrono::steady_clock::now();
-    const ChainCalibration found = calibrate_chain(nominal_, measured_samples(condition, machine, exact));
-    Answer answer;
-    answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (found.ok()) {
-      answer.errors = tip_errors(truth, found.parameters);
-      judge(trial.uncalibrated, answer);
-    } else {
-      answer.failure = calibration::to_string(found.status);
+    const std::vector<ChainSample> samples = measured_samples(condition, machine, exact);
+    for (const Entrant& entrant : setting_.entrants) {
+      ChainParameters model;
+      Answer answer = solve(entrant, samples, model);
+      if (answer.ok()) {
+        answer.errors = tip_errors(truth, model);
+        judge(trial.uncalibrated, answer);
+      }
+      trial.answers.push_back(std::move(answer));
     }
-    trial.answers.assign(setting_.entrants.size(), answer);
     return trial;
   }
 
  private:
+  Answer solve(const Entrant& entrant, const std::vector<ChainSample>& samples,
+               ChainParameters& model) const {
+    Answer answer;
+    if (entrant.plugin) {
+      ChainPluginAnswer found =
+          ask_chain_plugin(entrant.name, nominal_, samples, setting_.plugin_limits, answer.seconds);
+      answer.failure = found.failure;
+      model = std::move(found.parameters);
+      return answer;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const ChainCalibration found = calibrate_chain(nominal_, samples);
+    answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!found.ok()) answer.failure = calibration::to_string(found.status);
+    model = found.parameters;
+    return answer;
+  }
+
   Random stream(const char* purpose, const Condition& condition, int machine) const {
     return {setting_.seed, fmt::format("calibration benchmark/{}/{}/{}/{}", purpose, machine, condition.poses,
                                        to_string(condition.disturbance))};

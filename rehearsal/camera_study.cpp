@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "core/interrupt.h"
+#include "core/parallel.h"
 #include "core/units.h"
 #include "vision/stereo_pose.h"
 
@@ -67,16 +69,15 @@ vision::CameraLayers layers_of(const CalibrationRig& designed, int camera, const
 
 }  // namespace
 
-double camera_study(const CameraStudySetting& setting, SightMethod method) {
+double camera_study(const CameraStudySetting& setting, SightMethod method, int threads) {
   const CalibrationRig designed = default_calibration_rig(Vec3(0, 0, 0.1));
   const auto built = built_cameras(designed);
   const Vec3 middle = designed.cameras[0].X_WC * Vec3(0, 0, designed.middle_distance);
   const vision::CalibrationDoubt doubt{
       .boards = setting.boards, .corner_px = setting.pixel, .principal_px = kAxisKnown, .replicas = 0};
-  double squares = 0;
-  for (int d = 0; d < setting.draws; ++d) {
-    stop_if_interrupted();
-    Random random(static_cast<std::uint64_t>(d), "camera study");
+  std::vector<double> squares(static_cast<std::size_t>(setting.draws), 0.0);
+  in_parallel(squares.size(), threads, [&](std::size_t d) {
+    Random random(d, "camera study");
     std::array<vision::CameraLayers, 2> layers;
     for (int i = 0; i < 2; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -88,13 +89,14 @@ double camera_study(const CameraStudySetting& setting, SightMethod method) {
       for (Eigen::Index k = 0; k < 3; ++k) p_W[k] += random.uniform(-25e-3, 25e-3);
       std::array<vision::PixelPoint, 2> pixels;
       for (std::size_t i = 0; i < 2; ++i) pixels[i].pixel = seen(built[i], p_W, setting.pixel, random);
-      squares += (vision::locate(model, pixels).place.point - p_W).squaredNorm();
+      squares[d] += (vision::locate(model, pixels).place.point - p_W).squaredNorm();
     }
-  }
-  return std::sqrt(squares / (setting.draws * setting.points));
+  });
+  const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+  return std::sqrt(sum / (setting.draws * setting.points));
 }
 
-void camera_study_table(int draws, const std::function<void(const std::string&)>& line) {
+void camera_study_table(int draws, int threads, const std::function<void(const std::string&)>& line) {
   line(fmt::format(
       "two cameras, 3D RMS within 25 mm of the middle [um], {} draws of boards and noise (reference)",
       draws));
@@ -103,7 +105,7 @@ void camera_study_table(int draws, const std::function<void(const std::string&)>
   for (const ReferenceRow& row : kReference) {
     std::string text = fmt::format("{:<26}", row.name);
     for (std::size_t m = 0; m < 3; ++m) {
-      const double rms = camera_study({row.pixel, row.boards, draws, 60}, kMethods[m]);
+      const double rms = camera_study({row.pixel, row.boards, draws, 60}, kMethods[m], threads);
       const std::string known = row.expected_um[m] > 0 ? fmt::format("({:g})", row.expected_um[m]) : "";
       text += fmt::format("{:>12.1f} {:>7}", to_um(rms), known);
     }

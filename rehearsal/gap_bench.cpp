@@ -101,6 +101,7 @@ const std::vector<GapCondition>& gap_conditions() {
       {"laser at a quarter", true, true, 0.25, 1, Mischief::none, true},
       {"laser at threefold: saturated", false, true, 3, 1, Mischief::none, true},
       {"beam half hidden", false, true, 1, 1, Mischief::occluded, true},
+      {"a glowing thread, standing still", false, true, 1, 1, Mischief::ghost, false},
       {"a third of the frames stale", false, true, 1, 1, Mischief::stale, false},
       {"a third of the frames lost", false, true, 1, 1, Mischief::lost, false}};
   return conditions;
@@ -123,21 +124,28 @@ sim::MicroscopeOptions optics(const GapCondition& condition) {
 }  // namespace
 
 GapScene::GapScene(const machine::MachineDescription& machine, const GapSurface& on,
-                   const GapCondition& under, std::uint64_t seed)
+                   const GapCondition& under, Since since, std::uint64_t seed)
     : surface(on),
       condition(under),
+      since_(since),
       lit_(lit(machine, under)),
       microscope_(lit_, on.part, seed, optics(under)),
-      random_(seed, "gap benchmark " + on.name + " " + under.name) {}
+      random_(seed, "gap benchmark " + on.name + " " + under.name) {
+  if (since == Since::bead) calm_.emplace(machine, on.part, seed);
+}
 
-Image GapScene::expose(const Pose& X_WT_true, const Region& region) {
+Image GapScene::expose(const Pose& X_WT_true, const Region& region, bool printing) {
+  if (!disturbed(printing)) return calm_->expose(X_WT_true, region, frame_++);
   Image image = microscope_.expose(X_WT_true, region, frame_++);
   if (condition.mischief == Mischief::occluded) occlude(image);
+  if (condition.mischief == Mischief::ghost) glow(image);
   if (condition.mischief == Mischief::lost && random_.uniform() < kOften) image.pixels.clear();
   return image;
 }
 
-bool GapScene::repeats() { return condition.mischief == Mischief::stale && random_.uniform() < kOften; }
+bool GapScene::repeats(bool printing) {
+  return disturbed(printing) && condition.mischief == Mischief::stale && random_.uniform() < kOften;
+}
 
 /// A thread of plastic that hangs from the nozzle: on the sensor it stands still, over where the dot lies at
 /// the aim.
@@ -151,6 +159,24 @@ void GapScene::occlude(Image& image) const {
       if (image.region.x + x > edge && image.region.x + x < edge + 30)
         image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) +
                      static_cast<std::size_t>(x)] = level;
+}
+
+/// A thread that lies in the beam and glows instead of the part, a little beside where the dot lies at the
+/// aim; it flickers as speckle does (reference D: 0.30 to 0.46 px).
+void GapScene::glow(Image& image) {
+  constexpr double kBeside = 40e-6, kFlicker = 0.35, kRadius = 5;  // [m] of gap, [px], [px]
+  const auto at = microscope_.true_dot(along(surface.X_WT_S, 0, kBeside));
+  if (!at) return;
+  const Vec2 centre = *at + kFlicker * Vec2(random_.normal(), random_.normal());
+  const double noise = 255 / lit_.microscope.full_well * lit_.microscope.read_noise;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const double r2 = (Vec2(image.region.x + x, image.region.y + y) - centre).squaredNorm();
+      const double level = lit_.microscope.ambient_level + noise * random_.normal() +
+                           lit_.laser.peak_level * std::exp(-2 * r2 / (kRadius * kRadius));
+      image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) +
+                   static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(std::clamp(level, 0.0, 255.0));
+    }
 }
 
 double GapScene::true_gap(const Pose& X_WT_true) const {
@@ -200,8 +226,9 @@ class ErringMachine {
     return o;
   }
   bool draw(const machine::AxisState& state, const Region& region, Image& image) {
-    image = scene_.expose(truth(state.position), region);
-    port_.repeat_frames(scene_.repeats());
+    const bool printing = !port_.history().empty() && port_.history().back().filament > 0;
+    image = scene_.expose(truth(state.position), region, printing);
+    port_.repeat_frames(scene_.repeats(printing));
     return !image.pixels.empty();
   }
 
@@ -247,7 +274,7 @@ GapTrial run_gap_trial(const machine::MachineDescription& machine, GapScene& sce
   for (std::size_t i = 0; i < history.size(); i += kEvery) {
     const double gap = to_mm(scene.true_gap(erring.truth(history[i].position)));
     if (std::isfinite(gap)) trial.gap_min_mm = std::min(trial.gap_min_mm, gap);
-    if (history[i].filament > filament) trial.bead_gaps_mm.push_back(gap);
+    if (history[i].filament > filament && std::isfinite(gap)) trial.bead_gaps_mm.push_back(gap);
     filament = std::max(filament, history[i].filament);
   }
   trial.last_gap_mm = to_mm(scene.true_gap(erring.truth(erring.port().state().position)));

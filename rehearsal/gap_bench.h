@@ -23,7 +23,7 @@ struct GapSurface {
   Pose X_WT_S = Pose::Identity();
 };
 
-enum class Mischief { none, occluded, stale, lost };
+enum class Mischief { none, occluded, ghost, stale, lost };
 
 struct GapCondition {
   std::string name;
@@ -38,25 +38,32 @@ struct GapCondition {
 std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine, const std::string& program);
 const std::vector<GapCondition>& gap_conditions();
 
+/// From when on the condition holds; before, the light is good.
+enum class Since { always, bead };
+
 /// The microscope of one surface and condition. Use from the thread that made it.
 class GapScene {
  public:
   GapScene(const machine::MachineDescription& machine, const GapSurface& surface,
-           const GapCondition& condition, std::uint64_t seed);
+           const GapCondition& condition, Since since, std::uint64_t seed);
 
   /// Empty: the frame is lost.
-  Image expose(const Pose& X_WT_true, const Region& region);
+  Image expose(const Pose& X_WT_true, const Region& region, bool printing = false);
   double true_gap(const Pose& X_WT_true) const;
-  bool repeats();  ///< the next frame is the last one again
+  bool repeats(bool printing);  ///< the next frame is the last one again
 
   const GapSurface& surface;
   const GapCondition& condition;
 
  private:
+  bool disturbed(bool printing) const { return since_ == Since::always || printing; }
   void occlude(Image& image) const;
+  void glow(Image& image);
 
+  Since since_;
   machine::MachineDescription lit_;
   sim::Microscope microscope_;
+  std::optional<sim::Microscope> calm_;  // the same part in good light
   Random random_;
   std::uint64_t frame_ = 0;
 };

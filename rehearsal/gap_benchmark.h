@@ -57,6 +57,11 @@ struct FollowingRow {
   std::map<std::string, int> stops;
 };
 
+/// The gap at one place of the path, over all machines.
+struct GapStation {
+  double p05_mm = 0, median_mm = 0, p95_mm = 0;
+};
+
 /// One mode of gap control on the bottle, over all machines.
 struct BottleRow {
   std::string mode;
@@ -65,6 +70,7 @@ struct BottleRow {
   double in_band_worst = 0;                              ///< of a machine that printed
   double gap_p01_mm = 0, gap_median_mm = 0, gap_p99_mm = 0;
   std::map<std::string, int> stops;
+  std::vector<GapStation> along;  ///< evenly, of those machines that printed to the end
 };
 
 struct GapBenchmark {

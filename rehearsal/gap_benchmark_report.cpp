@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "rehearsal/gap_benchmark.h"
+#include "rehearsal/gap_benchmark_charts.h"
+#include "rehearsal/html_text.h"
 #include "rehearsal/page_parts.h"
 #include "rehearsal/summary_value.h"
 #include "rehearsal/version.h"
@@ -23,15 +25,19 @@ Json spread_value(const Spread& spread) {
 
 Json detectors_value(const GapBenchmark& b) {
   Json rows = Json::array();
-  for (const DetectorRow& r : b.detectors)
-    rows.push_back({{"surface", r.surface},
-                    {"condition", r.condition},
-                    {"detector", r.detector},
-                    {"frames", r.frames},
-                    {"missed", r.missed},
-                    {"bias_um", number(r.bias_um)},
-                    {"sigma_um", number(r.sigma_um)},
-                    {"p95_um", number(r.p95_um)}});
+  for (const DetectorRow& r : b.detectors) {
+    Json row{{"surface", r.surface},
+             {"condition", r.condition},
+             {"detector", r.detector},
+             {"frames", r.frames},
+             {"missed", r.missed}};
+    if (r.frames > r.missed) {
+      row["bias_um"] = number(r.bias_um);
+      row["sigma_um"] = number(r.sigma_um);
+      row["p95_um"] = number(r.p95_um);
+    }
+    rows.push_back(std::move(row));
+  }
   return rows;
 }
 
@@ -66,6 +72,17 @@ Json followings_value(const GapBenchmark& b) {
   return rows;
 }
 
+/// Columns, from the line's beginning to its end.
+Json along_value(const std::vector<GapStation>& along) {
+  Json low = Json::array(), median = Json::array(), high = Json::array();
+  for (const GapStation& station : along) {
+    low.push_back(number(station.p05_mm));
+    median.push_back(number(station.median_mm));
+    high.push_back(number(station.p95_mm));
+  }
+  return {{"p05_mm", low}, {"median_mm", median}, {"p95_mm", high}};
+}
+
 Json bottle_value(const GapBenchmark& b) {
   Json rows = Json::array();
   for (const BottleRow& r : b.bottle) {
@@ -76,6 +93,7 @@ Json bottle_value(const GapBenchmark& b) {
       row["in_band_worst"] = number(r.in_band_worst);
       row["gap_mm"] = {
           {"p01", number(r.gap_p01_mm)}, {"median", number(r.gap_median_mm)}, {"p99", number(r.gap_p99_mm)}};
+      row["along"] = along_value(r.along);
     }
     rows.push_back(std::move(row));
   }
@@ -107,9 +125,12 @@ WordTable detector_table(const GapBenchmark& b) {
       {"surface", "condition", "detector", "frames", "missed", "bias um", "sigma um", "95 % um"},
       3,
       {}};
-  for (const DetectorRow& r : b.detectors)
+  for (const DetectorRow& r : b.detectors) {
+    const bool seen = r.frames > r.missed;
     t.rows.push_back({r.surface, r.condition, r.detector, std::to_string(r.frames), std::to_string(r.missed),
-                      digits(r.bias_um, 1), digits(r.sigma_um, 1), digits(r.p95_um, 1)});
+                      seen ? digits(r.bias_um, 1) : "", seen ? digits(r.sigma_um, 1) : "",
+                      seen ? digits(r.p95_um, 1) : ""});
+  }
   return t;
 }
 
@@ -196,67 +217,19 @@ std::string plain(const WordTable& t) {
   return text;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '<'   ? "&lt;"
-           : c == '>' ? "&gt;"
-           : c == '&' ? "&amp;"
-           : c == '"' ? "&quot;"
-                      : std::string(1, c);
-  return out;
-}
-
 std::string as_html(const WordTable& t) {
   std::string html = fmt::format("<section><h2>{}</h2><p class=\"note\">{}</p><table><thead><tr>",
-                                 escaped(t.title), escaped(t.note));
+                                 html_text(t.title), html_text(t.note));
   for (std::size_t c = 0; c < t.head.size(); ++c)
-    html += fmt::format("<th{}>{}</th>", is_words(t, c) ? "" : " class=\"number\"", escaped(t.head[c]));
+    html += fmt::format("<th{}>{}</th>", is_words(t, c) ? "" : " class=\"number\"", html_text(t.head[c]));
   html += "</tr></thead><tbody>\n";
   for (const auto& row : t.rows) {
     html += "<tr>";
     for (std::size_t c = 0; c < row.size(); ++c)
-      html += fmt::format("<td{}>{}</td>", is_words(t, c) ? "" : " class=\"number\"", escaped(row[c]));
+      html += fmt::format("<td{}>{}</td>", is_words(t, c) ? "" : " class=\"number\"", html_text(row[c]));
     html += "</tr>\n";
   }
   return html + "</tbody></table></section>\n";
-}
-
-struct Bar {
-  std::string name;
-  double value = 0;
-  bool marked = false;
-};
-
-/// Horizontal bars with their numbers, as SVG.
-std::string bars(const std::string& title, const std::string& unit, const std::vector<Bar>& all) {
-  if (all.empty()) return "";
-  double most = 1e-9;
-  for (const Bar& bar : all) most = std::max(most, bar.value);
-  constexpr int kRow = 20, kLeft = 330, kWide = 560;
-  std::string svg = fmt::format(
-      "<section><h2>{}</h2><svg role=\"img\" viewBox=\"0 0 1060 {}\" width=\"100%\" font-size=\"12\">\n",
-      escaped(title), kRow * static_cast<int>(all.size()) + 6);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const int y = kRow * static_cast<int>(i);
-    const double wide = kWide * all[i].value / most;
-    svg += fmt::format(
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text><rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" "
-        "height=\"14\" fill=\"{}\"/><text x=\"{:.1f}\" y=\"{}\">{:.1f} {}</text>\n",
-        kLeft - 8, y + 14, escaped(all[i].name), kLeft, y + 3, wide, all[i].marked ? "#a33b00" : "#005b8f",
-        kLeft + wide + 6, y + 14, all[i].value, escaped(unit));
-  }
-  return svg + "</svg></section>\n";
-}
-
-std::string charts(const GapBenchmark& b) {
-  std::vector<Bar> kept, sigma;
-  for (const BottleRow& r : b.bottle) kept.push_back({r.mode, 100 * r.in_band_fraction, r.touched > 0});
-  for (const DetectorRow& r : b.detectors)
-    if (r.condition == "speckle")
-      sigma.push_back({r.surface + ", " + r.detector, r.sigma_um, r.detector != "centroid"});
-  return bars("Path in the band, all machines (red: some touched)", "%", kept) +
-         bars("Scatter of a frame with speckle (red: Gaussian fit)", "um", sigma);
 }
 
 }  // namespace
@@ -292,9 +265,9 @@ std::string gap_benchmark_html(const GapBenchmark& b) {
   html += fmt::format(
       "</style></head><body><main><p class=\"eyebrow\">understudy {}</p><h1>Gap benchmark: {}</h1>\n"
       "<p class=\"note\">Aim {:.3f} mm, accepted {:.2f} to {:.2f} mm, seed {}. <code>{}</code></p>\n",
-      escaped(kVersion), escaped(b.request.machine), b.aim_mm, b.band_min_mm, b.band_max_mm, b.request.seed,
-      escaped(b.request.command));
-  html += charts(b);
+      html_text(kVersion), html_text(b.request.machine), b.aim_mm, b.band_min_mm, b.band_max_mm,
+      b.request.seed, html_text(b.request.command));
+  html += gap_benchmark_charts(b);
   for (const WordTable& table : tables_of(b)) html += as_html(table);
   return html + "</main></body></html>\n";
 }

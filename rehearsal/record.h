@@ -43,6 +43,13 @@ struct GapFigures {
   double start_mm = 0, path_min_mm = 0, path_mean_mm = 0, path_max_mm = 0, in_band_fraction = 0;
   int frames = 0;
 };
+/// One twin driven by two descriptions, without gap control.
+struct CalibrationFigures {
+  std::string machine_before, machine_after;
+  std::string not_run_before;  ///< why the description before could not run the program
+  std::optional<AccuracyFigures> before;
+  AccuracyFigures after;
+};
 struct CollisionFigures {
   double min_clearance_mm = 0;
   std::uint64_t checks = 0;
@@ -69,6 +76,7 @@ struct Provenance {
   std::uint64_t seed = 0;
   std::string as_built, command;
   std::vector<std::string> faults = {};  ///< what was made to go wrong, in words
+  std::string machine_before_sha256 = {};
 };
 
 /// A strand in air as the report lists it.
@@ -115,6 +123,7 @@ struct Record {
 
   std::optional<PrintFigures> print;
   std::optional<AccuracyFigures> accuracy;
+  std::optional<CalibrationFigures> calibration;  ///< where a machine before its calibration was asked for
   std::optional<GapFigures> gap;
   std::optional<SagFigures> sag;
   std::optional<CollisionFigures> collision;
@@ -128,11 +137,12 @@ struct Record {
   std::vector<TracePoint> trace;
   int trace_stride = 1;                               ///< snapshots a point of the trace
   std::vector<TracePoint> trace_without_gap_control;  ///< empty when the run itself had none
+  std::vector<TracePoint> trace_before_calibration;   ///< without gap control, too
   std::vector<FrameRecord> frames;
   std::vector<std::array<double, 2>> profile;  ///< position [mm], height [um] along the chosen line
   std::string profile_note, deviation_note;    ///< in words
-  std::vector<StrandRow> strands;           ///< those that sag most first
-  std::vector<renderer::Picture> pictures;  ///< overview, close-up
+  std::vector<StrandRow> strands;              ///< those that sag most first
+  std::vector<renderer::Picture> pictures;     ///< overview, close-up
   std::vector<std::string> picture_captions;
 };
 

@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <filesystem>
+#include <functional>
 #include <map>
-#include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "control/constraint_check.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/parallel.h"
 #include "core/units.h"
+#include "rehearsal/before_calibration.h"
 #include "rehearsal/findings.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/pictures.h"
@@ -53,9 +53,8 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   gcode.c_sign = dialect.c_sign;
   if (dialect.coordinates.empty()) return gcode;
   using Coordinates = toolpath::RotaryWords::Coordinates;
-  const std::map<std::string, Coordinates> words{{"tip", Coordinates::tip},
-                                                 {"machine", Coordinates::machine},
-                                                 {"crossing", Coordinates::crossing}};
+  const std::map<std::string, Coordinates> words{
+      {"tip", Coordinates::tip}, {"machine", Coordinates::machine}, {"crossing", Coordinates::crossing}};
   const auto word = words.find(dialect.coordinates);
   if (word == words.end())
     throw InputError("coordinates '" + dialect.coordinates + "': one of tip, machine, crossing");
@@ -171,34 +170,31 @@ void fill_figures(const TwinRun& run, const TwinRun* without, const machine::Mac
   record.gap = gap_of(run, without, machine);
 }
 
-/// Both runs at once: they share nothing that changes.
+/// All at once: they share nothing that changes.
 struct Runs {
   TwinRun main;
-  std::optional<TwinRun> without;
+  std::optional<TwinRun> open_loop;  ///< where the main run has gap control
+  std::optional<TwinRun> before;     ///< open-loop, driven by the description before its calibration
+  const TwinRun* without() const { return open_loop ? &*open_loop : nullptr; }
 };
 
-Runs run_both(const Stage& stage, control::GapControl mode, bool compare, const Progress& progress) {
+Runs run_all(const Stage& stage, control::GapControl mode, bool compare, const Stage* before,
+             const Progress& progress) {
   Runs runs;
-  std::exception_ptr failure;
-  std::thread companion;
-  if (compare && mode != control::GapControl::off) {
-    companion = std::thread([&] {
-      try {
-        runs.without = run_twin(stage, {control::GapControl::off, false}, {});
-      } catch (...) {
-        failure = std::current_exception();
-      }
-    });
-  }
-  try {
-    runs.main = run_twin(stage, {mode, true}, progress);
-  } catch (...) {
-    if (companion.joinable()) companion.join();
-    throw;
-  }
-  if (companion.joinable()) companion.join();
-  if (failure) std::rethrow_exception(failure);
+  const RunOptions open_loop{control::GapControl::off, false};
+  std::vector<std::function<void()>> jobs{[&] { runs.main = run_twin(stage, {mode, true}, progress); }};
+  if (compare && mode != control::GapControl::off)
+    jobs.emplace_back([&] { runs.open_loop = run_twin(stage, open_loop, {}); });
+  if (before) jobs.emplace_back([&] { runs.before = run_twin(*before, open_loop, {}); });
+  in_parallel(jobs.size(), static_cast<int>(jobs.size()), [&](std::size_t n) { jobs[n](); });
   return runs;
+}
+
+void fill_comparison(const BeforeCalibration& before, const Runs& runs, Record& record) {
+  const TwinRun* before_run = runs.before ? &*runs.before : nullptr;
+  record.calibration = compare_calibrations(before, before_run, runs.open_loop ? *runs.open_loop : runs.main);
+  record.provenance.machine_before_sha256 = before.stage.machine.sha256;
+  if (before_run) record.trace_before_calibration = before_run->trace;
 }
 
 bool any_error(const std::vector<Finding>& findings) {
@@ -214,6 +210,8 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   };
   report(0, "reading");
   const Stage stage = prepare(request);
+  std::optional<BeforeCalibration> before;
+  if (!request.before.empty()) before = before_calibration(stage, request.before, request.machine);
   const SurfaceTask surface = prepare_surface(request.surface);
   const control::GapControl mode = gap_control_of(request.gap_control, stage.machine);
   Record record = describe_run(request, stage, mode);
@@ -224,10 +222,12 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   record.findings = findings_of(constraints);
   if (!any_error(record.findings)) {
     const Runs runs =
-        run_both(stage, mode, request.compare_without_gap_control,
-                 [&](double share, const std::string& what) { report(0.05 + 0.85 * share, what); });
-    const TwinRun* without = runs.without ? &*runs.without : nullptr;
+        run_all(stage, mode, request.compare_without_gap_control || before,
+                before && before->not_run.empty() ? &before->stage : nullptr,
+                [&](double share, const std::string& what) { report(0.05 + 0.85 * share, what); });
+    const TwinRun* without = runs.without();
     fill_figures(runs.main, without, stage.machine, record);
+    if (before) fill_comparison(*before, runs, record);
     auto findings = findings_of(runs.main, stage, mode);
     record.findings.insert(record.findings.end(), findings.begin(), findings.end());
     record.trace = runs.main.trace;

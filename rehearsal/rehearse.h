@@ -23,21 +23,22 @@ struct DialectRequest {
 
 /// What is asked about the surface as printed (docs/surface.md).
 struct SurfaceRequest {
-  std::string as_printed;                    ///< .stl or .ply to write; empty: none
-  std::string intended;                      ///< STL that the print was to become, or a name under models/parts
-  std::vector<double> profile_mm;            ///< line from, to: six numbers in W; empty: none
-  std::vector<double> probe{0, 0, -1};       ///< direction in which the line looks for the surface
+  std::string as_printed;               ///< .stl or .ply to write; empty: none
+  std::string intended;                 ///< STL that the print was to become, or a name under models/parts
+  std::vector<double> profile_mm;       ///< line from, to: six numbers in W; empty: none
+  std::vector<double> probe{0, 0, -1};  ///< direction in which the line looks for the surface
 };
 
 struct RehearsalRequest {
   std::string program;              ///< path of a G-code file
   std::string machine = "hexapod";  ///< name or path
+  std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
   std::string engine = "mujoco";
   std::string fixture;               ///< STL path, a name under models/parts, or empty: only the table
   std::string material;              ///< name or path; empty: the machine's
   std::string as_built = "sampled";  ///< nominal, sampled, manufactured
   std::uint64_t seed = 1;
-  std::string gap_control;           ///< off, start, continuous; empty: start on a machine that sees, else off
+  std::string gap_control;  ///< off, start, continuous; empty: start on a machine that sees, else off
   std::vector<FaultRequest> faults;  ///< what goes wrong on the way
   DialectRequest dialect;
   SurfaceRequest surface;

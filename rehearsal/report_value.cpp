@@ -127,7 +127,8 @@ Json strands_value(const std::vector<StrandRow>& strands) {
   return rows;
 }
 
-constexpr std::size_t kFramesShown = 60;  // more come from following a path: those with pictures stand for them
+constexpr std::size_t kFramesShown =
+    60;  // more come from following a path: those with pictures stand for them
 
 Json profile_value(const Record& record) {
   Json object;
@@ -157,6 +158,8 @@ Json report_value(const Record& record) {
   if (!record.trace.empty()) report["trace"] = trace_value(record.trace, record);
   if (!record.trace_without_gap_control.empty())
     report["trace_without_gap_control"] = trace_value(record.trace_without_gap_control, record);
+  if (!record.trace_before_calibration.empty())
+    report["trace_before_calibration"] = trace_value(record.trace_before_calibration, record);
   if (record.trace_stride > 1) report["trace_stride"] = record.trace_stride;
   if (!record.strands.empty()) report["strands"] = strands_value(record.strands);
   if (!record.profile.empty()) report["profile"] = profile_value(record);

@@ -48,6 +48,22 @@ Json accuracy_value(const AccuracyFigures& accuracy) {
   return object;
 }
 
+Json calibration_value(const CalibrationFigures& calibration) {
+  Json object;
+  object["machine_before"] = calibration.machine_before;
+  object["machine_after"] = calibration.machine_after;
+  if (!calibration.not_run_before.empty()) object["not_run_before"] = calibration.not_run_before;
+  const auto pair = [&](const std::string& name, const std::string& unit, double AccuracyFigures::*figure) {
+    if (calibration.before) put(object, (name + "_before_" + unit).c_str(), *calibration.before.*figure);
+    put(object, (name + "_after_" + unit).c_str(), calibration.after.*figure);
+  };
+  pair("tip_rms", "um", &AccuracyFigures::tip_rms_um);
+  pair("tip_p95", "um", &AccuracyFigures::tip_p95_um);
+  pair("tip_max", "um", &AccuracyFigures::tip_max_um);
+  pair("orientation_max", "mrad", &AccuracyFigures::orientation_max_mrad);
+  return object;
+}
+
 Json gap_value(const GapFigures& gap) {
   Json object;
   put(object, "commanded_mm", gap.commanded_mm);
@@ -100,6 +116,8 @@ Json provenance_value(const Provenance& provenance) {
   Json object;
   object["version"] = provenance.version;
   object["machine_sha256"] = provenance.machine_sha256;
+  if (!provenance.machine_before_sha256.empty())
+    object["machine_before_sha256"] = provenance.machine_before_sha256;
   object["program_sha256"] = provenance.program_sha256;
   object["seed"] = provenance.seed;
   object["as_built"] = provenance.as_built;
@@ -129,6 +147,7 @@ Json summary_value(const Record& record) {
   for (const Finding& finding : record.findings) summary["findings"].push_back(finding_value(finding));
   if (record.print) summary["print"] = print_value(*record.print);
   if (record.accuracy) summary["accuracy"] = accuracy_value(*record.accuracy);
+  if (record.calibration) summary["calibration"] = calibration_value(*record.calibration);
   if (record.gap) summary["gap"] = gap_value(*record.gap);
   if (record.sag) summary["sag"] = sag_value(*record.sag);
   if (record.collision) summary["collision"] = collision_value(*record.collision);

@@ -30,8 +30,8 @@ Vec3 PathPoint::foot_W() const {
 bool BeadBuilder::goes_on(const PathPoint& a, const PathPoint& b, Adhesion adhesion, double volume) const {
   const LaidBead& bead = element_->bead;
   if (!may_grow_ || bead.adhesion != adhesion) return false;
-  if (bead.length < kElementLength) return true;
   if (bead.length > kLongest) return false;
+  if (heading_.isZero()) return true;
   const Vec3 reach = b.foot_W() - bead.from_W;
   if ((reach - reach.dot(heading_) * heading_).norm() > kStraight) return false;
   const double piece = (b.foot_W() - a.foot_W()).norm();
@@ -56,6 +56,7 @@ void BeadBuilder::begin(const PathPoint& at, Adhesion adhesion, int line) {
   e.worst_gap = at.gap;
   element_ = e;
   moment_ = 0;
+  heading_.setZero();
   may_grow_ = true;
 }
 
@@ -71,7 +72,6 @@ void BeadBuilder::extrude(const PathPoint& a, const PathPoint& b, Adhesion adhes
 void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double length, double volume, int line) {
   Element& e = *element_;
   LaidBead& bead = e.bead;
-  const bool was_short = bead.length < kElementLength;
   bead.to_W = b.foot_W();
   e.tip_to_W = b.tip_W;
   bead.normal_W = b.axis_W;
@@ -84,7 +84,8 @@ void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double length, do
   bead.gap = bead.length > 0 ? moment_ / bead.length : b.gap;
   const auto [low, high] = std::minmax(a.gap, b.gap);
   e.worst_gap = bead.adhesion == Adhesion::buried ? std::min(e.worst_gap, low) : std::max(e.worst_gap, high);
-  if (was_short && bead.length >= kElementLength) heading_ = (bead.to_W - bead.from_W).normalized();
+  const Vec3 way = bead.to_W - bead.from_W;
+  if (heading_.isZero() && way.norm() >= kElementLength) heading_ = way.normalized();
 }
 
 // Width and height from the volume, once it is known.
@@ -93,6 +94,9 @@ void BeadBuilder::settle_section() {
   const double gap = bead.adhesion == Adhesion::fused ? fused_height_ : bead.gap;
   const bool pressed =
       bead.adhesion != Adhesion::loose && bead.adhesion != Adhesion::buried && std::isfinite(gap) && gap > 0;
+  // The net way: what the tip trembles to and fro draws nothing out.
+  bead.length = (bead.to_W - bead.from_W).norm();
+  bead.path = (element_->tip_to_W - element_->tip_from_W).norm();
   if (bead.length > 0) {
     // Where the ground falls away the surface's way is longer than what was drawn out.
     const double area = bead.volume / std::min(bead.length, kSteepest * bead.path);

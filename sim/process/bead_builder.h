@@ -53,7 +53,7 @@ class BeadBuilder {
   std::optional<Element> element_;
   double fused_height_ = 0;
   double moment_ = 0;        // integral of the gap over the length
-  Vec3 heading_{0, 0, 0};    // of the first tenth of a millimetre
+  Vec3 heading_{0, 0, 0};    // of the first tenth of a millimetre, zero until then
   bool may_grow_ = false;    // false: extrusion paused
   bool continuous_ = false;  // nothing but extrusion since the last element's end
   double idle_path_ = 0;     // [m] since then

@@ -39,12 +39,16 @@ TEST(BenchmarkCommand, WritesFiguresAndAPageAndRanksTheEntrants) {
 
 TEST(BenchmarkCommand, NothingIsLeftWhereItIsInterrupted) {
   const Folder folder;
-  const Outcome outcome = understudy_interrupted(
-      "benchmark calibration --trials 1 --estimators whitened --plugin 'sleep 9' --out " + (folder / "out"),
-      0.7);
+  Outcome outcome;
+  for (const double seconds : {0.7, 2.5, 7.0}) {
+    outcome = understudy_interrupted(
+        "benchmark calibration --trials 1 --estimators whitened --plugin 'sleep 9' --out " + (folder / "out"),
+        seconds);
+    EXPECT_EQ(folder.entries(), 0);
+    if (outcome.status != 130) break;  // before main() could say what a signal means
+  }
   EXPECT_EQ(outcome.status, 3);
   EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
-  EXPECT_EQ(folder.entries(), 0);
 }
 
 TEST(BenchmarkCommand, RefusesBadInputInOneLineAndWritesNothing) {
@@ -63,7 +67,7 @@ TEST(BenchmarkCommand, RefusesBadInputInOneLineAndWritesNothing) {
   refused("--poses 0", "outside 1..1000");
   refused("--trials 0", "outside 1..100000");
   refused("--from camera", "poses pixels");
-  refused("--machine arm --plugin true", "calibrates hexapods");
+  refused("--machine arm --estimators whitened", "calibrates hexapods");
   refused("--machine arm --from pixels", "hexapod's platform");
   EXPECT_EQ(folder.entries(), 0);
 }

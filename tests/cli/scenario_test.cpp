@@ -73,6 +73,12 @@ TEST(SlowScenarioRun, AConformalFinishIsATenthOfTheStaircase) {
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
 }
 
+// Ishak 2018: struts of 5 mm in the air.
+TEST(SlowScenarioRun, ALatticeOfFiveMillimetresStands) {
+  const Outcome outcome = understudy("scenario run " + kSource + "/scenarios/lattice-box.yaml");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
 TEST(ScenarioList, NamesTheShippedScenarios) {
   const Outcome outcome = understudy("scenario list " + kSource + "/scenarios");
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -155,7 +155,14 @@ TEST_F(Calibrate, WarnsWhereTheStatedNoiseDoesNotExplainTheResiduals) {
   });
   const CalibrateResult result = calibrate(request);
   ASSERT_EQ(result.warnings.size(), 1u);
-  EXPECT_THAT(result.warnings.front(), HasSubstr("times what the stated noise explains"));
+  EXPECT_THAT(result.warnings.front(), HasSubstr("the noise is understated"));
+  // What cameras err alike in all poses is in their covariance, and in no residual.
+  request.measurements = table("hexapod", 5, 24, [](Measurements& m) {
+    for (MeasuredPose& pose : m.poses) pose.covariance *= 9;
+  });
+  const CalibrateResult loose = calibrate(request);
+  ASSERT_EQ(loose.warnings.size(), 1u);
+  EXPECT_THAT(loose.warnings.front(), HasSubstr("the same in all poses"));
 }
 
 TEST_F(Calibrate, RejectsAWrongPoseAndSaysWhichLineItWas) {

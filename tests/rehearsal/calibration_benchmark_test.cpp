@@ -191,9 +191,9 @@ TEST(CalibrationBenchmark, RefusesWhatAMachineCannotHave) {
   request.disturbances = {Disturbance::deviation};
   EXPECT_THAT(message(request), HasSubstr("no screw struts"));
   request.disturbances = {Disturbance::none};
-  request.plugins = {"true"};
+  request.estimators = {"whitened"};
   EXPECT_THAT(message(request), HasSubstr("calibrates hexapods"));
-  request.plugins = {};
+  request.estimators = {};
   request.from = MeasuredFrom::pixels;
   EXPECT_THAT(message(request), HasSubstr("hexapod's platform"));
 }

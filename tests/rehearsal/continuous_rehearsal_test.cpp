@@ -40,6 +40,16 @@ TEST(SlowContinuousRehearsal, KeepsTheGapWhereTheStartAloneLosesIt) {
   }
 }
 
+TEST(SlowContinuousRehearsal, KeepsTheGapOnTheMujocoEngineToo) {
+  RehearsalRequest request = bottle("continuous");
+  request.engine = "mujoco";
+  const Record record = rehearse(request);
+  ASSERT_TRUE(record.gap);
+  EXPECT_TRUE(record.go);
+  EXPECT_GE(record.gap->in_band_fraction, 0.99);
+  for (const TracePoint& p : record.trace) ASSERT_GT(p.gap, 0.05e-3) << "at " << p.time;
+}
+
 TEST(ContinuousRehearsal, AMachineWithoutAMicroscopeIsToldSo) {
   RehearsalRequest request = bottle("continuous");
   request.machine = "finishing";

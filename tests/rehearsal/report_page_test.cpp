@@ -92,6 +92,27 @@ TEST_F(SlowReportPage, WithoutASimulationThereIsNothingDrawn) {
   EXPECT_EQ(count(page, "class=\"severity error\""), 2u);
 }
 
+TEST_F(SlowReportPage, ACalibrationHasItsTableAndItsChart) {
+  Record record = sample_go();
+  record.calibration = CalibrationFigures{"hexapod", "m.yaml", "", AccuracyFigures{4000, 5000, 6000, 7, 0},
+                                          AccuracyFigures{40, 50, 60, 0.7, 0}};
+  record.trace_before_calibration = record.trace_without_gap_control;
+  const std::string page = drawn(record);
+  EXPECT_EQ(count(page, "Tip error before and after calibration"), 1u);
+  EXPECT_EQ(count(page, "class=\"comparison\""), 1u);
+  EXPECT_EQ(count(page, "class=\"chart\""), 4u);
+  EXPECT_NE(page.find(">before, hexapod<"), std::string::npos);
+  EXPECT_NE(page.find(">100<"), std::string::npos);  // 4000 / 40
+  for (const char* text : {"NaN", "undefined", "Infinity"})
+    EXPECT_EQ(page.find(text), std::string::npos) << text;
+  record.trace_before_calibration.clear();
+  record.calibration->before.reset();
+  record.calibration->not_run_before = "strut 3 is 241.7 mm, longer than 240.0 mm";
+  const std::string without = drawn(record);
+  EXPECT_EQ(count(without, "class=\"comparison\""), 0u);
+  EXPECT_NE(without.find("Not compared: with the description before, hexapod"), std::string::npos);
+}
+
 TEST_F(SlowReportPage, MarkupInMessagesIsShownAsText) {
   Record record = sample_stopped_by_constraints();
   record.findings[0].message = "<img src=x onerror=\"document.title='owned'\"></script><b>";

@@ -52,6 +52,23 @@ TEST(SummaryJson, LeavesOutWhatIsAbsent) {
   EXPECT_FALSE(Json::parse(summary_json(record))["findings"][0].contains("gcode_line"));
 }
 
+TEST(SummaryJson, TellsBothSidesOfACalibration) {
+  Record record = sample_go();
+  record.calibration = CalibrationFigures{"hexapod", "m.yaml", "", AccuracyFigures{4000, 5000, 6000, 7, 0},
+                                          AccuracyFigures{40, 50, 60, 0.7, 0}};
+  const Json c = Json::parse(summary_json(record))["calibration"];
+  EXPECT_EQ(keys(c), (Keys{"machine_before", "machine_after", "tip_rms_before_um", "tip_rms_after_um",
+                           "tip_p95_before_um", "tip_p95_after_um", "tip_max_before_um", "tip_max_after_um",
+                           "orientation_max_before_mrad", "orientation_max_after_mrad"}));
+  EXPECT_EQ(c["tip_p95_before_um"], 5000);
+  EXPECT_EQ(c["tip_max_after_um"], 60);
+  record.calibration->before.reset();
+  record.calibration->not_run_before = "strut 3 is 241.7 mm, longer than 240.0 mm";
+  EXPECT_EQ(keys(Json::parse(summary_json(record))["calibration"]),
+            (Keys{"machine_before", "machine_after", "not_run_before", "tip_rms_after_um", "tip_p95_after_um",
+                  "tip_max_after_um", "orientation_max_after_mrad"}));
+}
+
 TEST(SummaryJson, NumbersCarrySixDigitsAndDoNotHangOnTheLastBit) {
   Record record = sample_go();
   record.accuracy->tip_rms_um = 88.123456;

@@ -11,13 +11,13 @@ function drawCharts(report, add) {
   }
   const gap = gapChart(report);
   const tip = tipChart(report);
-  for (const chart of [gap, tip, profileChart(report), ...axisCharts(report)]) {
+  for (const chart of [calibrationChart(report), gap, tip, profileChart(report), ...axisCharts(report)]) {
     if (!chart) continue;
     chart.marks = chart.ofSurface ? [] : findingMarks(report, chart.onPath);
     if (chart.marks.length) chart.note += ' Ticks at the top edge: findings.';
     const legend = element('div', { class: 'legend' });
     const canvas = element('div', { class: 'chart' });
-    add(section(chart.title, chart.note, legend, canvas));
+    add(section(chart.title, chart.note, chart.table, legend, canvas));
     plot(chart, canvas, legend);
   }
 }
@@ -78,6 +78,22 @@ function tipChart(report) {
     xLabel: 'path length (mm)', yLabel: 'tip error (µm)' };
 }
 
+// Without gap control, so that it shows the description alone; orders of magnitude lie between the two.
+function calibrationChart(report) {
+  if (!report.trace_before_calibration) return null;
+  const { machine_before: before, machine_after: after } = report.summary.calibration;
+  const openLoop = report.trace_without_gap_control || report.trace;
+  const curve = (label, trace, colour, dash) => ({ label, colour, dash,
+    rows: alongPath(trace, 'tip_error_um').map(([x, y]) => [x, y > 0 ? y : NaN]) });
+  const curves = [curve('before, ' + before, report.trace_before_calibration, kColour.without, [7, 4]),
+    curve('after, ' + after, openLoop, kColour.with)];
+  if (!curves.some(({ rows }) => rows.length > 1)) return null;
+  return { title: 'Tip error before and after calibration', curves, unit: 'µm', decimals: 1, log: true, include: [],
+    onPath: true, table: calibrationTable(report.summary.calibration),
+    note: 'The same program on the same twin without gap control, driven by either description. Logarithmic scale.',
+    xLabel: 'path length (mm)', yLabel: 'tip error (µm)' };
+}
+
 function profileChart(report) {
   if (!report.profile) return null;
   const { position_mm: x, height_um: y } = report.profile;
@@ -113,6 +129,7 @@ function valueRange(chart) {
       if (y > high) high = y;
     }
   }
+  if (chart.log) return [low / 1.5, high * 1.5];
   const pad = 0.06 * (high - low || 1);
   return [chart.zero && low === 0 ? 0 : low - pad, high + pad];
 }
@@ -189,7 +206,7 @@ function plot(chart, canvas, legend) {
     xlabel: chart.xLabel, ylabel: chart.yLabel, valueRange: valueRange(chart),
     connectSeparatedPoints: true, strokeWidth: 1.6, highlightCircleSize: 3,
     gridLineColor: '#e4e7ea', axisLineColor: '#9aa3ab', axisLabelFontSize: 12, xLabelHeight: 20, yLabelWidth: 20,
-    rightGap: 14, axes: { y: { axisLabelWidth: 52 }, x: { pixelsPerLabel: 70 } },
+    rightGap: 14, logscale: Boolean(chart.log), axes: { y: { axisLabelWidth: 52 }, x: { pixelsPerLabel: 70 } },
     xRangePad: 4, labelsDiv: legend, legend: 'always',
     legendFormatter: (data) => drawLegend(chart, data).innerHTML,
     underlayCallback: (context, area, graph) => underlay(chart, context, area, graph),

@@ -7,6 +7,7 @@
   add(drawVerdict(report));
   add(drawFindings(report));
   add(drawPictures(report));
+  add(drawCalibrationNotRun(report));
   drawCharts(report, add);
   add(drawStrands(report));
   add(drawDeviation(report));

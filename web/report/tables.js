@@ -37,13 +37,18 @@ function findingRow(finding) {
 }
 
 const kGroupTitles = {
-  print: 'Print', accuracy: 'Accuracy', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', engine: 'Engine',
+  print: 'Print', accuracy: 'Accuracy', calibration: 'Calibration', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', engine: 'Engine',
 };
 
 const kFigureLabels = {
   duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', deposited_mm: 'Filament that sticks',
   travel_mm: 'Travel without extrusion',
   tip_rms_um: 'Tip error, RMS', tip_p95_um: 'Tip error, 95th percentile', tip_max_um: 'Tip error, largest',
+  machine_before: 'Machine before', machine_after: 'Machine after', not_run_before: 'Not run before',
+  tip_rms_before_um: 'Tip error before, RMS', tip_rms_after_um: 'Tip error after, RMS',
+  tip_p95_before_um: 'Tip error before, 95th percentile', tip_p95_after_um: 'Tip error after, 95th percentile',
+  tip_max_before_um: 'Tip error before, largest', tip_max_after_um: 'Tip error after, largest',
+  orientation_max_before_mrad: 'Orientation error before, largest', orientation_max_after_mrad: 'Orientation error after, largest',
   orientation_max_mrad: 'Orientation error, largest', open_loop_tip_max_um: 'Tip error without gap control, largest',
   commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
   path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
@@ -75,6 +80,28 @@ function drawFigures(report) {
         element('td', { class: 'number' }, figureText(name, value)))))))));
 }
 
+function calibrationTable(figures) {
+  const rows = [['Tip error, RMS', 'tip_rms', 'um'], ['Tip error, 95th percentile', 'tip_p95', 'um'],
+    ['Tip error, largest', 'tip_max', 'um'], ['Orientation error, largest', 'orientation_max', 'mrad']];
+  const number = (text) => element('td', { class: 'number' }, text);
+  return element('table', { class: 'comparison' },
+    element('thead', {}, element('tr', {}, element('th', {}, ''),
+      ...['Before', 'After', 'Before / after'].map((text) => element('th', { class: 'number' }, text)))),
+    element('tbody', {}, ...rows.map(([label, key, unit]) => {
+      const before = figures[key + '_before_' + unit], after = figures[key + '_after_' + unit];
+      return element('tr', {}, element('th', { scope: 'row' }, label), number(format.quantity(before, unit)),
+        number(format.quantity(after, unit)), number(after > 0 ? format.quantity(before / after, '1') : '\u2013'));
+    })));
+}
+
+// The description before the calibration may not reach what the program asks for.
+function drawCalibrationNotRun(report) {
+  const calibration = report.summary.calibration;
+  if (!calibration || !calibration.not_run_before) return null;
+  return section('Tip error before and after calibration', null, element('p', {}, 'Not compared: with the description before, ' +
+    calibration.machine_before + ', the program does not run: ' + format.message(calibration.not_run_before) + '.'));
+}
+
 // Those that sag most, as the record sorts them.
 function drawStrands(report) {
   if (!report.strands) return null;
@@ -104,6 +131,7 @@ function drawProvenance(report) {
   const rows = [
     ['Program', report.names.program, provenance.program_sha256],
     ['Machine', report.names.machine, provenance.machine_sha256],
+    ['Machine before', (report.summary.calibration || {}).machine_before, provenance.machine_before_sha256],
     ['Fixture', report.names.fixture],
     ['Gap control', report.names.gap_control],
     ['As built', provenance.as_built],

@@ -236,6 +236,27 @@ TEST(Deposition, AShortPieceOfALineIsAsWideAsTheLine) {
   }
 }
 
+// A slow drive goes in steps: the tip trembles along its way, three times as far as it gets, and the line is
+// no thinner for it.
+TEST(Deposition, ATremblingTipDrawsNothingOut) {
+  Laying observer(printer());
+  constexpr double kWay = 4e-3, kGap = 0.15e-3, kFed = 0.03;
+  observer.run(4000, [&](double t) {
+    const double tremble = 3e-6 * std::sin(2 * std::numbers::pi * 1000 * t);
+    return at(t, Vec3(t * kWay + tremble, 0, kGap), kFed * t * kWay);
+  });
+  const double width = kFilamentArea * kFed / kGap + (1 - std::numbers::pi / 4) * kGap;
+  double length = 0;
+  for (const LaidBead& bead : observer.beads()) {
+    length += bead.path;
+    // An element is a tenth of a millimetre or longer, its ends 3 um to and fro; the last is what is left.
+    if (&bead != &observer.beads().back()) {
+      EXPECT_NEAR(bead.width, width, 0.06 * width);
+    }
+  }
+  EXPECT_NEAR(length, kWay, 0.01 * kWay);
+}
+
 TEST(Deposition, ABlobStaysWhereTheTipLeavesIt) {
   Laying observer(printer());
   observer.observe(at(0, Vec3(0, 0, 0.15e-3), 0));

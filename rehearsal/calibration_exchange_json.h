@@ -1,0 +1,42 @@
+// Private to the exchange with plug-ins: what both of its schemas are written and read with.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "core/frames.h"
+#include "rehearsal/plugin.h"
+
+namespace understudy::rehearsal::exchange {
+
+using Json = nlohmann::ordered_json;
+
+Json point_mm(const Vec3& p);
+Json quaternion_wxyz(const Mat3& R);
+/// Blocks in mm^2, mm rad and rad^2.
+Json covariance_mm_rad(const Mat6& covariance);
+
+/// What is wrong with an answer.
+struct Wrong : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A number of at most `limit` on either side; `unit` (" mm") is for the reader. These throw Wrong.
+double number(const Json& value, const std::string& where, double limit, const char* unit);
+double length_mm(const Json& value, const std::string& where);  ///< [m]
+const Json& list(const Json& parent, const std::string& key, std::size_t count);
+Vec3 point(const Json& value, const std::string& where);  ///< [m]
+/// Of an object with that schema and without "failure".
+void check_schema(const Json& answer, const std::string& schema);
+
+/// Reads `text` by `read`; the failure in one line, or empty.
+std::string read_json(const std::string& text, const std::function<void(const Json&)>& read);
+
+/// Runs the plug-in: its output, or a failure in one line.
+std::string ask(const std::string& command, const std::string& problem, const PluginLimits& limits,
+                double& seconds, std::string& output);
+
+}  // namespace understudy::rehearsal::exchange
