@@ -16,12 +16,13 @@ using toolpath::StepKind;
 
 namespace {
 
-constexpr double kBead = 6e-3;      // [m]
-constexpr double kFeed = 5e-3;      // [m/s]
-constexpr double kStandoff = 2e-3;  // [m]
-constexpr double kOften = 1.0 / 3;  // of the frames that are stale or lost
-constexpr double kSlope = 0.015;    // [m/m], 1 sigma of the error's change along the path
-constexpr double kError = 0.2e-3;   // [m], 1 sigma of the error at the start
+constexpr double kBead = 6e-3;        // [m]
+constexpr double kFeed = 5e-3;        // [m/s]
+constexpr double kStandoff = 2e-3;    // [m]
+constexpr double kOften = 1.0 / 3;    // of the frames that are stale or lost
+constexpr double kUnderHome = 10e-3;  // [m]
+constexpr double kSlope = 0.015;      // [m/m], 1 sigma of the error's change along the path
+constexpr double kError = 0.2e-3;     // [m], 1 sigma of the error at the start
 
 /// A plate of 60 mm whose top passes through `p`, leaning towards the laser by `tilt`.
 std::shared_ptr<const geometry::Mesh> plate(const Vec3& p, double tilt) {
@@ -69,11 +70,13 @@ toolpath::Program bead_program(const Pose& X_WT_S) {
 std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine, const std::string& program) {
   std::vector<GapSurface> surfaces;
   const Pose X_WT_home = machine.X_WB * machine.X_BT_home;
+  Pose X_WT_plate = X_WT_home;  // well below: the machine begins clear of it, whatever its error
+  X_WT_plate.translation().z() -= kUnderHome;
   for (const double degrees : {0.0, 10.0, 20.0, 30.0}) {
     GapSurface surface;
     surface.name = degrees == 0 ? "flat" : "tilted " + std::to_string(static_cast<int>(degrees)) + " deg";
-    surface.part = plate(X_WT_home.translation(), from_deg(degrees));
-    surface.X_WT_S = along(X_WT_home, 0, machine.gap.aim);
+    surface.part = plate(X_WT_plate.translation(), from_deg(degrees));
+    surface.X_WT_S = along(X_WT_plate, 0, machine.gap.aim);
     surface.program = bead_program(surface.X_WT_S);
     surfaces.push_back(std::move(surface));
   }
