@@ -119,13 +119,7 @@ std::string chain_problem_json(const ChainParameters& nominal, const std::vector
 }
 
 ChainPluginAnswer read_chain_answer(const std::string& text, const ChainParameters& nominal) {
-  ChainPluginAnswer answer;
-  answer.parameters = nominal;
-  answer.failure =
-      exchange::read_json(text, [&](const Json& json) { read_parameters(json, answer.parameters); });
-  answer.ok = answer.failure.empty();
-  if (!answer.ok) answer.parameters = nominal;
-  return answer;
+  return exchange::read_answer<ChainPluginAnswer>(text, nominal, read_parameters);
 }
 
 ChainPluginAnswer ask_chain_plugin(const std::string& command, const ChainParameters& nominal,

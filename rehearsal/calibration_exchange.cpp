@@ -74,13 +74,7 @@ std::string problem_json(const calibration::Problem& problem) {
 }
 
 PluginAnswer read_answer(const std::string& text, const HexapodParameters& nominal) {
-  PluginAnswer answer;
-  answer.parameters = nominal;
-  answer.failure =
-      exchange::read_json(text, [&](const Json& json) { read_parameters(json, answer.parameters); });
-  answer.ok = answer.failure.empty();
-  if (!answer.ok) answer.parameters = nominal;
-  return answer;
+  return exchange::read_answer<PluginAnswer>(text, nominal, read_parameters);
 }
 
 PluginAnswer ask_plugin(const std::string& command, const calibration::Problem& problem,

@@ -35,6 +35,16 @@ void check_schema(const Json& answer, const std::string& schema);
 /// Reads `text` by `read`; the failure in one line, or empty.
 std::string read_json(const std::string& text, const std::function<void(const Json&)>& read);
 
+/// An answer (ok, failure, parameters) whose parameters are the nominal ones where it fails.
+template <typename Answer, typename Parameters, typename Read>
+Answer read_answer(const std::string& text, const Parameters& nominal, const Read& read) {
+  Answer answer{false, {}, nominal};
+  answer.failure = read_json(text, [&](const Json& json) { read(json, answer.parameters); });
+  answer.ok = answer.failure.empty();
+  if (!answer.ok) answer.parameters = nominal;
+  return answer;
+}
+
 /// Runs the plug-in: its output, or a failure in one line.
 std::string ask(const std::string& command, const std::string& problem, const PluginLimits& limits,
                 double& seconds, std::string& output);

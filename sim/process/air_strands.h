@@ -1,8 +1,8 @@
 // Which of the material that does not lie on anything hangs in air as a strand, and how far it sags.
 #pragma once
 
+#include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "machine/description.h"

@@ -11,6 +11,7 @@
 #include "sim/sensors/microscope.h"
 #include "sim/twin/simulated_port.h"
 #include "tests/control/bead_program.h"
+#include "tests/geometry/test_solids.h"
 
 namespace understudy::sim {
 namespace {
@@ -22,17 +23,8 @@ using testing::HasSubstr;
 constexpr double kTop = control::kTable;  // [m], the part's
 
 std::shared_ptr<const geometry::Mesh> slab() {
-  std::vector<Vec3> vertices;
-  for (const double z : {kTop - 5e-3, kTop})
-    for (const auto& [x, y] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
-      vertices.emplace_back(30e-3 * x, 30e-3 * y, z);
-  std::vector<std::array<int, 3>> triangles{{4, 5, 6}, {4, 6, 7}, {0, 2, 1}, {0, 3, 2}};
-  for (int i = 0; i < 4; ++i) {
-    const int j = (i + 1) % 4;
-    triangles.push_back({i, j, j + 4});
-    triangles.push_back({i, j + 4, i + 4});
-  }
-  return std::make_shared<geometry::Mesh>(std::move(vertices), std::move(triangles));
+  auto box = geometry::box(Vec3(-30e-3, -30e-3, kTop - 5e-3), Vec3(30e-3, 30e-3, kTop));
+  return std::make_shared<geometry::Mesh>(std::move(box.vertices), std::move(box.triangles));
 }
 
 class Truth : public Observer {
