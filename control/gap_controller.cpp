@@ -264,6 +264,8 @@ const char* to_string(GapStop s) {
       return "no dot";
     case GapStop::saturated:
       return "dot saturated";
+    case GapStop::partly_hidden:
+      return "dot partly hidden";
     case GapStop::implausible:
       return "implausible reading";
     case GapStop::stale_frame:

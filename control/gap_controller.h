@@ -29,6 +29,7 @@ enum class GapStop {
   none,
   no_dot,
   saturated,
+  partly_hidden,
   implausible,
   stale_frame,
   too_close,

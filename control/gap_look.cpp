@@ -14,6 +14,7 @@ using vision::DotStatus;
 namespace {
 
 constexpr double kPatience = 2.0;  // [s], for one frame
+constexpr int kAsked = 3;          // times, for a frame that is lost or stale, while the tool stands
 constexpr int kMarginRadii = 5;    // of the spot, kept free around the predicted dot
 constexpr double kTrusted = 4;     // standard deviations that a reading may be off without suspicion
 
@@ -46,16 +47,27 @@ GapStop GapEye::take(const std::optional<Expectation>& expected, GapLook& look) 
   const Camera& camera = machine_.microscope.camera;
   const Region sensor{0, 0, camera.width, camera.height};
   const Region region = expected ? region_around(*expected) : sensor;
-  GapStop stop = expose(region, kPatience, look);
+  GapStop stop = expose_standing(region, look);
   if (stop != GapStop::none) return stop;
   const bool missed = look.dot.status == DotStatus::no_dot || look.dot.status == DotStatus::clipped_by_border;
   // A dot outside the region shows on the whole sensor, and its reading then says what went wrong.
   if (missed && region != sensor)
-    if (stop = expose(sensor, kPatience, look); stop != GapStop::none) return stop;
+    if (stop = expose_standing(sensor, look); stop != GapStop::none) return stop;
   if (stop = judge_dot(look); stop != GapStop::none) return stop;
   if (stop = judge_reading(expected, look); stop != GapStop::none) return stop;
   look.used = true;
   return GapStop::none;
+}
+
+GapStop GapEye::expose_standing(const Region& region, GapLook& look) {
+  GapStop stop = GapStop::none;
+  for (int asked = 1; asked <= kAsked; ++asked) {
+    stop = expose(region, kPatience, look);
+    const bool again = stop == GapStop::stale_frame || stop == GapStop::port_failed;
+    if (!again || port_.state().fault != machine::Fault::none) return stop;
+  }
+  look.why += fmt::format("; it was asked for {} times", kAsked);
+  return stop;
 }
 
 Region GapEye::region_around(const Expectation& expected) const {
@@ -149,6 +161,13 @@ GapStop GapEye::judge_reading(const std::optional<Expectation>& expected, GapLoo
         "are plausible",
         at.x(), at.y(), reading.residual_px, options_.residual_max_px);
     return GapStop::implausible;
+  }
+  if (!whole(reading, look.dot)) {
+    look.why = fmt::format(
+        "the dot at ({:.1f}, {:.1f}) px is {:.0f} % as wide as the beam draws it here, 1 sigma {:.0f} %: "
+        "something hides a part of it",
+        at.x(), at.y(), 100 * std::sqrt(std::max(0.0, reading.narrowest)), 50 * look.dot.spread_sigma);
+    return GapStop::partly_hidden;
   }
   if (!expected) return GapStop::none;
   const double bound = expected->bound + kTrusted * reading.sigma;

@@ -19,7 +19,8 @@ class GapEye {
   GapEye(const machine::MachineDescription& machine, const LocalSurface& surface,
          const GapControllerOptions& options, machine::MachinePort& port);
 
-  /// Without an expectation the whole sensor is read. The result says why `look` cannot be used; none: it
+  /// The tool stands: a frame that is lost or stale is asked for again, thrice in all. Without an expectation
+  /// the whole sensor is read. The result says why `look` cannot be used; none: it
   /// can.
   GapStop take(const std::optional<Expectation>& expected, GapLook& look);
 
@@ -31,6 +32,7 @@ class GapEye {
 
  private:
   GapStop expose(const Region& region, double patience, GapLook& look);
+  GapStop expose_standing(const Region& region, GapLook& look);
   Region region_around(const Expectation& expected) const;
   GapStop judge_dot(GapLook& look) const;
   GapStop judge_reading(const std::optional<Expectation>& expected, GapLook& look) const;

@@ -1,5 +1,6 @@
 #include "control/gap_reading.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -69,6 +70,16 @@ Eigen::Matrix2d information(const Eigen::Matrix2d& covariance) {
   return usable ? Eigen::Matrix2d(covariance.inverse()) : Eigen::Matrix2d(Eigen::Matrix2d::Identity());
 }
 
+/// Smallest ratio, over directions, of two second moments; 0 where one of them is none.
+double narrowest(const Eigen::Matrix2d& seen, const Eigen::Matrix2d& whole) {
+  const Eigen::LLT<Eigen::Matrix2d> root(whole);
+  if (root.info() != Eigen::Success || !seen.allFinite()) return 0;
+  const Eigen::Matrix2d half = root.matrixL().solve(seen);
+  const Eigen::Matrix2d ratio = root.matrixL().solve(half.transpose());
+  const double mean = 0.5 * ratio.trace();
+  return mean - std::sqrt(std::max(0.0, mean * mean - ratio.determinant()));
+}
+
 /// The gap, of a few over the range, whose dot is nearest: where Newton begins.
 bool nearest_on_grid(const machine::MachineDescription& machine, const LocalSurface& surface,
                      const Vec2& pixel, double& gap) {
@@ -98,6 +109,29 @@ bool predict_dot(const machine::MachineDescription& machine, const LocalSurface&
   return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= camera.width - 1 && pixel.y() <= camera.height - 1;
 }
 
+bool predict_spread(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                    Eigen::Matrix2d& spread_px2) {
+  const double sigma = machine.laser.waist_diameter / 4;  // of a beam whose 1/e^2 diameter is the waist's
+  Eigen::Matrix2d across;
+  for (int i = 0; i < 2; ++i) {
+    std::array<Vec2, 2> pixel;
+    for (std::size_t side = 0; side < 2; ++side) {
+      machine::Laser ray = machine.laser;
+      ray.X_TL.translation() += (side == 0 ? -sigma : sigma) * ray.X_TL.linear().col(i);
+      Hit hit;
+      if (!beam_hit(ray, surface, gap, hit)) return false;
+      const auto seen = machine.microscope.camera.project(machine.microscope.X_TC.inverse() * hit.p_T);
+      if (!seen) return false;
+      pixel[side] = *seen;
+    }
+    across.col(i) = 0.5 * (pixel[1] - pixel[0]);
+  }
+  constexpr double kPixel = 1.0 / 12;  // [px^2], of a pixel's own square
+  const double blur = machine.microscope.blur_px;
+  spread_px2 = across * across.transpose() + (blur * blur + kPixel) * Eigen::Matrix2d::Identity();
+  return true;
+}
+
 bool read_gap(const machine::MachineDescription& machine, const LocalSurface& surface,
               const vision::DotMeasurement& dot, GapReading& reading) {
   if (!dot.position_px.allFinite()) return false;
@@ -113,13 +147,21 @@ bool read_gap(const machine::MachineDescription& machine, const LocalSurface& su
     const double change = track.rate.dot(weight * miss) / gain;
     if (std::abs(change) < kConverged) {
       const Vec2 along = track.rate.normalized();
-      reading = {gap, 1 / std::sqrt(gain), std::abs(along.x() * miss.y() - along.y() * miss.x())};
+      reading = {gap, 1 / std::sqrt(gain), std::abs(along.x() * miss.y() - along.y() * miss.x()), 0};
+      Eigen::Matrix2d whole;
+      if (predict_spread(machine, surface, gap, whole)) reading.narrowest = narrowest(dot.spread_px2, whole);
       return gap >= kGapLow && gap <= kGapHigh;
     }
     // A little beyond the range is allowed on the way: the answer is judged, not the path to it.
     gap = std::clamp(gap + change, 2 * kGapLow, 1.5 * kGapHigh);
   }
   return false;
+}
+
+bool whole(const GapReading& reading, const vision::DotMeasurement& dot) {
+  constexpr double kTrusted = 4;        // standard deviations
+  constexpr double kUnmodelled = 0.05;  // the camera's rounding, the beam's waist off by 2 %, facets
+  return reading.narrowest >= 1 - kTrusted * dot.spread_sigma - kUnmodelled;
 }
 
 Region region_for_gap(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,

@@ -21,15 +21,27 @@ struct GapReading {
   double gap = 0;          ///< [m], along the tool axis, positive outside the part
   double sigma = 0;        ///< [m], from the dot's covariance
   double residual_px = 0;  ///< [px], distance of the dot from the line on which it must move
+  /// Second moment of the dot over that of the whole beam, in the direction where it is smallest: 0.36 where
+  /// an edge hides half of it.
+  double narrowest = 1;
 };
 
 /// Where the dot must appear for a gap. False when the beam misses the modelled surface or the camera.
 bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                  Vec2& pixel);
 
+/// Second moments [px^2] of the dot's picture for a gap: a round Gaussian beam on the surface's tangent
+/// plane, seen by the camera through its blur. False when the beam misses the modelled surface.
+bool predict_spread(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                    Eigen::Matrix2d& spread_px2);
+
 /// Inverts predict_dot by Newton; false when there is no gap in [-1 mm, 8 mm] that explains the dot.
 bool read_gap(const machine::MachineDescription& machine, const LocalSurface& surface,
               const vision::DotMeasurement& dot, GapReading& reading);
+
+/// Whether the dot is as wide as the whole beam draws it: noise may narrow it, an edge that hides a tenth of
+/// it does so by more.
+bool whole(const GapReading& reading, const vision::DotMeasurement& dot);
 
 /// Part of the sensor in which the dot of gaps in [gap - below, gap + above] lies, with margin; clipped.
 Region region_for_gap(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,

@@ -148,7 +148,9 @@ Status LoopbackPort::capture(const Region& region, Frame& frame, double deadline
   if (const Status s = wait_until(exposed_at); s != Status::ok) return s;
   const AxisState exposed = state();
   if (const Status s = wait_until(received_at); s != Status::ok) return s;
-  if (!repeat_frames_ || last_frame_.number == 0) {
+  const bool repeated = repeats_ > 0 && last_frame_.number > 0;
+  if (repeats_ > 0) --repeats_;
+  if (!repeated) {
     Image image;
     if (!frames_ || !frames_(exposed, region, image)) return Status::no_frame;
     last_frame_.image = std::move(image);

@@ -35,7 +35,8 @@ class LoopbackPort : public MachinePort {
 
   /// The fault stands as soon as the clock has reached `time`; axes stop where they are, the queue is lost.
   void inject_fault(Fault fault, double time = 0);
-  void repeat_frames(bool on) { repeat_frames_ = on; }  ///< deliver the last frame again: stale
+  /// The next `count` frames are the last one again: stale.
+  void repeat_frames(int count) { repeats_ = count; }
   const Outputs& outputs() const { return outputs_; }
   /// Every setpoint that was executed, in order.
   const std::vector<Setpoint>& history() const { return history_; }
@@ -58,7 +59,7 @@ class LoopbackPort : public MachinePort {
   bool held_ = false;
   std::uint64_t accepted_ = 0, executed_ = 0, frame_number_ = 0;
   Frame last_frame_;
-  bool repeat_frames_ = false;
+  int repeats_ = 0;
   Fault fault_ = Fault::none;
   Fault coming_fault_ = Fault::none;
   double coming_fault_time_ = std::numeric_limits<double>::infinity();

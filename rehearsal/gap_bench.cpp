@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/fixture.h"
@@ -146,8 +148,11 @@ Image GapScene::expose(const Pose& X_WT_true, const Region& region, bool printin
   return image;
 }
 
-bool GapScene::repeats(bool printing) {
-  return disturbed(printing) && condition.mischief == Mischief::stale && random_.uniform() < kOften;
+int GapScene::repeats(bool printing) {
+  int repeats = 0;
+  if (disturbed(printing) && condition.mischief == Mischief::stale)
+    while (random_.uniform() < kOften) ++repeats;
+  return repeats;
 }
 
 /// A thread of plastic that hangs from the nozzle: on the sensor it stands still, over where the dot lies at
@@ -165,18 +170,21 @@ void GapScene::occlude(Image& image) const {
 }
 
 /// A thread that lies in the beam and glows instead of the part, a little beside where the dot lies at the
-/// aim; it flickers as speckle does (reference D: 0.30 to 0.46 px).
+/// aim and as wide as that; it flickers as speckle does (reference D: 0.30 to 0.46 px).
 void GapScene::glow(Image& image) {
-  constexpr double kBeside = 40e-6, kFlicker = 0.35, kRadius = 5;  // [m] of gap, [px], [px]
+  constexpr double kBeside = 40e-6, kFlicker = 0.35;  // [m] of gap, [px]
   const auto at = microscope_.true_dot(along(surface.X_WT_S, 0, kBeside));
-  if (!at) return;
+  Eigen::Matrix2d spread;
+  const auto local = control::local_surface(*surface.part, surface.X_WT_S, 2.5e-3);
+  if (!at || !control::predict_spread(lit_, local, lit_.gap.aim, spread)) return;
+  const Eigen::Matrix2d inverse = spread.inverse();
   const Vec2 centre = *at + kFlicker * Vec2(random_.normal(), random_.normal());
   const double noise = 255 / lit_.microscope.full_well * lit_.microscope.read_noise;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
-      const double r2 = (Vec2(image.region.x + x, image.region.y + y) - centre).squaredNorm();
+      const Vec2 d = Vec2(image.region.x + x, image.region.y + y) - centre;
       const double level = lit_.microscope.ambient_level + noise * random_.normal() +
-                           lit_.laser.peak_level * std::exp(-2 * r2 / (kRadius * kRadius));
+                           lit_.laser.peak_level * std::exp(-0.5 * d.dot(inverse * d));
       image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) +
                    static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(std::clamp(level, 0.0, 255.0));
     }

@@ -50,7 +50,7 @@ class GapScene {
   /// Empty: the frame is lost.
   Image expose(const Pose& X_WT_true, const Region& region, bool printing = false);
   double true_gap(const Pose& X_WT_true) const;
-  bool repeats(bool printing);  ///< the next frame is the last one again
+  int repeats(bool printing);  ///< so many of the next frames are the last one again
 
   const GapSurface& surface;
   const GapCondition& condition;

@@ -90,7 +90,8 @@ std::vector<DetectorRow> measure_detectors(const Cell& cell) {
       const vision::DotMeasurement dot = detectors[d].second(image, options);
       control::GapReading reading;
       ++rows[d].frames;
-      if (dot.status == vision::DotStatus::ok && control::read_gap(cell.machine, surface, dot, reading))
+      if (dot.status == vision::DotStatus::ok && control::read_gap(cell.machine, surface, dot, reading) &&
+          control::whole(reading, dot))
         errors[d].push_back(to_um(reading.gap - scene.true_gap(X_WT)));
       else
         ++rows[d].missed;

@@ -83,7 +83,10 @@ DotMeasurement measure_dot(const Image& image, const DotOptions& options) {
   const auto spot = measure_moments(image, *guess, options);
   if (!spot) return m;
   m.position_px = spot->centre + Vec2(image.region.x, image.region.y);
-  m.covariance_px2 = centroid_covariance(image, *spot, options);
+  const SpotScatter scatter = spot_scatter(image, *spot, options);
+  m.covariance_px2 = scatter.centroid;
+  m.spread_px2 = spot->spread;
+  m.spread_sigma = scatter.spread;
   m.contrast = spot->amplitude();
   m.radius_px = 2 * std::pow(spot->spread.determinant(), 0.25);
   m.saturated_fraction = saturated_fraction(image, *spot);

@@ -22,6 +22,8 @@ struct DotMeasurement {
   DotStatus status = DotStatus::no_dot;
   Vec2 position_px{0, 0};  ///< on the sensor (the image's region is added)
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d spread_px2 = Eigen::Matrix2d::Zero();  ///< second central moments, of an uncut Gaussian
+  double spread_sigma = 0;                               ///< of those, along any direction: a share of them
   double contrast = 0;   ///< grey levels, peak of the Gaussian of equal flux and extent
   double radius_px = 0;  ///< 1/e^2, geometric mean of both axes
   double saturated_fraction = 0;

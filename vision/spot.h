@@ -45,7 +45,12 @@ double normalised_distance(const Spot& spot, const Eigen::Matrix2d& inverse_spre
 /// 1 inside the window, 0 outside, falling over one pixel at its edge.
 double window_weight(double distance_sigmas, double distance_px, double window);
 
-/// Covariance of the centroid; the model is stated in dot.h.
-Eigen::Matrix2d centroid_covariance(const Image& image, const Spot& spot, const DotOptions& options);
+struct SpotScatter {
+  Eigen::Matrix2d centroid = Eigen::Matrix2d::Zero();  ///< [px^2]
+  double spread = 0;                                   ///< 1 sigma of a second moment, a share of it
+};
+
+/// How much the spot's moments scatter; the model is stated in dot.h.
+SpotScatter spot_scatter(const Image& image, const Spot& spot, const DotOptions& options);
 
 }  // namespace understudy::vision

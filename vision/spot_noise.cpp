@@ -185,9 +185,10 @@ double speckle_area_px2(double wavelength, double aperture_sine, double px_per_m
   return grain * grain / 3.14159265358979323846;
 }
 
-Eigen::Matrix2d centroid_covariance(const Image& image, const Spot& spot, const DotOptions& options) {
+SpotScatter spot_scatter(const Image& image, const Spot& spot, const DotOptions& options) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
   const Linear l = linearise(image, spot);
-  if (l.size() < 9) return Eigen::Matrix2d::Constant(std::numeric_limits<double>::infinity());
+  if (l.size() < 9) return {Eigen::Matrix2d::Constant(kUnknown), kUnknown};
   const double floor = std::max(spot.around.variance, kQuantisation);
   const Eigen::VectorXd noise = (floor + options.grey_per_electron * l.model.array()).matrix();
   Mat6 moments = l.response.transpose() * noise.asDiagonal() * l.response;
@@ -203,7 +204,8 @@ Eigen::Matrix2d centroid_covariance(const Image& image, const Spot& spot, const 
     const Eigen::VectorXd grains = options.speckle_area_px2 * l.model.array().square().matrix();
     moments += l.response.transpose() * grains.asDiagonal() * l.response;
   }
-  return l.root * moments.block<2, 2>(1, 1) * l.root.transpose();
+  return {l.root * moments.block<2, 2>(1, 1) * l.root.transpose(),
+          std::sqrt(std::max(moments(3, 3), moments(5, 5)))};
 }
 
 }  // namespace understudy::vision

@@ -147,6 +147,26 @@ TEST(ContinuousPrint, ABeadUnderTheDotIsNotChased) {
   EXPECT_GE(result.following->frames - result.following->used, 4);  // 0.6 mm take 0.12 s: five frames
 }
 
+TEST(ContinuousPrint, AHalfHiddenDotIsNotFollowed) {
+  for (const double slope : {0.0, 0.02, -0.02}) {
+    GapRig rig(hexapod(), low_by(0));
+    set_slope(rig, slope);
+    std::optional<Vec2> edge;  // stands still in the picture
+    rig.set_mischief([&](const Pose& X, Image& image) {
+      if (X.translation().x() < 3e-3) return true;
+      if (!edge) edge = exact_dot(hexapod(), flat_part(), rig.truth(X));
+      hide_beyond(*edge, Vec2(1, 0), image);
+      return true;
+    });
+    const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
+    EXPECT_FALSE(result.completed);
+    ASSERT_TRUE(result.following);
+    EXPECT_STREQ(to_string(result.following->stop), "dot partly hidden");
+    EXPECT_THAT(result.stop_reason, HasSubstr("something hides a part of it"));
+    EXPECT_EQ(beads_of(rig, rig.port()).in_band, 1) << "slope " << slope;
+  }
+}
+
 TEST(ContinuousPrint, AVanishedDotStopsRetreatsAndSaysWhy) {
   GapRig rig(hexapod(), low_by(0));
   rig.set_mischief([&](const Pose& X, Image& image) {
@@ -190,7 +210,7 @@ TEST(ContinuousPrint, RepeatedFramesAreNotFollowed) {
   GapRig rig(hexapod(), low_by(0));
   set_slope(rig, 0.02);
   rig.set_mischief([&](const Pose& X, Image&) {
-    if (X.translation().x() > 3e-3) rig.port().repeat_frames(true);
+    if (X.translation().x() > 3e-3) rig.port().repeat_frames(kForGood);
     return true;
   });
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());

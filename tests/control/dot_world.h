@@ -55,4 +55,20 @@ inline std::optional<Vec2> exact_dot(const machine::MachineDescription& m, const
   return Vec2(camera.centre_px + camera.focal_px / p_C.z() * p_C.head<2>());
 }
 
+/// Second moments [px^2] of the dot where it falls: rays a standard deviation beside the beam's axis, and the
+/// blur of the optics. The beam's 1/e^2 diameter is four standard deviations.
+inline std::optional<Eigen::Matrix2d> exact_spread(machine::MachineDescription m, const DotWorld& world,
+                                                   const Pose& X_WT) {
+  const auto centre = exact_dot(m, world, X_WT);
+  Eigen::Matrix2d spread = m.microscope.blur_px * m.microscope.blur_px * Eigen::Matrix2d::Identity();
+  const Pose X_TL = m.laser.X_TL;
+  for (int i = 0; i < 2; ++i) {
+    m.laser.X_TL.translation() = X_TL.translation() + m.laser.waist_diameter / 4 * X_TL.linear().col(i);
+    const auto beside = exact_dot(m, world, X_WT);
+    if (!centre || !beside) return std::nullopt;
+    spread += (*beside - *centre) * (*beside - *centre).transpose();
+  }
+  return spread;
+}
+
 }  // namespace understudy::control

@@ -2,6 +2,7 @@
 // that stops says why.
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -20,6 +21,7 @@ enum class Trouble {
   stale,
   lost,
   ghost,
+  cut,
   dim,
   offset_picture,
   gives_way,
@@ -42,6 +44,19 @@ Fault draw_fault(Random& random) {
   return fault;
 }
 
+/// An edge that hides a part of every dot, at up to one and a half of its radii from the centre.
+struct Cut {
+  Vec2 side{1, 0};
+  Vec2 offset{0, 0};
+};
+
+Cut draw_cut(Random& random) {
+  const double turn = random.uniform(0, 2 * std::numbers::pi);
+  Cut cut{{std::cos(turn), std::sin(turn)}, {0, 0}};
+  cut.offset = random.uniform(-4, 8) * cut.side;
+  return cut;
+}
+
 void cause(const Fault& fault, const Start& start, Stage& stage, Random& random) {
   if (fault.trouble == Trouble::gives_way) {
     const double jump = random.uniform(-0.1e-3, 0.1e-3);  // all play of the struts at once
@@ -52,8 +67,8 @@ void cause(const Fault& fault, const Start& start, Stage& stage, Random& random)
   }
   const auto frozen = std::make_shared<std::optional<Vec2>>();
   const Vec2 ghost(random.uniform(40, 600), random.uniform(40, 440));
-  stage.rig().set_mischief([&stage, &random, fault, start, frozen, ghost](const Pose& X, Image& image) {
-    stage.rig().port().repeat_frames(false);
+  const Cut cut = draw_cut(random);
+  stage.rig().set_mischief([&stage, &random, fault, start, frozen, ghost, cut](const Pose& X, Image& image) {
     if (stage.height(X) > fault.below || random.uniform() > fault.share) return true;
     const auto dot = exact_dot(hexapod(), start.world, stage.rig().truth(X));
     switch (fault.trouble) {
@@ -68,12 +83,16 @@ void cause(const Fault& fault, const Start& start, Stage& stage, Random& random)
         if (*frozen) stage.rig().draw_spot(**frozen, 190, image);
         return true;
       case Trouble::stale:
-        stage.rig().port().repeat_frames(true);
+        stage.rig().port().repeat_frames(fault.share < 1 ? 1 + static_cast<int>(random.uniform(0, 4))
+                                                         : kForGood);
         return true;
       case Trouble::lost:
         return false;
       case Trouble::ghost:
         stage.rig().draw_spot(ghost, 190, image);
+        return true;
+      case Trouble::cut:
+        if (dot) hide_beyond(*dot + cut.offset, cut.side, image);
         return true;
       case Trouble::dim:
         if (dot) stage.rig().draw_spot(*dot, 8, image);

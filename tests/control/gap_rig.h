@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
+
+#include <Eigen/LU>
 
 #include "control/feeder.h"
 #include "control/gap_controller.h"
@@ -15,6 +18,8 @@
 #include "tests/control/dot_world.h"
 
 namespace understudy::control {
+
+constexpr int kForGood = std::numeric_limits<int>::max();  // frames
 
 struct GapRigOptions {
   DotWorld world;
@@ -63,15 +68,16 @@ class GapRig {
   double gap_now() const { return gap_at(commanded(port_.state().position)); }
   Pose commanded_now() const { return commanded(port_.state().position); }
 
+  /// As wide as the dot of this picture.
   void draw_spot(const Vec2& at, double peak, Image& image) {
     const double ambient = machine_.microscope.ambient_level;
-    constexpr double kRadius = 5;  // [px] at 1/e^2, as the optics make it
+    const Eigen::Matrix2d inverse = spread_.inverse();
     for (int y = 0; y < image.height(); ++y)
       for (int x = 0; x < image.width(); ++x) {
         const Vec2 d = Vec2(image.region.x + x, image.region.y + y) - at;
-        const double r2 = d.squaredNorm();
+        const double r2 = d.dot(inverse * d);
         double level = ambient + static_cast<double>(noise() % 7) - 3;
-        if (r2 < 9 * kRadius * kRadius) level += peak * std::exp(-2 * r2 / (kRadius * kRadius));
+        if (r2 < 36) level += peak * std::exp(-r2 / 2);
         image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) +
                      static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(std::clamp(level, 0.0, 255.0));
       }
@@ -92,7 +98,9 @@ class GapRig {
     image.pixels.resize(static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height));
     const Pose X = commanded(state.position);
     const auto dot = exact_dot(machine_, options_.world, truth(X));
-    if (!dot) return false;
+    const auto spread = exact_spread(machine_, options_.world, truth(X));
+    if (!dot || !spread) return false;
+    spread_ = *spread;
     draw_spot(*dot + options_.jitter_px * Vec2(random_.normal(), random_.normal()), machine_.laser.peak_level,
               image);
     return !mischief_ || mischief_(X, image);
@@ -109,10 +117,21 @@ class GapRig {
   std::unique_ptr<kinematics::Mechanism> mechanism_;
   Random random_;
   std::uint32_t noise_ = 2463534242u;
+  Eigen::Matrix2d spread_ = Eigen::Matrix2d::Identity();  // [px^2]
   Mischief mischief_;
   std::function<Vec3(const Pose&)> play_;
   machine::LoopbackPort port_;
 };
+
+/// Something that stands before the picture, from an edge through a point on, towards `side`.
+inline void hide_beyond(const Vec2& edge, const Vec2& side, Image& image) {
+  constexpr std::uint8_t kDark = 12;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      if ((Vec2(image.region.x + x, image.region.y + y) - edge).dot(side) > 0)
+        image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) +
+                     static_cast<std::size_t>(x)] = kDark;
+}
 
 /// Moves through the planner, as in print(), and remembers where it was told to go.
 class RigMotion : public GapMotion {

@@ -60,10 +60,40 @@ TEST(GapController, ASaturatedDotStopsIt) {
   EXPECT_THAT(outcome.why, HasSubstr("saturated"));
 }
 
+TEST(GapController, AnEdgeThatHidesAQuarterOfTheDotStopsItWhereverItStands) {
+  // Beyond 0.67 standard deviations lies a quarter of a Gaussian; the dot's are at least 2.3 px.
+  for (const double degrees : {0.0, 90.0, 200.0, 300.0}) {
+    Stage stage(on_slope(10));
+    const Vec2 side(std::cos(from_deg(degrees)), std::sin(from_deg(degrees)));
+    stage.rig().set_mischief([&](const Pose& X, Image& image) {
+      hide_beyond(*exact_dot(hexapod(), on_slope(10).world, stage.rig().truth(X)) + 1.5 * side, side, image);
+      return true;
+    });
+    const GapOutcome outcome = stage.run();
+    expect_stopped_and_retreated(stage, outcome, GapStop::partly_hidden);
+    EXPECT_THAT(outcome.why, HasSubstr("something hides a part of it"));
+  }
+}
+
+TEST(GapController, AFrameThatIsLostOrStaleNowAndThenIsAskedForAgain) {
+  for (const bool lost : {true, false}) {
+    Stage stage(on_slope(0));
+    int frame = 0;
+    stage.rig().set_mischief([&](const Pose&, Image&) {
+      const bool now = ++frame % 3 == 0;
+      stage.rig().port().repeat_frames(now && !lost ? 2 : 0);
+      return !now || !lost;
+    });
+    const GapOutcome outcome = stage.run();
+    EXPECT_EQ(outcome.stop, GapStop::none) << outcome.why;
+    EXPECT_NEAR(stage.rig().gap_now(), 0.13e-3, 30e-6);
+  }
+}
+
 TEST(GapController, ARepeatedFrameStopsIt) {
   Stage stage(on_slope(0));
   stage.rig().set_mischief([&](const Pose& X, Image&) {
-    if (stage.height(X) < 1.9e-3) stage.rig().port().repeat_frames(true);
+    if (stage.height(X) < 1.9e-3) stage.rig().port().repeat_frames(kForGood);
     return true;
   });
   const GapOutcome outcome = stage.run();

@@ -136,7 +136,7 @@ TEST(LoopbackPort, AFrameIsExposedHalfWayAndNumbered) {
   const auto first = frame.number;
   ASSERT_EQ(port.capture({0, 0, 1, 1}, frame, 1), Status::ok);
   EXPECT_GT(frame.number, first);
-  port.repeat_frames(true);
+  port.repeat_frames(1);
   const auto second = frame.number;
   ASSERT_EQ(port.capture({0, 0, 1, 1}, frame, 1), Status::ok);
   EXPECT_EQ(frame.number, second);

@@ -17,6 +17,7 @@ constexpr double kLow = 1000 - 3.3 * 44.7, kHigh = 1000 + 3.3 * 44.7;
 struct Consistency {
   double normalised = 0;  // sum over frames of e^T C^-1 e
   double rms = 0;         // [px] per axis
+  double spread = 0;      // mean square of the second moments' errors over what is told of them
 };
 
 Consistency consistency(const SyntheticSpot& shape, double area, DotOptions options) {
@@ -38,6 +39,10 @@ Consistency consistency(const SyntheticSpot& shape, double area, DotOptions opti
     const Vec2 error = m.position_px - spot.centre;
     c.normalised += error.dot(m.covariance_px2.inverse() * error);
     c.rms += error.squaredNorm() / (2 * kFrames);
+    const double pixel = 1.0 / 12;  // of its own square
+    const Vec2 truth(std::pow(spot.sigma_x, 2) + pixel, std::pow(spot.sigma_y, 2) + pixel);
+    const Vec2 off = m.spread_px2.diagonal().cwiseQuotient(truth) - Vec2::Ones();
+    c.spread += off.squaredNorm() / std::pow(m.spread_sigma, 2) / (2 * kFrames);
   }
   c.rms = std::sqrt(c.rms);
   return c;
@@ -47,6 +52,9 @@ TEST(LaserDotCovariance, HoldsForShotAndReadNoise) {
   const Consistency c = consistency({.sigma_x = 2.4, .sigma_y = 3.2, .peak = 130}, 0, {});
   EXPECT_GT(c.normalised, kLow);
   EXPECT_LT(c.normalised, kHigh);
+  // The level of the surroundings errs too, and is not in it.
+  EXPECT_GT(c.spread, 0.75);
+  EXPECT_LT(c.spread, 1.5);
 }
 
 TEST(LaserDotCovariance, HoldsUnderSpeckleOfKnownGrain) {
@@ -58,6 +66,7 @@ TEST(LaserDotCovariance, HoldsUnderSpeckleOfKnownGrain) {
   // Closed form for a round spot: sigma^2 = A / (8 pi); RMS of 1000 numbers is good to 2.3 %, thrice that.
   EXPECT_NEAR(c.rms, std::sqrt(kArea / (8 * std::numbers::pi)),
               0.08 * std::sqrt(kArea / (8 * std::numbers::pi)));
+  EXPECT_NEAR(c.spread, 1, 0.25);
 }
 
 TEST(LaserDotCovariance, ReadsTheGrainFromThePictureWhenNobodyTellsIt) {
