@@ -56,6 +56,8 @@ enum class UrgentCommand { hold, resume, stop, clear_fault };
 struct Outputs {
   double nozzle_temperature = 0;  ///< [K]; 0 = heater off
   double fan = 0;                 ///< 0..1
+
+  bool off() const { return nozzle_temperature == 0 && fan == 0; }
 };
 
 struct Frame {
@@ -80,6 +82,7 @@ class MachinePort {
   /// Bypasses the queue. hold: decelerate and keep the rest of the queue until resume; stop: decelerate and
   /// drop it; clear_fault.
   virtual Status urgent(UrgentCommand command) = 0;
+  /// With a fault, outputs can only be switched off.
   virtual Status set_outputs(const Outputs& outputs, double deadline) = 0;
   /// Exposes one frame of the tool's microscope and waits for it. `region` is clipped to the sensor.
   virtual Status capture(const Region& region, Frame& frame, double deadline) = 0;

@@ -252,7 +252,7 @@ Status SimulatedPort::urgent(machine::UrgentCommand command) {
 }
 
 Status SimulatedPort::set_outputs(const machine::Outputs& outputs, double deadline) {
-  if (fault_ != Fault::none) return Status::faulted;
+  if (fault_ != Fault::none && !outputs.off()) return Status::faulted;
   if (plant_.time() > deadline) return Status::deadline_exceeded;
   outputs_ = outputs;
   return Status::ok;

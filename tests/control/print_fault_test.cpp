@@ -61,6 +61,7 @@ TEST(Print, AnEmergencyStopInTheBeadEndsIt) {
     EXPECT_FALSE(result.completed);
     EXPECT_EQ(result.fault, Fault::emergency_stop);
     EXPECT_NEAR(result.duration, at, 1e-9);
+    EXPECT_EQ(rig.port().outputs().nozzle_temperature, 0) << "left hot";
     EXPECT_NEAR(rig.commanded_now().translation().z(), kTable + kGap, 1e-3);
   }
 }

@@ -101,6 +101,8 @@ TEST(LoopbackPort, AnInjectedFaultStopsTheAxesAtItsTime) {
   EXPECT_DOUBLE_EQ(port.now(), 0.5);
   EXPECT_DOUBLE_EQ(port.state().position[0], 0.5);
   EXPECT_EQ(port.state().fault, Fault::emergency_stop);
+  EXPECT_EQ(port.set_outputs({483, 0}, kNever), Status::faulted);
+  EXPECT_EQ(port.set_outputs({}, kNever), Status::ok);
 }
 
 TEST(LoopbackPort, HoldKeepsTheQueueAndStopDropsIt) {

@@ -56,7 +56,9 @@ TEST(SlowGapBenchmark, AFrameWithSpeckleIsWithinTenMicrometresAndNothingTouches)
       EXPECT_LE(row.sigma_um, 10) << row.surface << ' ' << row.condition;
       EXPECT_LE(std::abs(row.bias_um), 10) << row.surface << ' ' << row.condition;
     }
-    if (row.condition == "speckle") EXPECT_EQ(row.missed, 0) << row.surface;
+    if (row.condition == "speckle") {
+      EXPECT_EQ(row.missed, 0) << row.surface;
+    }
   }
   for (const ApproachRow& row : b.approaches) {
     EXPECT_EQ(row.touches, 0) << row.surface << ' ' << row.condition;
@@ -65,8 +67,12 @@ TEST(SlowGapBenchmark, AFrameWithSpeckleIsWithinTenMicrometresAndNothingTouches)
   for (const FollowingRow& row : b.followings) {
     EXPECT_EQ(row.touches, 0) << row.surface << ' ' << row.condition;
     EXPECT_EQ(row.false_stops, 0) << row.surface << ' ' << row.condition;
-    if (row.benign) EXPECT_GE(row.in_band_fraction, 0.99) << row.surface << ' ' << row.condition;
-    if (row.condition == "beam half hidden") EXPECT_EQ(row.stops.size(), 1u) << row.surface;
+    if (row.benign) {
+      EXPECT_GE(row.in_band_fraction, 0.99) << row.surface << row.condition;
+    }
+    if (row.condition == "beam half hidden") {
+      EXPECT_EQ(row.stops.size(), 1u) << row.surface;
+    }
   }
 }
 

@@ -199,6 +199,20 @@ class Recorder : public Observer {
   std::vector<Snapshot> snapshots;
 };
 
+TEST_F(SimulatedPortTest, AfterAFaultTheHeaterCanOnlyBeSwitchedOff) {
+  Recorder recorder;
+  SimulatedPort port(machine_, plant_, {}, {&recorder});
+  ASSERT_EQ(port.set_outputs({483, 0.5}, 1), Status::ok);
+  ASSERT_EQ(port.submit(ramp(0.01, 50, false), 1), Status::ok);
+  ASSERT_EQ(port.wait_until(0.2), Status::faulted);
+  EXPECT_EQ(port.set_outputs({483, 0}, 1), Status::faulted);
+  EXPECT_EQ(recorder.snapshots.back().nozzle_temperature, 483);
+  EXPECT_EQ(port.set_outputs({}, 1), Status::ok);
+  ASSERT_EQ(port.urgent(machine::UrgentCommand::clear_fault), Status::ok);
+  ASSERT_EQ(port.wait_until(port.now() + 0.1), Status::ok);
+  EXPECT_EQ(recorder.snapshots.back().nozzle_temperature, 0);
+}
+
 TEST(SimulatedPort, SwitchingAnObserverOffLeavesTheTrajectoryBitIdentical) {
   const auto machine = machine::load_machine("hexapod");
   Pose end[2];
