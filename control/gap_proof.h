@@ -21,20 +21,23 @@ class StepProof {
     if (!begun_) {
       begun_ = true;
       sure_ = std::min(gap, floor_ + blind_) - height;
-      stall_ = proof_ = {height, gap, sigma};
+      stall_ = last_ = anchor_ = {height, gap, sigma};
       return;
     }
     sure_ = std::min(sure_, gap - height);
     const Look look{height, gap, sigma};
     count_stall(look);
-    const double moved = proof_.height - height, noise = std::hypot(sigma, proof_.sigma);
-    if (moved < std::max(kStallStep, kEvident * noise)) return;
-    if (std::abs(proof_.gap - gap - moved) <= kScaleError * moved + kEvident / 3 * noise) {
+    // Where noise is more than it is told to be, a single step proves nothing and all of them together do.
+    // Whichever of two looks was the dot: the lower of their dead reckonings is safe.
+    for (const Look& from : {last_, anchor_}) {
+      if (!followed(from, look)) continue;
       proved_ = true;
       // By the look before the step: the one after it may be the first at something else.
-      sure_ = std::min(proof_.gap - proof_.height, gap - height);
+      sure_ = std::min(from.gap - from.height, gap - height);
+      anchor_ = look;
+      break;
     }
-    proof_ = look;
+    if (evident(last_, look)) last_ = look;
   }
 
   bool proved() const { return proved_; }
@@ -52,6 +55,16 @@ class StepProof {
     double height = 0, gap = 0, sigma = 0;
   };
 
+  static double noise(const Look& a, const Look& b) { return std::hypot(a.sigma, b.sigma); }
+  static bool evident(const Look& from, const Look& to) {
+    return from.height - to.height >= std::max(kStallStep, kEvident * noise(from, to));
+  }
+  static bool followed(const Look& from, const Look& to) {
+    const double moved = from.height - to.height;
+    return evident(from, to) &&
+           std::abs(from.gap - to.gap - moved) <= kScaleError * moved + kEvident / 3 * noise(from, to);
+  }
+
   /// Steps too small to show add up.
   void count_stall(const Look& look) {
     const double moved = stall_.height - look.height;
@@ -62,8 +75,8 @@ class StepProof {
 
   double floor_, blind_;
   bool begun_ = false, proved_ = false;
-  double sure_ = 0;  // [m], gap less height: no more is proved
-  Look stall_, proof_;
+  double sure_ = 0;             // [m], gap less height: no more is proved
+  Look stall_, last_, anchor_;  // anchor: at the last proof, or the first
   int stalls_ = 0;
 };
 

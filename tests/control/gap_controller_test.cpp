@@ -13,7 +13,7 @@
 namespace understudy::control {
 namespace {
 
-void approach_from_everywhere(int machines) {
+void approach_from_everywhere(int first, int machines) {
   Random random(11, "approaches");
   for (int i = 0; i < machines; ++i) {
     const double degrees = random.uniform(-20, 20);
@@ -23,6 +23,7 @@ void approach_from_everywhere(int machines) {
     const Vec3 sideways = 0.2e-3 * Vec3(random.normal(), random.normal(), 0);
     // On a slope a sideways error is a gap error too; it must leave room for S'.
     const Vec3 turn = 2e-3 * Vec3(random.normal(), random.normal(), random.normal());
+    if (i < first) continue;
     Stage stage(start, error, i % 2 ? sideways : Vec3::Zero(), turn, static_cast<std::uint64_t>(i));
     const GapOutcome outcome = stage.run();
     ASSERT_EQ(outcome.stop, GapStop::none) << "draw " << i << ": " << outcome.why;
@@ -39,9 +40,11 @@ void approach_from_everywhere(int machines) {
   }
 }
 
-TEST(GapController, EveryApproachEndsInTheBandWithoutTouching) { approach_from_everywhere(60); }
+TEST(GapController, EveryApproachEndsInTheBandWithoutTouching) { approach_from_everywhere(0, 60); }
+/// Of 500 the one whose first three steps read 0.124, 0.079 and 0.062 mm for 0.1, 0.1 and 0.05 mm: speckle.
+TEST(GapController, AnUnluckyFirstStepDoesNotEndTheApproach) { approach_from_everywhere(313, 314); }
 TEST(SlowGapController, EachOfFiveHundredApproachesEndsInTheBandWithoutTouching) {
-  approach_from_everywhere(500);
+  approach_from_everywhere(0, 500);
 }
 
 TEST(GapController, ReportsTheGapThatIsThere) {
