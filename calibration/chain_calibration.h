@@ -33,9 +33,11 @@ struct ChainCalibration {
   std::vector<std::string> estimated;  ///< names of what was estimated: "j2 tilt u", "tool x"
   std::vector<std::string> redundant;  ///< what these poses cannot tell beside the others
   Eigen::MatrixXd covariance;          ///< of `estimated`; [m], [rad]
-  std::vector<Twist> residuals;        ///< measured less model, in S
+  std::vector<Twist> residuals;        ///< of each sample, measured less model, in S
+  std::vector<bool> used;              ///< false: rejected as an outlier
+  std::vector<std::string> warnings;
   int iterations = 0;
-  double chi_square = 0;
+  double chi_square = 0;  ///< of the used samples
   int degrees_of_freedom = 0;
   bool ok() const { return status == Status::ok; }
 };
@@ -54,5 +56,10 @@ ChainParameters moved(const ChainParameters& from, const Eigen::VectorXd& by);
 /// Gauss-Newton on the likelihood of the measured poses. Never throws.
 ChainCalibration calibrate_chain(const ChainParameters& nominal, const std::vector<ChainSample>& samples,
                                  int max_iterations = 30);
+
+/// The same over the poses that agree, three quarters of them at least (trimmed_search.h); the others are
+/// named in a warning. Refuses poses too few to leave one out. Never throws.
+ChainCalibration calibrate_chain_robust(const ChainParameters& nominal,
+                                        const std::vector<ChainSample>& samples, const Options& options = {});
 
 }  // namespace understudy::calibration

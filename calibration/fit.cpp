@@ -1,14 +1,16 @@
 #include "calibration/fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace understudy::calibration {
 namespace {
 
-constexpr double kStepDone = 1e-14;  // of step^T H step: a step of 1e-7 standard deviations
-constexpr double kCostRounding =
-    1e-6;  // forward kinematics is good to 1e-13 m, 5e-9 standard deviations an entry
+constexpr double kStepDone = 1e-7;      // standard deviations: the root of step^T H step
+constexpr double kCostRounding = 1e-6;  // at the least
+// A step adds up what rounding leaves of hundreds of equations, a cost twice as much of each.
+constexpr double kStepRounding = 20, kCostRoundings = 200;
 constexpr double kFirstDamping = 1e-4, kLastDamping = 1e8;
 
 bool evaluate(Objective& objective, const HexapodParameters& machine, const std::vector<bool>& used,
@@ -31,6 +33,8 @@ Fit fit(Objective& objective, const HexapodParameters& start, const Unknowns& un
         const std::vector<bool>& used, int max_iterations) {
   Fit result{false, start, 0, NormalEquations(unknowns), 0};
   if (!evaluate(objective, start, used, result.equations, result.cost)) return result;
+  const double step_done = std::max(kStepDone, kStepRounding * objective.rounding());
+  const double cost_rounding = std::max(kCostRounding, kCostRoundings * objective.rounding());
   NormalEquations trial_equations(unknowns);
   double damping = 0;
   ParameterVector step;
@@ -41,7 +45,7 @@ Fit fit(Objective& objective, const HexapodParameters& start, const Unknowns& un
     const double size = solved ? result.equations.curvature(step) : 0;
     if (solved) trial = moved(result.machine, step, unknowns);
     const bool better = solved && evaluate(objective, trial, used, trial_equations, trial_cost) &&
-                        trial_cost <= objective.growth() * result.cost + kCostRounding;
+                        trial_cost <= objective.growth() * result.cost + cost_rounding;
     if (!better) {
       damping = std::max(kFirstDamping, 10 * damping);
       continue;
@@ -50,7 +54,7 @@ Fit fit(Objective& objective, const HexapodParameters& start, const Unknowns& un
     result.cost = trial_cost;
     std::swap(result.equations, trial_equations);
     ++result.iterations;
-    if (size < kStepDone && damping <= kFirstDamping) {
+    if (size < step_done * step_done && damping <= kFirstDamping) {
       result.converged = true;
       break;
     }

@@ -23,6 +23,8 @@ class Objective {
   virtual bool term(std::size_t j, const HexapodParameters& machine, PoseTerm& term) = 0;
   /// By what factor a good step may raise the cost: above 1 where weights move with the parameters.
   virtual double growth() const { return 1 + 1e-9; }
+  /// What rounding leaves of an equation, in standard deviations: no step can be told from 0 below it.
+  virtual double rounding() const { return 0; }
 };
 
 struct Fit {
@@ -33,7 +35,8 @@ struct Fit {
   double cost = 0;
 };
 
-/// Over the samples with used[j]. Converged once a step is below 1e-7 of the parameters' standard deviations.
+/// Over the samples with used[j]. Converged once a step is below 1e-7 of the parameters' standard deviations, or
+/// below what rounding allows to know.
 Fit fit(Objective& objective, const HexapodParameters& start, const Unknowns& unknowns,
         const std::vector<bool>& used, int max_iterations);
 

@@ -1,6 +1,7 @@
 #include "calibration/pose_error_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "calibration/calibrated.h"
@@ -11,7 +12,10 @@ namespace understudy::calibration {
 
 PoseErrorObjective::PoseErrorObjective(const Problem& problem)
     : samples_(problem.samples), errors_(problem.samples.size(), Twist::Zero()) {
+  constexpr double kForward = 1e-13;  // [m] and [rad] to which forward kinematics is good
   for (const PoseSample& sample : samples_) {
+    const Eigen::SelfAdjointEigenSolver<Mat6> axes(sample.covariance, Eigen::EigenvaluesOnly);
+    rounding_ = std::max(rounding_, kForward / std::sqrt(axes.eigenvalues()[0]));
     weights_.push_back(sample.covariance.llt().solve(Mat6::Identity()));
     reached_.push_back(sample.X_BT);
   }

@@ -12,6 +12,7 @@ class PoseErrorObjective final : public Objective {
  public:
   explicit PoseErrorObjective(const Problem& problem);
   bool term(std::size_t j, const HexapodParameters& machine, PoseTerm& term) override;
+  double rounding() const override { return rounding_; }
 
   /// Of sample j at the last machine asked about: measured less reached, and e^T S^-1 e.
   const Twist& error(std::size_t j) const { return errors_[j]; }
@@ -22,6 +23,7 @@ class PoseErrorObjective final : public Objective {
   std::vector<Mat6> weights_;  // S^-1
   std::vector<Pose> reached_;  // seeds of the next forward kinematics
   std::vector<Twist> errors_;
+  double rounding_ = 0;
 };
 
 /// Checks, then maximises the likelihood over all samples.

@@ -124,8 +124,8 @@ void add_calibrate(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option(
       "--estimator", call->request.estimator,
-      "maximum_likelihood (without the option), whitened, ik_residual, robust, with_deviation, "
-      "with_play");
+      "maximum_likelihood (without the option), robust; of hexapods also whitened, ik_residual, "
+      "with_deviation, with_play");
   command
       ->add_option("--noise", call->noise,
                    "um,mrad: 1 sigma of a measured pose on each axis, where the file has no columns for it")

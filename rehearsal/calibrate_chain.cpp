@@ -89,9 +89,10 @@ void check_axes_moved(const Measurements& measurements, const machine::MachineDe
 
 void calibrate_chain_machine(const Measurements& measurements, const machine::MachineDescription& nominal,
                              CalibrateResult& result) {
-  if (result.estimator != "maximum_likelihood")
-    throw InputError(fmt::format("estimator {} is for hexapods; an open chain has maximum_likelihood only",
-                                 result.estimator));
+  const bool robust = result.estimator == "robust";
+  if (!robust && result.estimator != "maximum_likelihood")
+    throw InputError(fmt::format(
+        "estimator {} is for hexapods; an open chain has maximum_likelihood and robust", result.estimator));
   if (nominal.mechanism != "arm" && nominal.mechanism != "chain")
     throw InputError(
         fmt::format("a calibrated '{}' would have no inverse kinematics: only hexapod, arm and "
@@ -100,7 +101,8 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
   check_axes_moved(measurements, nominal);
   const ChainParameters drawn{nominal.chain->kinematics.chain, {}};
   const auto samples = chain_samples(measurements, nominal);
-  const ChainCalibration found = calibration::calibrate_chain(drawn, samples);
+  const ChainCalibration found = robust ? calibration::calibrate_chain_robust(drawn, samples)
+                                        : calibration::calibrate_chain(drawn, samples);
   check_rank(measurements, found);
   kinematics::ChainDescription& known = result.machine.chain->kinematics;
   if (known.design.axes.empty()) known.design = known.chain;
@@ -109,6 +111,7 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
   for (std::size_t j = 0; j < samples.size(); ++j) {
     PoseResidual r;
     r.line = measurements.poses[j].line;
+    r.used = found.used[j];
     r.before = calibration::pose_error(samples[j].X_ST, calibration::forward(drawn, samples[j].axes));
     r.after = found.residuals[j];
     r.whitened = samples[j].covariance.llt().matrixL().solve(r.after);
@@ -123,10 +126,12 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
   result.chi_square = found.chi_square;
   result.degrees_of_freedom = found.degrees_of_freedom;
   result.iterations = found.iterations;
+  result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
   const std::string misfit =
       calibration::misfit_warning(found.chi_square, found.degrees_of_freedom, "outliers, play, bending");
   if (!misfit.empty()) result.warnings.push_back(misfit);
-  result.tip = tip_map(nominal, result.machine, chain_tip(result.machine, found));
+  result.tip = tip_map(nominal, result.machine,
+                       in_frame(chain_tip(result.machine, found), measurements, nominal.X_WB));
 }
 
 }  // namespace understudy::rehearsal

@@ -23,7 +23,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 std::vector<Entrant> entrants_of(const CalibrationBenchmarkRequest& request, bool chain) {
   std::vector<Entrant> entrants;
   std::vector<std::string> names = request.estimators;
-  if (names.empty() && chain) names = {"chain"};
+  if (names.empty() && chain) names = {"chain", "robust"};
   if (names.empty())
     for (const auto& entry : calibration::estimators()) names.push_back(entry.name);
   for (const std::string& name : names) entrants.push_back({name, false});

@@ -28,9 +28,10 @@ class ChainTrials : public TrialRoom {
         description_(machine_.chain->kinematics),
         nominal_{description_.chain, {}} {
     for (const Entrant& entrant : setting.entrants)
-      if (!entrant.plugin && entrant.name != "chain")
-        throw InputError(fmt::format("'{}' calibrates hexapods: of {}, an open chain, the estimator is chain",
-                                     entrant.name, machine_.name));
+      if (!entrant.plugin && entrant.name != "chain" && entrant.name != "robust")
+        throw InputError(
+            fmt::format("'{}' calibrates hexapods: of {}, an open chain, the estimators are chain and robust",
+                        entrant.name, machine_.name));
     Random random(setting.seed, "calibration benchmark/held-out readings");
     for (std::size_t n = 0; n < setting.held_out; ++n) held_out_.push_back(readings(random));
   }
@@ -69,7 +70,8 @@ class ChainTrials : public TrialRoom {
       return answer;
     }
     const auto start = std::chrono::steady_clock::now();
-    const ChainCalibration found = calibrate_chain(nominal_, samples);
+    const ChainCalibration found = entrant.name == "robust" ? calibrate_chain_robust(nominal_, samples)
+                                                            : calibrate_chain(nominal_, samples);
     answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (!found.ok()) answer.failure = calibration::to_string(found.status);
     model = found.parameters;

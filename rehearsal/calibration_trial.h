@@ -75,7 +75,8 @@ class TrialRoom {
   virtual Trial run(const Condition& condition, int machine, renderer::CalibrationView* view) const = 0;
 };
 std::unique_ptr<TrialRoom> make_hexapod_trials(const TrialSetting& setting);
-/// Of an open chain: the only estimator is "chain", beside plug-ins. Throws InputError for others and pixels.
+/// Of an open chain: its estimators are "chain", the likelihood, and "robust". Throws InputError for others
+/// of ours and for pixels.
 std::unique_ptr<TrialRoom> make_chain_trials(const TrialSetting& setting);
 
 /// A problem whose answer leaves the machine worse than it was is not solved.

@@ -56,6 +56,22 @@ TEST(Calibrate, TheSampleIsWhatItsFirstLineSays) {
   EXPECT_EQ(rows(read_file(folder / "s.csv")), rows(read_file(kSample)));
 }
 
+TEST(Calibrate, AnArmHasTheRobustEstimatorToo) {
+  const Folder folder;
+  const std::string poses = folder / "poses.csv",
+                    called = "calibrate " + poses + " --machine arm --estimator ";
+  ASSERT_EQ(understudy("sample-poses --machine arm --count 12 --as-built manufactured -o " + poses).status,
+            0);
+  const Outcome outcome = understudy(called + "robust -o " + (folder / "m.yaml"));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("30 parameters by robust"));
+  EXPECT_TRUE(fs::exists(folder.path() / "m.yaml"));
+  const Outcome refused = understudy(called + "whitened -o " + (folder / "w.yaml"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("an open chain has maximum_likelihood and robust"));
+  EXPECT_FALSE(fs::exists(folder.path() / "w.yaml"));
+}
+
 TEST(Calibrate, RefusesInOneLineAndWritesNothing) {
   const Folder folder;
   const std::string out = " -o " + (folder / "m.yaml") + " --report " + (folder / "report");

@@ -156,7 +156,7 @@ TEST(CalibrationBenchmark, AnAnswerThatMakesTheMachineWorseIsAFailure) {
 }
 
 // Of an open chain's tip error the parts that no pose tells are none: an efficient estimator meets the bound.
-TEST(CalibrationBenchmark, TheArmIsEnteredByItsOwnEstimator) {
+TEST(CalibrationBenchmark, TheArmIsEnteredByItsOwnEstimators) {
   CalibrationBenchmarkRequest request = small();
   request.machine = "arm";
   request.trials = 12;
@@ -169,6 +169,10 @@ TEST(CalibrationBenchmark, TheArmIsEnteredByItsOwnEstimator) {
   EXPECT_EQ(clean.failures, 0);
   EXPECT_NEAR(clean.efficiency, 1, 0.35);  // 12 runs of about 15 independent parts
   EXPECT_GT(score(b, Disturbance::outliers, "chain").median, 2 * clean.median);
+  // 18 of 20 poses left: sqrt(20 / 18) = 1.05, and a little for the worse design.
+  EXPECT_LT(score(b, Disturbance::outliers, "robust").median, 1.3 * clean.median);
+  EXPECT_GT(score(b, Disturbance::none, "robust").efficiency, 0.95 * clean.efficiency);
+  EXPECT_EQ(b.entrants[b.ranking[0].entrant].name, "robust");
   EXPECT_LT(clean.median, 0.05 * b.conditions[0].uncalibrated);
 }
 

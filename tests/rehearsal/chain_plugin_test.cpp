@@ -119,6 +119,7 @@ TEST(ChainPlugin, EntersTheBenchmarkOfTheArm) {
   request.disturbances = {Disturbance::none};
   request.plugins = {kExample, "echo '{}'"};
   request.plugin_limits.time = 60;
+  request.estimators = {"chain"};
   const CalibrationBenchmark b = run_benchmark(request);
   ASSERT_EQ(b.entrants.size(), 3u);
   const auto& scores = b.conditions[0].scores;
