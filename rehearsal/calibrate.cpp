@@ -116,7 +116,8 @@ void calibrate_hexapod(const Measurements& measurements, const machine::MachineD
   result.degrees_of_freedom = found.degrees_of_freedom;
   result.iterations = found.iterations;
   result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
-  result.tip = tip_map(nominal, result.machine, hexapod_tip(result.machine, found, unknowns));
+  result.tip = tip_map(nominal, result.machine,
+                       in_frame(hexapod_tip(result.machine, found, unknowns), measurements, nominal.X_WB));
 }
 
 std::string line_list(const CalibrateResult& result) {
@@ -138,6 +139,7 @@ CalibrateResult calibrate(const CalibrateRequest& request) {
   const machine::MachineDescription nominal = machine::load_machine(request.machine);
   const Measurements measurements = read_measurements(request.measurements, nominal, result.noise);
   result.noise_told = measurements.noise_told;
+  result.frame = measurements.frame;
   result.machine = nominal;
   if (!measurements.noise_told && !request.noise)
     result.warnings.push_back(

@@ -35,7 +35,7 @@ struct ParameterLine {
   double before = 0, after = 0, sigma = 0;  ///< in `unit`
 };
 
-/// 3D uncertainty of the tip, 1 sigma, that is left by the calibration.
+/// 3D uncertainty of the tip, 1 sigma, that is left by the calibration and by the measuring frame.
 struct TipMap {
   double median = 0, worst = 0, rms = 0;     ///< [m], over poses drawn from the work space
   double moved_median = 0, moved_worst = 0;  ///< [m], of the same poses between old and new model
@@ -56,6 +56,7 @@ struct CalibrateResult {
   std::string estimator, command;
   bool noise_told = false;
   calibration::MeasurementNoise noise;  ///< that was assumed, unless told
+  std::optional<MeasuringFrame> frame;  ///< as the file tells it; its share is in `tip`
   std::vector<PoseResidual> poses;
   std::vector<ParameterLine> parameters;
   std::vector<std::string> redundant;  ///< parameters that no pose can tell beside the others

@@ -55,6 +55,11 @@ const Words& approach_columns() {
   return columns;
 }
 
+const Words& frame_columns() {
+  static const Words columns{"frame_um", "frame_mrad", "frame_permille"};
+  return columns;
+}
+
 const Words& noise_columns(NoiseColumns kind) {
   static const Words none, isotropic{"sigma_um", "sigma_mrad"},
       axes{"sx_um", "sy_um", "sz_um", "srx_mrad", "sry_mrad", "srz_mrad"}, full = covariance_columns();
@@ -86,6 +91,7 @@ TableColumns check_columns(const Words& header, const machine::MachineDescriptio
   std::ranges::copy(axis_columns(machine), std::back_inserter(required));
   Words known = required;
   std::ranges::copy(approach_columns(), std::back_inserter(known));
+  std::ranges::copy(frame_columns(), std::back_inserter(known));
   const auto kinds = {NoiseColumns::isotropic, NoiseColumns::axes, NoiseColumns::full};
   for (const NoiseColumns kind : kinds) std::ranges::copy(noise_columns(kind), std::back_inserter(known));
 
@@ -113,6 +119,11 @@ TableColumns check_columns(const Words& header, const machine::MachineDescriptio
                                           noise_columns(columns.noise).front(), words.front()));
     columns.noise = kind;
   }
+  const Words absent_frame = missing(frame_columns(), header);
+  columns.frame = absent_frame.empty();
+  if (!absent_frame.empty() && absent_frame.size() < frame_columns().size())
+    throw InputError(
+        place, fmt::format("the measuring frame is told in part: missing {}", fmt::join(absent_frame, ", ")));
   const Words sides = missing(approach_columns(), header);
   columns.approach = sides.empty();
   if (!sides.empty() && sides.size() < approach_columns().size())

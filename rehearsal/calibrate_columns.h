@@ -17,6 +17,8 @@ std::vector<std::string> axis_columns(const machine::MachineDescription& machine
 /// "a1" to "a6"
 const std::vector<std::string>& approach_columns();
 const std::vector<std::string>& noise_columns(NoiseColumns kind);
+/// "frame_um", "frame_mrad", "frame_permille": of the measuring device, the same in every row
+const std::vector<std::string>& frame_columns();
 /// SI value of one unit of a noise column, of a standard deviation or an entry of the covariance.
 double noise_unit(const std::string& column);
 
@@ -25,6 +27,7 @@ double noise_unit(const std::string& column);
 struct TableColumns {
   NoiseColumns noise = NoiseColumns::none;
   bool approach = false;
+  bool frame = false;
 };
 TableColumns check_columns(const std::vector<std::string>& header, const machine::MachineDescription& machine,
                            const std::string& file, int line);

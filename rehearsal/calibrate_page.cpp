@@ -74,15 +74,21 @@ std::string tip_section(const CalibrateResult& result) {
   for (const auto& slice : result.tip.slices)
     for (const double s : slice.sigma)
       if (std::isfinite(s)) top = std::max(top, s);
+  const std::string scope =
+      result.frame
+          ? fmt::format(
+                "Play and thermal drift are not in it; what the measuring frame errs alike in all poses "
+                "is: {:.1f} µm, {:.3f} mrad and {:.3f} ‰.",
+                to_um(result.frame->position), 1e3 * result.frame->rotation, 1e3 * result.frame->strain)
+          : "Play, thermal drift and the frame of the measuring device are not in it.";
   std::string out = fmt::format(
       "<section><h2>Tip uncertainty over the work space</h2><p class=\"note\">3D, 1 sigma, of the tip where "
       "the "
-      "calibrated machine sends it; play, thermal drift and the frame of the measuring device are not in it. "
-      "Planes "
-      "through home at home's orientation; white cannot be reached. The figures "
-      "above are "
-      "over {} poses of the 100 mm cube about home, tilted to 20 degrees.</p>{}<div class=\"pictures\">",
-      result.tip.poses, heat_key(std::max(top, 1e-12)));
+      "calibrated machine sends it. {} Planes through home at home's orientation; white cannot be reached. "
+      "The "
+      "figures above are over {} poses of the 100 mm cube about home, tilted to 20 degrees.</p>{}<div "
+      "class=\"pictures\">",
+      scope, result.tip.poses, heat_key(std::max(top, 1e-12)));
   for (const auto& slice : result.tip.slices)
     out += chart(slice_chart(slice, std::max(top, 1e-12)), fmt::format("{}, {} plane", slice.u, slice.v));
   return out + "</div></section>";

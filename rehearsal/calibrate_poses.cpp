@@ -129,12 +129,12 @@ class Measurer {
   }
   const MeasuringStand* stand() const { return stand_.get(); }
 
-  /// False where the cameras find no pose.
+  /// False where the cameras find no pose. Its covariance is known when all poses are: finish().
   bool measure(const Pose& X_BT_true, std::uint64_t frame, MeasuredPose& pose) {
     if (stand_) {
       const PixelPose seen = stand_->measure(*view_, X_BT_true, roughly(X_BT_true), frame);
       pose.X_WT = X_WB_ * seen.X_BT;
-      pose.covariance = told_in(X_WB_.linear(), seen.covariance);
+      if (seen.ok()) seen_.push_back(seen);
       return seen.ok();
     }
     Twist unit;
@@ -144,6 +144,13 @@ class Measurer {
     pose.X_WT = make_pose(Mat3(exp_rotation(e.tail<3>()) * X_WT.linear()), X_WT.translation() + e.head<3>());
     pose.covariance = covariance_;
     return true;
+  }
+
+  void finish(Measurements& sample) {
+    if (!stand_) return;
+    sample.frame = take_out_frame(seen_);
+    for (std::size_t j = 0; j < seen_.size(); ++j)
+      sample.poses[j].covariance = told_in(X_WB_.linear(), seen_[j].covariance);
   }
 
  private:
@@ -159,6 +166,7 @@ class Measurer {
   Random noise_;
   std::unique_ptr<MeasuringStand> stand_;
   std::unique_ptr<renderer::CalibrationView> view_;
+  std::vector<PixelPose> seen_;
 };
 
 }  // namespace
@@ -191,6 +199,7 @@ Measurements sample_poses(const SamplePosesRequest& request, const MachineDescri
     }
     sample.poses.push_back(std::move(pose));
   }
+  measurer.finish(sample);
   return sample;
 }
 

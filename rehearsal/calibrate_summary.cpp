@@ -79,6 +79,10 @@ std::string calibration_text(const CalibrateResult& result) {
       to_um(result.tip.moved_median), to_um(result.tip.moved_worst));
   out += fmt::format("  tip uncertainty left, 1 sigma   {:9.1f} um median, {:.1f} um worst ({} poses)\n",
                      to_um(result.tip.median), to_um(result.tip.worst), result.tip.poses);
+  if (const auto& frame = result.frame)
+    out += fmt::format(
+        "  of which the measuring frame    {:9.1f} um, {:.3f} mrad, {:.3f} permille, alike in all poses\n",
+        to_um(frame->position), 1e3 * frame->rotation, 1e3 * frame->strain);
   if (!result.redundant.empty())
     out += fmt::format("  {} redundant parameters were left as they are\n", result.redundant.size());
   for (const ParameterLine& line : result.parameters)
@@ -100,6 +104,10 @@ std::string calibration_json(const CalibrateResult& result) {
     value["noise"]["position_um"] = number(to_um(result.noise.position));
     value["noise"]["rotation_mrad"] = number(1e3 * result.noise.rotation);
   }
+  if (const auto& frame = result.frame)
+    value["frame"] = {{"position_um", number(to_um(frame->position))},
+                      {"rotation_mrad", number(1e3 * frame->rotation)},
+                      {"strain_permille", number(1e3 * frame->strain)}};
   value["residual"] = {{"tip_rms_before_um", number(to_um(residual_rms(result, true)))},
                        {"tip_rms_after_um", number(to_um(residual_rms(result, false)))},
                        {"orientation_rms_before_mrad", number(1e3 * turn_rms(result, true))},

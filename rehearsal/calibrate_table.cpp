@@ -103,6 +103,21 @@ std::array<Approach, kinematics::kStruts> approach_of(const Row& row) {
   return approach;
 }
 
+/// The device's frame by one row; the rows before must have told the same.
+void read_frame(const Row& row, std::optional<MeasuringFrame>& frame) {
+  constexpr double kPerMille = 1e-3;
+  for (const std::string& column : frame_columns())
+    if (!(row.at(column) >= 0))
+      throw InputError(row.place(), fmt::format("{} is {:g}, below 0", column, row.at(column)));
+  const MeasuringFrame here{kMicrometre * row.at("frame_um"), 1e-3 * row.at("frame_mrad"),
+                            kPerMille * row.at("frame_permille")};
+  if (frame && !(*frame == here))
+    throw InputError(row.place(),
+                     "frame_um, frame_mrad and frame_permille are not those of the first row: the device's "
+                     "frame errs alike in all poses");
+  frame = here;
+}
+
 std::vector<double> axes_of(const Row& row, const Words& columns) {
   std::vector<double> axes;
   for (const std::string& column : columns)
@@ -157,6 +172,7 @@ Measurements read_measurements(const std::string& file, const machine::MachineDe
     pose.covariance = covariance_of(row, columns.noise, assumed.covariance());
     pose.axes = axes_of(row, axes);
     if (columns.approach) pose.approach = approach_of(row);
+    if (columns.frame) read_frame(row, result.frame);
     result.poses.push_back(std::move(pose));
   }
   if (result.poses.empty()) throw InputError({file, 0, 0}, "has a header but no poses");
@@ -173,6 +189,7 @@ std::string measurements_csv(const Measurements& measurements, const machine::Ma
     header.insert(header.end(), more->begin(), more->end());
   if (measurements.approach_told)
     header.insert(header.end(), approach_columns().begin(), approach_columns().end());
+  if (measurements.frame) header.insert(header.end(), frame_columns().begin(), frame_columns().end());
   std::string out = fmt::format("# {}\n{}\n", comment, fmt::join(header, ","));
   for (const MeasuredPose& pose : measurements.poses) {
     Quat q(pose.X_WT.linear());
@@ -187,6 +204,9 @@ std::string measurements_csv(const Measurements& measurements, const machine::Ma
     if (noise != NoiseColumns::none) append_noise(pose.covariance, noise, cells);
     for (std::size_t i = 0; measurements.approach_told && i < kinematics::kStruts; ++i)
       cells.push_back(std::to_string(static_cast<int>(pose.approach[i])));
+    if (const auto& frame = measurements.frame)
+      for (const double v : {to_um(frame->position), 1e3 * frame->rotation, 1e3 * frame->strain})
+        cells.push_back(fmt::format("{:.4g}", v));
     out += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return out;

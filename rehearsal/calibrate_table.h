@@ -10,6 +10,7 @@
 #include "calibration/problem.h"
 #include "calibration/synthetic.h"
 #include "machine/description.h"
+#include "rehearsal/measuring_frame.h"
 
 namespace understudy::rehearsal {
 
@@ -26,8 +27,9 @@ struct Measurements {
   std::string file;    ///< as it was named
   std::string sha256;  ///< of its bytes, hexadecimal
   std::vector<MeasuredPose> poses;
-  bool noise_told = false;     ///< by columns of the file
-  bool approach_told = false;  ///< likewise
+  bool noise_told = false;              ///< by columns of the file
+  bool approach_told = false;           ///< likewise
+  std::optional<MeasuringFrame> frame;  ///< likewise
 };
 
 /// Throws InputError with file and line: columns that are missing (all named) or unknown (with the nearest

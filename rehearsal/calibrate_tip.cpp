@@ -108,6 +108,19 @@ TipCovariance hexapod_tip(const machine::MachineDescription& machine,
   };
 }
 
+TipCovariance in_frame(const TipCovariance& covariance, const Measurements& measurements, const Pose& X_WB) {
+  if (!measurements.frame) return covariance;
+  Vec3 middle = Vec3::Zero();
+  for (const MeasuredPose& pose : measurements.poses)
+    middle += pose.X_WT.translation() / static_cast<double>(measurements.poses.size());
+  return [covariance, X_WB, middle, frame = *measurements.frame](const Pose& X_BT, Mat3& at) {
+    if (!covariance(X_BT, at)) return false;
+    const Mat3 R_BW = X_WB.linear().transpose();
+    at += R_BW * frame.covariance(X_WB * X_BT.translation() - middle) * R_BW.transpose();
+    return true;
+  };
+}
+
 TipCovariance chain_tip(const machine::MachineDescription& machine,
                         const calibration::ChainCalibration& calibration) {
   const auto names = calibration::chain_parameter_names(calibration.parameters.chain);

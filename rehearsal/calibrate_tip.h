@@ -19,6 +19,9 @@ TipCovariance hexapod_tip(const machine::MachineDescription& machine,
 TipCovariance chain_tip(const machine::MachineDescription& machine,
                         const calibration::ChainCalibration& calibration);
 
+/// With the share of the frame in which the tips were measured.
+TipCovariance in_frame(const TipCovariance& covariance, const Measurements& measurements, const Pose& X_WB);
+
 /// The same machine with all zeros 0: screws and mounts moved to where the axes read 0.
 kinematics::Chain zeros_absorbed(const calibration::ChainParameters& machine);
 

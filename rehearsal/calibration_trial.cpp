@@ -135,19 +135,24 @@ class HexapodTrials : public TrialRoom {
                   renderer::CalibrationView& view, Problem& problem, Trial& trial) const {
     const MeasuringStand& stand =
         condition.disturbance == Disturbance::boards ? *setting_.misplaced_stand : *setting_.stand;
+    std::vector<PixelPose> poses;
     for (std::size_t j = 0; j < exact.size(); ++j) {
-      PoseSample sample = exact[j];
+      const PoseSample& sample = exact[j];
       const auto expected = kinematics::forward(nominal_, commanded(sample), sample.X_BT);
       const std::uint64_t frame =
           hash_bits(setting_.seed + static_cast<std::uint64_t>(machine), 1000 * condition.poses + j);
-      const PixelPose found = stand.measure(view, sample.X_BT, expected.X_BT, frame);
-      if (!found.ok()) {
+      poses.push_back(stand.measure(view, sample.X_BT, expected.X_BT, frame));
+    }
+    take_out_frame(poses);
+    for (std::size_t j = 0; j < exact.size(); ++j) {
+      if (!poses[j].ok()) {
         ++trial.lost_poses;
         continue;
       }
-      sample.X_BT = found.X_BT;
-      sample.covariance = found.covariance;
-      trial.beyond = std::max(trial.beyond, found.beyond);
+      PoseSample sample = exact[j];
+      sample.X_BT = poses[j].X_BT;
+      sample.covariance = poses[j].covariance;
+      trial.beyond = std::max(trial.beyond, poses[j].beyond);
       problem.samples.push_back(sample);
     }
   }

@@ -185,6 +185,13 @@ void add_gap_findings(const TwinRun& run, const machine::MachineDescription& mac
     findings.push_back(gap_finding(
         Severity::error, following->line, following->time, following->gap, limits.accepted_max,
         fmt::format("gap control stopped on the path ({}): {}", to_string(following->stop), following->why)));
+  if (const auto& unmeasured = run.result.unmeasured_starts; !unmeasured.empty())
+    findings.push_back(gap_finding(
+        Severity::warning, unmeasured.front(), 0, limits.aim, limits.accepted_max,
+        fmt::format(
+            "the dot would not lie on what is printed on at the start of {} bead{}: the offset of the bead "
+            "before was carried on",
+            unmeasured.size(), unmeasured.size() == 1 ? "" : "s")));
   if (mode != control::GapControl::off && run.result.completed && run.result.approaches.empty() &&
       run.deposition.length > 0)
     findings.push_back(gap_finding(

@@ -113,6 +113,17 @@ double radius_px(const CalibrationRig& rig) {
 
 }  // namespace
 
+MeasuringFrame take_out_frame(std::vector<PixelPose>& poses) {
+  std::vector<SharedError> shared;
+  for (const PixelPose& pose : poses)
+    if (pose.ok()) shared.push_back({pose.X_BT.translation(), pose.shared, Mat6::Zero()});
+  const MeasuringFrame frame = measuring_frame(shared);
+  std::size_t next = 0;
+  for (PixelPose& pose : poses)
+    if (pose.ok()) pose.covariance = pose.detection + shared[next++].left;
+  return frame;
+}
+
 MeasuringStand::MeasuringStand(const machine::MachineDescription& machine, const StandOptions& options,
                                int threads, const std::function<void(double)>& progress)
     : options_(options), X_WB_(machine.X_WB), X_BT_home_(machine.X_BT_home) {
@@ -204,6 +215,8 @@ PixelPose MeasuringStand::measure(renderer::CalibrationView& view, const Pose& X
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_BW;
   pose.X_BT = X_WB_.inverse() * found.X_WT;
   pose.covariance = turn * found.total() * turn.transpose();
+  pose.detection = turn * found.covariance * turn.transpose();
+  for (const Twist& shift : found.replicas) pose.shared.push_back(turn * shift);
   pose.beyond = found.beyond;
   return pose;
 }

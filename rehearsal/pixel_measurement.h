@@ -10,6 +10,7 @@
 #include "calibration/problem.h"
 #include "core/random.h"
 #include "machine/description.h"
+#include "rehearsal/measuring_frame.h"
 #include "renderer/calibration_view.h"
 #include "vision/stereo_pose.h"
 
@@ -27,9 +28,15 @@ struct PixelPose {
   std::string failure;             ///< one line; empty when measured
   Pose X_BT = Pose::Identity();    ///< measured
   Mat6 covariance = Mat6::Zero();  ///< as PoseSample::covariance; the cameras' share included
+  Mat6 detection = Mat6::Zero();   ///< of it what changes from picture to picture
+  std::vector<Twist> shared;       ///< in B: the cameras' share, as SharedError::shifts
   double beyond = 0;               ///< [m], a target's farthest distance outside of the layers
   bool ok() const { return failure.empty(); }
 };
+
+/// Takes what all poses share out of their covariances: the frame is left, and told. Poses that failed stay
+/// as they are.
+MeasuringFrame take_out_frame(std::vector<PixelPose>& poses);
 
 /// Two cameras, calibrated from pictures of boards, as they stand before a hexapod. What is measured uses the
 /// designed set-up only; lenses (2 to 8 px of distortion at the picture's edge), focal lengths (0.3 %), and

@@ -25,14 +25,18 @@ std::optional<RigidFit> fit_rigid(const std::array<Vec3, 3>& p_T, const std::arr
   return fit;
 }
 
-Mat6 fit_covariance(const Pose& X_WT, const std::array<Vec3, 3>& p_T, const Mat9& points) {
+Eigen::Matrix<double, 6, 9> fit_response(const Pose& X_WT, const std::array<Vec3, 3>& p_T) {
   Eigen::Matrix<double, 9, 6> J;  // of the points over the pose
   for (int k = 0; k < 3; ++k) {
     const Vec3 arm = X_WT.linear() * p_T[static_cast<std::size_t>(k)];
     J.block<3, 3>(3 * k, 0).setIdentity();
     J.block<3, 3>(3 * k, 3) << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
   }
-  const Eigen::Matrix<double, 6, 9> A = (J.transpose() * J).inverse() * J.transpose();
+  return (J.transpose() * J).inverse() * J.transpose();
+}
+
+Mat6 fit_covariance(const Pose& X_WT, const std::array<Vec3, 3>& p_T, const Mat9& points) {
+  const auto A = fit_response(X_WT, p_T);
   const Mat6 covariance = A * points * A.transpose();
   return 0.5 * (covariance + covariance.transpose());
 }

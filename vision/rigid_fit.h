@@ -21,11 +21,14 @@ struct RigidFit {
 /// are not finite. Never a reflection.
 std::optional<RigidFit> fit_rigid(const std::array<Vec3, 3>& p_T, const std::array<Vec3, 3>& p_W);
 
-/// Covariance of the fitted pose in the order of Twist: (translation of T's origin [m], rotation vector
-/// [rad]), both in the axes of W and at T's origin: the true pose is (exp(rotation) R, p + translation). From
-/// the joint covariance of the three measured points, to the first order. Independent errors of sigma on an
-/// equilateral triangle of side a turn it by sqrt(2) sigma / a in its plane's axes and sigma / a about its
-/// normal.
+/// What shifts of the three measured points [m] do to the fitted pose, to the first order, in the order of
+/// Twist: (translation of T's origin [m], rotation vector [rad]), both in the axes of W and at T's origin:
+/// the shifted pose is (exp(rotation) R, p + translation).
+Eigen::Matrix<double, 6, 9> fit_response(const Pose& X_WT, const std::array<Vec3, 3>& p_T);
+
+/// Covariance of the fitted pose, told likewise, from the joint covariance of the three points. Independent
+/// errors of sigma on an equilateral triangle of side a turn it by sqrt(2) sigma / a in its plane's axes and
+/// sigma / a about its normal.
 Mat6 fit_covariance(const Pose& X_WT, const std::array<Vec3, 3>& p_T, const Mat9& points);
 
 }  // namespace understudy::vision

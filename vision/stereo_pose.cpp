@@ -12,12 +12,10 @@ Approach approach(const StereoModel& model, const Vec2& first, const Vec2& secon
   return closest_approach(model.cameras[0]->sight(first, replica), model.cameras[1]->sight(second, replica));
 }
 
-/// What the calibration's doubt does to the three points together: their scatter over the replicas.
-Mat9 calibration_covariance(const StereoModel& model, const std::array<std::array<PixelPoint, 3>, 2>& seen) {
+/// What the calibration's doubt does to the three points together, replica by replica.
+std::vector<Vec9> replica_shifts(const StereoModel& model,
+                                 const std::array<std::array<PixelPoint, 3>, 2>& seen) {
   const int replicas = std::min(model.cameras[0]->replicas(), model.cameras[1]->replicas());
-  Mat9 scatter = Mat9::Zero();
-  if (replicas < 1) return scatter;
-  Vec9 as_calibrated;
   const auto points = [&](int replica) {
     Vec9 p;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -26,12 +24,10 @@ Mat9 calibration_covariance(const StereoModel& model, const std::array<std::arra
     }
     return p;
   };
-  as_calibrated = points(SightModel::kAsCalibrated);
-  for (int r = 0; r < replicas; ++r) {
-    const Vec9 off = points(r) - as_calibrated;  // of mean zero, to the first order
-    scatter += off * off.transpose();
-  }
-  return scatter / replicas;
+  const Vec9 as_calibrated = points(SightModel::kAsCalibrated);
+  std::vector<Vec9> shifts;
+  for (int r = 0; r < replicas; ++r) shifts.push_back(points(r) - as_calibrated);
+  return shifts;
 }
 
 }  // namespace
@@ -114,7 +110,10 @@ PoseMeasurement measure_pose(const StereoModel& model, const std::array<Vec3, 3>
   m.shape_rms = fit->residual_rms;
   m.status = m.shape_rms <= options.shape_max ? PoseStatus::ok : PoseStatus::wrong_shape;
   m.covariance = fit_covariance(m.X_WT, targets_T, detection);
-  m.systematic = fit_covariance(m.X_WT, targets_T, calibration_covariance(model, seen));
+  const auto response = fit_response(m.X_WT, targets_T);
+  for (const Vec9& shift : replica_shifts(model, seen)) m.replicas.push_back(response * shift);
+  for (const Twist& shift : m.replicas)  // of mean zero, to the first order
+    m.systematic += shift * shift.transpose() / static_cast<double>(m.replicas.size());
   return m;
 }
 

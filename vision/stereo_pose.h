@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "vision/sight.h"
 #include "vision/targets.h"
@@ -53,9 +54,11 @@ struct PoseMeasurement {
   /// (translation of T's origin [m], rotation vector [rad]), axes of W, see fit_covariance().
   Mat6 covariance = Mat6::Zero();  ///< from one measurement to the next: detection in these pictures
   Mat6 systematic = Mat6::Zero();  ///< common to all measurements: the cameras' calibration
-  double gap = 0;                  ///< [m], the widest between two view lines
-  double beyond = 0;               ///< [m], the farthest outside of the layers: view lines are extrapolated
-  double shape_rms = 0;            ///< [m]
+  /// What each replica of the cameras sees, less the pose: replica r is the same cameras in all measurements.
+  std::vector<Twist> replicas;
+  double gap = 0;        ///< [m], the widest between two view lines
+  double beyond = 0;     ///< [m], the farthest outside of the layers: view lines are extrapolated
+  double shape_rms = 0;  ///< [m]
 
   /// What the pose's error has for a single measurement.
   Mat6 total() const { return covariance + systematic; }

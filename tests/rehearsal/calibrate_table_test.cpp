@@ -91,6 +91,7 @@ std::string with_cell(const std::string& text, std::size_t column, const std::st
 TEST_F(MeasurementTable, ComesBackAsItWasWritten) {
   Measurements m = sample_;
   m.approach_told = true;
+  m.frame = {6.5e-6, 0.07e-3, 0.03e-3};
   m.poses[2].approach[4] = calibration::Approach::shortening;
   Mat6 root = Mat6::Identity();
   root(3, 0) = 0.4;
@@ -98,6 +99,10 @@ TEST_F(MeasurementTable, ComesBackAsItWasWritten) {
   const Measurements back = read(measurements_csv(m, machine_, "test"));
   ASSERT_EQ(back.poses.size(), m.poses.size());
   EXPECT_TRUE(back.noise_told && back.approach_told);
+  ASSERT_TRUE(back.frame);
+  EXPECT_NEAR(back.frame->position, 6.5e-6, 1e-12);
+  EXPECT_NEAR(back.frame->rotation, 0.07e-3, 1e-10);
+  EXPECT_NEAR(back.frame->strain, 0.03e-3, 1e-10);
   for (std::size_t j = 0; j < m.poses.size(); ++j) {
     EXPECT_TRUE(back.poses[j].X_WT.isApprox(m.poses[j].X_WT, 2e-9));  // nine digits of the quaternion
     EXPECT_TRUE(back.poses[j].covariance.isApprox(m.poses[j].covariance, 1e-5));  // six digits
@@ -116,6 +121,18 @@ TEST_F(MeasurementTable, MayHaveItsColumnsInAnyOrder) {
   EXPECT_TRUE(m.poses[0].X_WT.translation().isApprox(Vec3(1e-3, 2e-3, 50e-3), 1e-12));
   EXPECT_FALSE(m.noise_told);
   EXPECT_NEAR(m.poses[0].covariance(0, 0), 400e-12, 1e-18) << "20 um of reference B";
+}
+
+TEST_F(MeasurementTable, ADevicesFrameIsTheSameInEveryRow) {
+  Measurements m = sample_;
+  m.frame = {6.5e-6, 0, 0};
+  const std::string text = measurements_csv(m, machine_, "test");
+  EXPECT_FALSE(read(csv()).frame);
+  EXPECT_THAT(refusal(replaced(text, ",frame_permille", "")), HasSubstr("missing frame_permille"));
+  const std::size_t column = 7 + 6 + 6;  // after pose, struts and noise
+  EXPECT_THAT(refusal(with_cell(text, column, "-1")),
+              AllOf(HasSubstr(".csv:3"), HasSubstr("frame_um is -1, below 0")));
+  EXPECT_THAT(refusal(with_cell(text, column, "7")), AllOf(HasSubstr(".csv:4"), HasSubstr("first row")));
 }
 
 TEST_F(MeasurementTable, NamesMissingAndUnknownColumns) {
@@ -221,7 +238,7 @@ TEST_F(ArmTable, RefusesRadiansAndAxesThatStandStill) {
                 for (auto& pose : m.poses) pose.axes[5] = m.poses[0].axes[5];
               }),
               HasSubstr("axis j6 never moves"));
-  EXPECT_THAT(refused([](Measurements&) {}, "robust"), HasSubstr("maximum_likelihood only"));
+  EXPECT_THAT(refused([](Measurements&) {}, "whitened"), HasSubstr("maximum_likelihood and robust"));
 }
 
 }  // namespace

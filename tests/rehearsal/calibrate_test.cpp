@@ -24,6 +24,7 @@ namespace understudy::rehearsal {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -123,6 +124,49 @@ TEST_F(Calibrate, TheUncertaintyItStatesIsTheErrorThatIsLeft) {
   EXPECT_NEAR(squares / stated, 1, 0.3);
 }
 
+TEST_F(Calibrate, TheMeasuringFramesShareIsInTheUncertainty) {
+  CalibrateRequest request;
+  request.measurements = table("hexapod", 5, 24);
+  const TipMap plain = calibrate(request).tip;
+  request.measurements = table("hexapod", 5, 24, [](Measurements& m) { m.frame = {30e-6, 0, 0}; });
+  const CalibrateResult shifted = calibrate(request);
+  EXPECT_NEAR(std::pow(shifted.tip.rms, 2) - std::pow(plain.rms, 2), 3 * 900e-12, 1e-16);
+  EXPECT_THAT(calibration_text(shifted), HasSubstr("of which the measuring frame"));
+  EXPECT_EQ(nlohmann::json::parse(calibration_json(shifted)).at("frame").at("position_um"), 30);
+  // A turn acts twice squared at a distance from the middle: the reference cube's corners are 87 mm away.
+  request.measurements = table("hexapod", 5, 24, [](Measurements& m) { m.frame = {0, 1e-3, 0}; });
+  const TipMap turned = calibrate(request).tip;
+  const double more = std::pow(turned.worst, 2) - std::pow(plain.worst, 2);
+  EXPECT_GT(more, 2 * std::pow(50e-6, 2));
+  EXPECT_LT(more, 2 * std::pow(100e-6, 2));
+}
+
+class SlowCalibrate : public Calibrate {};
+
+/// From pictures: what is common to all poses is most of the error, and no residual shows it.
+TEST_F(SlowCalibrate, TheUncertaintyFromPixelsIsTheErrorThatIsLeft) {
+  double squares = 0, stated = 0;
+  constexpr int kStands = 6;
+  const auto drawn = machine::load_machine("hexapod");
+  for (int seed = 1; seed <= kStands; ++seed) {
+    SamplePosesRequest sample;
+    sample.as_built = "manufactured";
+    sample.from_pixels = true;
+    sample.seed = static_cast<std::uint64_t>(seed);
+    write_file(folder_ / "poses.csv", measurements_csv(sample_poses(sample, drawn), drawn, "test"));
+    CalibrateRequest request;
+    request.measurements = (folder_ / "poses.csv").string();
+    const CalibrateResult result = calibrate(request);
+    const double error = rms(open_loop_errors(result.machine, sample.seed));
+    std::printf("stand %d: error %.1f um, stated %.1f um, chi-square %.1f of %d\n", seed, to_um(error),
+                to_um(result.tip.rms), result.chi_square, result.degrees_of_freedom);
+    squares += error * error;
+    stated += result.tip.rms * result.tip.rms;
+  }
+  // About seven independent errors a stand: 1 sigma of the ratio is sqrt(2 / 42) = 0.22; three of them.
+  EXPECT_NEAR(squares / stated, 1, 0.66);
+}
+
 TEST_F(Calibrate, AnArmLearnsItsAxesAndTool) {
   const auto drawn = machine::load_machine("arm");
   const CalibrateResult result = calibrated("arm", 3, 40);
@@ -174,6 +218,27 @@ TEST_F(Calibrate, RejectsAWrongPoseAndSaysWhichLineItWas) {
   EXPECT_FALSE(result.poses[10].used);
   EXPECT_THAT(calibration_text(result), HasSubstr("rejected as outliers: line 13"));
   EXPECT_LT(rms(open_loop_errors(result.machine, 5)), 0.1e-3);
+}
+
+// The same table without the wrong row says what the arm should be.
+TEST_F(Calibrate, AnArmRejectsAWrongPoseAndSaysWhichLineItWas) {
+  CalibrateRequest request;
+  request.machine = "arm";
+  request.estimator = "robust";
+  request.measurements =
+      table("arm", 3, 24, [](Measurements& m) { m.poses[10].X_WT.translation() += Vec3(2e-3, 0, 0); });
+  const CalibrateResult result = calibrate(request);
+  for (std::size_t j = 0; j < result.poses.size(); ++j) EXPECT_EQ(result.poses[j].used, j != 10) << j;
+  EXPECT_THAT(result.warnings, Contains(HasSubstr("rejected as outliers: poses 11")));
+  EXPECT_THAT(calibration_text(result), HasSubstr("rejected as outliers: line 13"));
+  EXPECT_EQ(result.degrees_of_freedom, 6 * 23 - 30);
+  EXPECT_EQ(result.machine.calibration->estimator, "robust");
+
+  request.estimator = "";
+  request.measurements = table("arm", 3, 24, [](Measurements& m) { m.poses.erase(m.poses.begin() + 10); });
+  const CalibrateResult clean = calibrate(request);
+  EXPECT_NEAR(result.chi_square, clean.chi_square, 1e-3);  // written to 1e-6 mm and 1e-9 of a quaternion
+  EXPECT_NEAR(result.tip.rms, clean.tip.rms, 1e-3 * clean.tip.rms);
 }
 
 TEST_F(Calibrate, ACalibratedMachineCanBeCalibratedAgain) {
