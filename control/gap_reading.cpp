@@ -109,6 +109,14 @@ bool predict_dot(const machine::MachineDescription& machine, const LocalSurface&
   return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= camera.width - 1 && pixel.y() <= camera.height - 1;
 }
 
+bool dot_place(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+               Vec3& p_T) {
+  Hit hit;
+  if (!beam_hit(machine.laser, surface, gap, hit)) return false;
+  p_T = hit.p_T;
+  return true;
+}
+
 bool predict_spread(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                     Eigen::Matrix2d& spread_px2) {
   const double sigma = machine.laser.waist_diameter / 4;  // of a beam whose 1/e^2 diameter is the waist's

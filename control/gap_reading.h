@@ -30,6 +30,10 @@ struct GapReading {
 bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                  Vec2& pixel);
 
+/// Where the beam meets the surface for a gap, in T. False when it misses the modelled surface.
+bool dot_place(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+               Vec3& p_T);
+
 /// Second moments [px^2] of the dot's picture for a gap: a round Gaussian beam on the surface's tangent
 /// plane, seen by the camera through its blur. False when the beam misses the modelled surface.
 bool predict_spread(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,

@@ -31,10 +31,11 @@ constexpr int kPicturesMax = 40;
 }  // namespace
 
 GapWatch::GapWatch(const machine::MachineDescription& machine, const geometry::Mesh* part,
-                   const GapControllerOptions& approach, const GapFollowerOptions& options,
-                   machine::MachinePort& port, Report report)
+                   const LaidPath& laid, const GapControllerOptions& approach,
+                   const GapFollowerOptions& options, machine::MachinePort& port, Report report)
     : machine_(machine),
       part_(part),
+      laid_(laid),
       options_(options),
       port_(port),
       report_(std::move(report)),
@@ -209,9 +210,9 @@ Status GapWatch::pass_time(double until) {
 
 /// The nominal part under the programmed pose. False: it ends here, or what lies there are beads.
 bool GapWatch::find_surface(const Passed& at) {
-  if (!part_) return true;
   Pose X_WT = at.X_WT;
   X_WT.translation() -= offset_W_;
+  if (!part_) return dot_on_ground(machine_, surface_, laid_, X_WT, machine_.gap.aim, at.line);
   const Vec3 above = X_WT * Vec3(0, 0, kSurfaceRadius);
   const auto hit = part_->ray_hit(above, -tool_axis(X_WT), kReach);
   if (!hit) return false;
@@ -224,7 +225,7 @@ bool GapWatch::find_surface(const Passed& at) {
   } catch (const InputError&) {  // an edge within the radius: no slope to read with
     return false;
   }
-  return true;
+  return dot_on_ground(machine_, surface_, laid_, X_WT, height, at.line);
 }
 
 Status GapWatch::look(const Passed& expected) {

@@ -10,6 +10,7 @@
 #include "control/feeder.h"
 #include "control/gap_follower.h"
 #include "control/gap_look.h"
+#include "control/laid_path.h"
 
 namespace understudy::geometry {
 class Mesh;
@@ -35,8 +36,8 @@ class GapWatch : public FeedWatch {
   /// From a time on, every pose is shifted by this, in addition to what came before.
   using Report = std::function<void(double time, int line, const Vec3& offset_W)>;
 
-  /// `part` may be null: the surface is flat and perpendicular to the tool.
-  GapWatch(const machine::MachineDescription& machine, const geometry::Mesh* part,
+  /// `part` may be null: the surface is flat and perpendicular to the tool. `laid` outlives the watch.
+  GapWatch(const machine::MachineDescription& machine, const geometry::Mesh* part, const LaidPath& laid,
            const GapControllerOptions& approach, const GapFollowerOptions& options,
            machine::MachinePort& port, Report report);
   ~GapWatch() override;
@@ -82,6 +83,7 @@ class GapWatch : public FeedWatch {
 
   const machine::MachineDescription& machine_;
   const geometry::Mesh* part_;
+  const LaidPath& laid_;
   GapFollowerOptions options_;
   machine::MachinePort& port_;
   Report report_;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/units.h"
+#include "geometry/mesh.h"
 
 namespace understudy::control {
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kOutputPatience = 5.0;    // [s]
 constexpr double kSurfaceRadius = 2.5e-3;  // [m], around S: the dot of every gap on the way lies inside
+constexpr double kReach = 20e-3;           // [m], from the tip to the part
 constexpr double kAtHome = 50e-6;          // [m or rad]: drives that rest at home read this or less beside it
 
 /// Straight moves along the tool axis for the gap controller, at the approach's own feed.
@@ -70,6 +72,7 @@ class PrintLoop {
         port_(port),
         options_(options),
         observer_(observer),
+        laid_(options.gap_control == GapControl::off ? LaidPath() : LaidPath(program, machine)),
         watch_(make_watch()),
         feeder_(machine, port, standing_pose(machine, port), watch_.get()),
         started_at_(port.now()) {}
@@ -104,7 +107,7 @@ class PrintLoop {
     if (options_.gap_control != GapControl::continuous) return nullptr;
     GapFollowerOptions following = options_.following.value_or(gap_follower_options(machine_));
     if (!options_.following && options_.gap.aim > 0) following.aim = options_.gap.aim;
-    return std::make_unique<GapWatch>(machine_, options_.part, options_.gap, following, port_,
+    return std::make_unique<GapWatch>(machine_, options_.part, laid_, options_.gap, following, port_,
                                       [this](double time, int line, const Vec3& offset_W) {
                                         tell({time, line, offset_W, true});
                                       });
@@ -160,6 +163,13 @@ class PrintLoop {
     return s == Status::ok || fail(s, line);
   }
 
+  /// Over the nominal part.
+  double programmed_height(const Pose& X_WT) const {
+    if (!options_.part) return machine_.gap.aim;
+    const auto hit = options_.part->ray_hit(X_WT * Vec3(0, 0, kSurfaceRadius), -tool_axis(X_WT), kReach);
+    return hit ? hit->distance - kSurfaceRadius : machine_.gap.aim;
+  }
+
   bool approach(const Step& step, std::size_t index) {
     if (const Status s = feeder_.come_to_rest(); s != Status::ok) return fail(s, step.line);
     take_over_correction();
@@ -167,6 +177,11 @@ class PrintLoop {
     const double standoff = (step.X_WT.translation() - X_WT_before.translation()).norm();
     const LocalSurface surface =
         options_.part ? local_surface(*options_.part, step.X_WT, kSurfaceRadius) : LocalSurface{};
+    if (!result_.approaches.empty() &&
+        !dot_on_ground(machine_, surface, laid_, step.X_WT, programmed_height(step.X_WT), step.line)) {
+      result_.unmeasured_starts.push_back(step.line);
+      return move(step);
+    }
     Pose X_WT_start = step.X_WT;
     X_WT_start.translation() += offset_;
     const Vec3 from = feeder_.resting_pose().translation();
@@ -272,6 +287,7 @@ class PrintLoop {
   machine::MachinePort& port_;
   const PrintOptions& options_;
   PrintObserver* observer_;
+  LaidPath laid_;
   std::unique_ptr<GapWatch> watch_;
   Feeder feeder_;
   const double started_at_;

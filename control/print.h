@@ -53,6 +53,9 @@ struct PrintResult {
   double travel = 0;    ///< [m] of tip path without extrusion
   std::vector<OffsetChange> offsets;
   std::vector<GapApproach> approaches;
+  /// Lines of approaches where the dot would lie on a bead beside, or off the layer below: the offset of the
+  /// bead before is carried on.
+  std::vector<int> unmeasured_starts;
   std::optional<GapFollowing> following;  ///< with GapControl::continuous
 };
 
@@ -68,7 +71,8 @@ class PrintObserver {
 
 /// An approach is a step of kind `move` of at most 10 mm straight against the tool axis (within 1 degree)
 /// that ends where the next `print` step begins. With GapControl::start each is closed by close_gap and the
-/// offset carried to all later steps until the next approach (Song 2015, eq 5: points are relative). With
+/// offset carried to all later steps until the next approach (Song 2015, eq 5: points are relative); so it is
+/// where the dot would not lie on what is printed on. With
 /// GapControl::continuous the gap is then measured while print steps run, and the offset follows it.
 /// A GapStop retreats, ends the print and is reported; nothing is printed without a known gap.
 PrintResult print(const toolpath::Program& program, const machine::MachineDescription& machine,
