@@ -35,8 +35,8 @@ struct Fit {
   double cost = 0;
 };
 
-/// Over the samples with used[j]. Converged once a step is below 1e-7 of the parameters' standard deviations, or
-/// below what rounding allows to know.
+/// Over the samples with used[j]. Converged once a step is below 1e-7 of the parameters' standard deviations,
+/// or below what rounding allows to know.
 Fit fit(Objective& objective, const HexapodParameters& start, const Unknowns& unknowns,
         const std::vector<bool>& used, int max_iterations);
 

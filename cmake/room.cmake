@@ -25,9 +25,10 @@ function(understudy_test name)
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
   endif()
+  set(leaks "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0")
   gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "-Slow*" NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT ${TEST_TIMEOUT} DISCOVERY_TIMEOUT 60)
+    PROPERTIES ENVIRONMENT ${leaks} TIMEOUT ${TEST_TIMEOUT} DISCOVERY_TIMEOUT 60)
   gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "Slow*" NO_PRETTY_VALUES
     TEST_LIST ${name}_slow_tests
-    PROPERTIES LABELS slow TIMEOUT 1200 DISCOVERY_TIMEOUT 60)
+    PROPERTIES ENVIRONMENT ${leaks} LABELS slow TIMEOUT 3600 DISCOVERY_TIMEOUT 60)
 endfunction()

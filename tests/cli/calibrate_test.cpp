@@ -153,9 +153,9 @@ TEST(BeforeCalibration, AnotherMachineIsRefusedInOneLine) {
   }
 }
 
-class SlowClosedLoop : public ::testing::TestWithParam<std::string> {};
+class ClosedLoop : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(SlowClosedLoop, ACalibrationOfTheTwinLowersTheTipErrorOfItsRehearsal) {
+TEST_P(ClosedLoop, ACalibrationOfTheTwinLowersTheTipErrorOfItsRehearsal) {
   const Folder folder;
   ASSERT_EQ(understudy("sample-poses --count 24 --as-built manufactured --seed 5 --from " + GetParam() +
                        " -o " + (folder / "poses.csv"))
@@ -173,7 +173,7 @@ TEST_P(SlowClosedLoop, ACalibrationOfTheTwinLowersTheTipErrorOfItsRehearsal) {
   EXPECT_LT(after, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Calibrate, SlowClosedLoop, ::testing::Values("noise", "pixels"));
+INSTANTIATE_TEST_SUITE_P(Calibrate, ClosedLoop, ::testing::Values("noise", "pixels"));
 
 class EveryPicture : public ::testing::TestWithParam<std::string> {};
 
