@@ -1,6 +1,8 @@
 // From the dot's pixel to the gap: the laser's line, the local surface and the camera, inverted.
 #pragma once
 
+#include <optional>
+
 #include "machine/description.h"
 #include "vision/dot.h"
 
@@ -16,6 +18,10 @@ struct LocalSurface {
 /// Quadratic fit of the nominal part around the point under the tool, within `radius` [m]. The part is in
 /// the frame of X_WT. Throws InputError when the axis does not meet the part within 20 mm of the tip.
 LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT, double radius);
+
+/// Of the tip over the nominal part [m], along the tool axis; nothing where that does not meet the part
+/// within 20 mm. What reaches up to `radius` [m] above the tip is seen.
+std::optional<double> height_over(const geometry::Mesh& part, const Pose& X_WT, double radius);
 
 struct GapReading {
   double gap = 0;          ///< [m], along the tool axis, positive outside the part

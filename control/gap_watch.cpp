@@ -23,7 +23,6 @@ constexpr double kPause = 0.01;            // [s], between looks whether the bea
 constexpr double kExpected = 0.15e-3;      // [m], about the estimate, that the picture shows
 constexpr double kSurfaceRadius = 2.5e-3;  // [m], as at the approach
 constexpr double kSameHeight = 50e-6;      // [m]: a bead programmed higher over the part lies on other beads
-constexpr double kReach = 20e-3;           // [m], from the tip to the part
 constexpr double kReportEvery = 0.01;      // [s], offsets for observers
 constexpr double kReportChange = 0.2e-6;   // [m]
 constexpr int kPicturesMax = 40;
@@ -213,19 +212,17 @@ bool GapWatch::find_surface(const Passed& at) {
   Pose X_WT = at.X_WT;
   X_WT.translation() -= offset_W_;
   if (!part_) return dot_on_ground(machine_, surface_, laid_, X_WT, machine_.gap.aim, at.line);
-  const Vec3 above = X_WT * Vec3(0, 0, kSurfaceRadius);
-  const auto hit = part_->ray_hit(above, -tool_axis(X_WT), kReach);
-  if (!hit) return false;
-  const double height = hit->distance - kSurfaceRadius;
-  if (!height_known_) height_at_start_ = height;
+  const auto height = height_over(*part_, X_WT, kSurfaceRadius);
+  if (!height) return false;
+  if (!height_known_) height_at_start_ = *height;
   height_known_ = true;
-  if (std::abs(height - height_at_start_) > kSameHeight) return false;
+  if (std::abs(*height - height_at_start_) > kSameHeight) return false;
   try {
     surface_ = local_surface(*part_, X_WT, kSurfaceRadius);
   } catch (const InputError&) {  // an edge within the radius: no slope to read with
     return false;
   }
-  return dot_on_ground(machine_, surface_, laid_, X_WT, height, at.line);
+  return dot_on_ground(machine_, surface_, laid_, X_WT, *height, at.line);
 }
 
 Status GapWatch::look(const Passed& expected) {

@@ -56,9 +56,14 @@ Vec6 monomials(const Vec2& p, double radius) {
 
 }  // namespace
 
+std::optional<double> height_over(const geometry::Mesh& part, const Pose& X_WT, double radius) {
+  const auto hit = part.ray_hit(X_WT * Vec3(0, 0, radius), -tool_axis(X_WT), radius + kReach);
+  if (!hit) return std::nullopt;
+  return hit->distance - radius;
+}
+
 LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT, double radius) {
-  const Vec3 above = X_WT * Vec3(0, 0, radius);
-  if (!part.ray_hit(above, -tool_axis(X_WT), radius + kReach))
+  if (!height_over(part, X_WT, radius))
     throw InputError(fmt::format("the tool's axis does not meet the part within {:g} mm of the tip at {}",
                                  to_mm(kReach), at_tip(X_WT)));
   int rays = 0;

@@ -21,7 +21,6 @@ namespace {
 
 constexpr double kOutputPatience = 5.0;    // [s]
 constexpr double kSurfaceRadius = 2.5e-3;  // [m], around S: the dot of every gap on the way lies inside
-constexpr double kReach = 20e-3;           // [m], from the tip to the part
 constexpr double kAtHome = 50e-6;          // [m or rad]: drives that rest at home read this or less beside it
 
 /// Straight moves along the tool axis for the gap controller, at the approach's own feed.
@@ -166,8 +165,7 @@ class PrintLoop {
   /// Over the nominal part.
   double programmed_height(const Pose& X_WT) const {
     if (!options_.part) return machine_.gap.aim;
-    const auto hit = options_.part->ray_hit(X_WT * Vec3(0, 0, kSurfaceRadius), -tool_axis(X_WT), kReach);
-    return hit ? hit->distance - kSurfaceRadius : machine_.gap.aim;
+    return height_over(*options_.part, X_WT, kSurfaceRadius).value_or(machine_.gap.aim);
   }
 
   bool approach(const Step& step, std::size_t index) {
