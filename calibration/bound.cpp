@@ -48,11 +48,11 @@ TipUncertainty tip_uncertainty(const HexapodParameters& machine, const Parameter
 bool driven_error(const HexapodParameters& truth, const HexapodParameters& model, const Pose& X_BT,
                   Twist& error) {
   StrutLengths lengths;
-  if (kinematics::inverse(model.geometry, X_BT, lengths) != kinematics::Solve::ok) return false;
+  if (kinematics::inverse(model.geometry, X_BT, lengths) != kinematics::SolveStatus::ok) return false;
   PoseSample asked;
   asked.displacement = displacements(model.geometry, lengths);
   const auto reached = kinematics::forward(truth.geometry, strut_lengths(truth, asked), X_BT);
-  if (reached.status != kinematics::Solve::ok) return false;
+  if (reached.status != kinematics::SolveStatus::ok) return false;
   error = pose_error(reached.X_BT, X_BT);
   return true;
 }

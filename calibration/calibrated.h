@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "calibration/fit.h"
+#include "calibration/estimators/fit.h"
 
 namespace understudy::calibration {
 

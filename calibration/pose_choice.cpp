@@ -133,7 +133,7 @@ std::vector<Pose> random_reachable_poses(const kinematics::Mechanism& mechanism,
     const Mat3 R = exp_rotation(tilt * Vec3(std::cos(azimuth), std::sin(azimuth), 0)) *
                    exp_rotation(yaw * Vec3::UnitZ()) * mechanism.home().linear();
     const Pose X_BT = make_pose(R, p);
-    if (mechanism.inverse(X_BT, {}, used) != kinematics::Solve::ok) continue;
+    if (mechanism.inverse(X_BT, {}, used) != kinematics::SolveStatus::ok) continue;
     violations.clear();
     mechanism.check(X_BT, used, violations);
     if (violations.empty()) poses.push_back(X_BT);

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kinematics/hexapod.h"
+#include "kinematics/hexapod/hexapod.h"
 
 namespace understudy::calibration {
 

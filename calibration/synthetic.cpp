@@ -24,12 +24,12 @@ bool true_sample(const HexapodParameters& truth, const HexapodGeometry& nominal,
                  const MeasurementNoise& noise, const std::array<Approach, kStruts>& approach,
                  PoseSample& sample) {
   StrutLengths lengths;
-  if (kinematics::inverse(nominal, X_BT_asked, lengths) != kinematics::Solve::ok) return false;
+  if (kinematics::inverse(nominal, X_BT_asked, lengths) != kinematics::SolveStatus::ok) return false;
   sample.displacement = displacements(nominal, lengths);
   sample.approach = approach;
   sample.covariance = noise.covariance();
   const auto reached = kinematics::forward(truth.geometry, strut_lengths(truth, sample), X_BT_asked);
-  if (reached.status != kinematics::Solve::ok) return false;
+  if (reached.status != kinematics::SolveStatus::ok) return false;
   sample.X_BT = reached.X_BT;
   return true;
 }

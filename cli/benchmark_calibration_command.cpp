@@ -8,15 +8,15 @@
 
 #include <fmt/format.h>
 
-#include "calibration/study_tables.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "core/units.h"
-#include "rehearsal/calibration_benchmark.h"
-#include "rehearsal/camera_study.h"
+#include "studies/calibration/calibration_benchmark.h"
+#include "studies/calibration/camera_study.h"
+#include "studies/calibration/study_tables.h"
 
 namespace understudy::cli {
 namespace {

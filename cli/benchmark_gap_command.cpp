@@ -11,7 +11,7 @@
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "machine/description.h"
-#include "rehearsal/gap_benchmark.h"
+#include "studies/gap/gap_benchmark.h"
 
 namespace understudy::cli {
 namespace {

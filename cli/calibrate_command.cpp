@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "calibration/machine/calibrate.h"
+#include "calibration/machine/calibrate_poses.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "core/error.h"
@@ -14,8 +16,6 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "machine/calibration_section.h"
-#include "rehearsal/calibrate.h"
-#include "rehearsal/calibrate_poses.h"
 
 namespace understudy::cli {
 namespace {

@@ -17,11 +17,11 @@ void add_scenario(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_kinematics(CLI::App& app, Action& action);  ///< axes, poses
-void add_calibrate(CLI::App& app, Action& action);  ///< calibrate, sample-poses
+void add_calibrate(CLI::App& app, Action& action);   ///< calibrate, sample-poses
 void add_render(CLI::App& app, Action& action);
 void add_workspace(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
-void add_benchmark(CLI::App& app, Action& action);    ///< calibration, gap
+void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap
 void add_benchmark_calibration(CLI::App& benchmark, Action& action);
 void add_benchmark_gap(CLI::App& benchmark, Action& action);
 void add_inspection(CLI::App& app, Action& action);  ///< machines, doctor

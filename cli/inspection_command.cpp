@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/doctor.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "rehearsal/doctor.h"
 
 namespace understudy::cli {
 namespace {
@@ -52,7 +52,7 @@ int list_machines() {
 
 int doctor() {
   bool healthy = true;
-  for (const auto& check : rehearsal::examine()) {
+  for (const auto& check : rehearsal::self_test()) {
     fmt::print("{} {:<10} {}\n", check.ok ? "ok  " : "FAIL", check.name, check.detail);
     healthy = healthy && check.ok;
   }

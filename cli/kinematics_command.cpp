@@ -57,9 +57,9 @@ int print_axes(const std::string& name) {
     std::array<double, kinematics::kMaxAxes> axes{};
     const auto solved = mechanism->inverse(X_BT, {}, std::span(axes).first(n));
     std::string status =
-        solved == kinematics::Solve::ok ? status_of(*mechanism, X_BT, axes) : to_string(solved);
+        solved == kinematics::SolveStatus::ok ? status_of(*mechanism, X_BT, axes) : to_string(solved);
     for (std::size_t i = 0; i < n; ++i)
-      out += solved == kinematics::Solve::ok && status == "ok"
+      out += solved == kinematics::SolveStatus::ok && status == "ok"
                  ? fmt::format("{:.6f},", axes[i] / file_unit(*mechanism, static_cast<int>(i)))
                  : "nan,";
     out += status + "\n";
@@ -79,7 +79,7 @@ int print_poses(const std::string& name) {
       axes[i] = row.values[i] * file_unit(*mechanism, static_cast<int>(i));
     Pose X_BT;
     const auto solved = mechanism->forward(std::span(axes).first(row.values.size()), mechanism->home(), X_BT);
-    if (solved != kinematics::Solve::ok) {
+    if (solved != kinematics::SolveStatus::ok) {
       out += fmt::format("nan,nan,nan,nan,nan,nan,nan,{}\n", to_string(solved));
       continue;
     }

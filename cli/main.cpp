@@ -12,7 +12,7 @@
 #include "cli/command.h"
 #include "core/error.h"
 #include "core/interrupt.h"
-#include "rehearsal/version.h"
+#include "core/version.h"
 
 namespace {
 

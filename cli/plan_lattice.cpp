@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/rehearse.h"
-#include "toolpath/lattice_planner.h"
+#include "toolpath/lattice/lattice_planner.h"
 
 namespace understudy::cli {
 namespace {
@@ -80,7 +80,7 @@ std::function<bool(const Pose&)> reach_of(const machine::MachineDescription& mac
     std::array<double, kinematics::kMaxAxes> storage{};
     const auto axes = std::span(storage).first(static_cast<std::size_t>(mechanism->axis_count()));
     const Pose X_BT = X_BW * X_WT;
-    if (mechanism->inverse(X_BT, {}, axes) != kinematics::Solve::ok) return false;
+    if (mechanism->inverse(X_BT, {}, axes) != kinematics::SolveStatus::ok) return false;
     std::vector<kinematics::LimitViolation> violations;
     mechanism->check(X_BT, axes, violations);
     return violations.empty();

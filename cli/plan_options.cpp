@@ -9,7 +9,7 @@
 #include "core/number_table.h"
 #include "core/output_file.h"
 #include "core/units.h"
-#include "toolpath/gcode.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::cli {
 

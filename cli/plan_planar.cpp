@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/rehearse.h"
-#include "toolpath/planar_slicer.h"
+#include "toolpath/planners/planar_slicer.h"
 
 namespace understudy::cli {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "cli/plan_options.h"
 #include "core/units.h"
-#include "toolpath/spiral.h"
+#include "toolpath/planners/spiral.h"
 
 namespace understudy::cli {
 namespace {

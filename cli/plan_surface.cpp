@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/rehearse.h"
-#include "toolpath/surface_planner.h"
+#include "toolpath/planners/surface_planner.h"
 
 namespace understudy::cli {
 namespace {

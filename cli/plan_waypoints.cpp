@@ -6,7 +6,7 @@
 #include "cli/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "toolpath/waypoints.h"
+#include "toolpath/planners/waypoints.h"
 
 namespace understudy::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "rehearsal/rehearse.h"
-#include "rehearsal/report.h"
+#include "report/report.h"
 
 namespace understudy::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/units.h"
-#include "rehearsal/render_images.h"
+#include "report/picture/render_images.h"
 
 namespace understudy::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
-#include "rehearsal/run_scenario.h"
+#include "regression/run_scenario.h"
 
 namespace understudy::cli {
 namespace {

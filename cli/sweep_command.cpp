@@ -11,8 +11,8 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "rehearsal/run_scenario.h"
-#include "rehearsal/sweep.h"
+#include "regression/run_scenario.h"
+#include "regression/sweep.h"
 
 namespace understudy::cli {
 namespace {

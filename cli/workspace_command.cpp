@@ -16,8 +16,8 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "rehearsal/png.h"
-#include "rehearsal/workspace_study.h"
+#include "report/picture/png.h"
+#include "studies/workspace/workspace_study.h"
 
 namespace understudy::cli {
 namespace {

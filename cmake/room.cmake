@@ -1,8 +1,10 @@
-# understudy_room(NAME SOURCES ... [USES room ...] [PUBLIC lib ...] [PRIVATE lib ...])
-# One static library a folder: understudy::NAME. USES names our own rooms, the rest are third-party targets.
+# understudy_room(NAME [RECURSE] [EXCLUDE regex] [SOURCES extra ...] [USES room ...] [PUBLIC lib ...] [PRIVATE lib ...])
+# One static library a folder: understudy::NAME, of every source in it (RECURSE: in its sub-rooms too). USES names
+# our own rooms, the rest are third-party targets.
 function(understudy_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(understudy_${name} STATIC ${ROOM_SOURCES})
+  cmake_parse_arguments(ROOM "RECURSE" "EXCLUDE" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
+  understudy_sources(sources "${ROOM_RECURSE}" "${ROOM_EXCLUDE}")
+  add_library(understudy_${name} STATIC ${sources} ${ROOM_SOURCES})
   add_library(understudy::${name} ALIAS understudy_${name})
   target_link_libraries(understudy_${name} PUBLIC understudy_settings)
   foreach(used IN LISTS ROOM_USES)
@@ -11,11 +13,25 @@ function(understudy_room name)
   target_link_libraries(understudy_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
 endfunction()
 
-# understudy_test(NAME SOURCES ... USES room ... [PRIVATE lib ...] [LABELS ...] [TIMEOUT s])
-# One GoogleTest program a room; tests whose name starts with Slow run under ./test --all only.
+# The sources of the folder that calls, without those that match EXCLUDE.
+function(understudy_sources out recurse exclude)
+  if(recurse)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  else()
+    file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  endif()
+  if(exclude)
+    list(FILTER sources EXCLUDE REGEX "${exclude}")
+  endif()
+  set(${out} ${sources} PARENT_SCOPE)
+endfunction()
+
+# understudy_test(NAME [RECURSE] [EXCLUDE regex] [SOURCES extra ...] USES room ... [PRIVATE lib ...] [TIMEOUT s])
+# One GoogleTest program of every source in the folder; tests whose name starts with Slow run under ./test --all only.
 function(understudy_test name)
-  cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;USES;PRIVATE" ${ARGN})
-  add_executable(${name}_test ${TEST_SOURCES})
+  cmake_parse_arguments(TEST "RECURSE" "TIMEOUT;EXCLUDE" "SOURCES;USES;PRIVATE" ${ARGN})
+  understudy_sources(sources "${TEST_RECURSE}" "${TEST_EXCLUDE}")
+  add_executable(${name}_test ${sources} ${TEST_SOURCES})
   foreach(used IN LISTS TEST_USES)
     target_link_libraries(${name}_test PRIVATE understudy::${used})
   endforeach()

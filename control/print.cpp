@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "control/approach.h"
-#include "control/feeder.h"
+#include "control/setpoint_streamer.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/units.h"
@@ -26,7 +26,7 @@ constexpr double kAtHome = 50e-6;          // [m or rad]: drives that rest at ho
 /// Straight moves along the tool axis for the gap controller, at the approach's own feed.
 class ApproachMotion : public GapMotion {
  public:
-  ApproachMotion(Feeder& feeder, const Step& approach) : feeder_(feeder), approach_(approach) {}
+  ApproachMotion(SetpointStreamer& feeder, const Step& approach) : feeder_(feeder), approach_(approach) {}
 
   Status move_to(const Pose& X_WT) override {
     Step step = approach_;
@@ -39,7 +39,7 @@ class ApproachMotion : public GapMotion {
   machine::MachinePort& port() override { return feeder_.port(); }
 
  private:
-  Feeder& feeder_;
+  SetpointStreamer& feeder_;
   const Step& approach_;
 };
 
@@ -50,13 +50,13 @@ Pose standing_pose(const machine::MachineDescription& machine, const machine::Ma
   const machine::AxisArray measured = port.state().position;
   machine::AxisArray home{};
   const std::span<double> home_axes(home.data(), axes);
-  bool at_home = mechanism->inverse(machine.X_BT_home, home_axes, home_axes) == kinematics::Solve::ok;
+  bool at_home = mechanism->inverse(machine.X_BT_home, home_axes, home_axes) == kinematics::SolveStatus::ok;
   for (std::size_t i = 0; i < axes; ++i) at_home = at_home && std::abs(measured[i] - home[i]) <= kAtHome;
   if (at_home) return machine.X_WB * machine.X_BT_home;
   Pose X_BT;
-  const kinematics::Solve solved =
+  const kinematics::SolveStatus solved =
       mechanism->forward(std::span<const double>(measured.data(), axes), machine.X_BT_home, X_BT);
-  if (solved != kinematics::Solve::ok)
+  if (solved != kinematics::SolveStatus::ok)
     throw MachineError(fmt::format("the drives read axis positions that belong to no pose of the machine: {}",
                                    kinematics::to_string(solved)));
   return machine.X_WB * X_BT;
@@ -71,7 +71,8 @@ class PrintLoop {
         port_(port),
         options_(options),
         observer_(observer),
-        laid_(options.gap_control == GapControl::off ? LaidPath() : LaidPath(program, machine)),
+        laid_(options.gap_control == GapControl::off ? DepositedBeadMap()
+                                                     : DepositedBeadMap(program, machine)),
         watch_(make_watch()),
         feeder_(machine, port, standing_pose(machine, port), watch_.get()),
         started_at_(port.now()) {}
@@ -102,14 +103,15 @@ class PrintLoop {
   }
 
  private:
-  std::unique_ptr<GapWatch> make_watch() {
+  std::unique_ptr<ContinuousGapController> make_watch() {
     if (options_.gap_control != GapControl::continuous) return nullptr;
     GapFollowerOptions following = options_.following.value_or(gap_follower_options(machine_));
     if (!options_.following && options_.gap.aim > 0) following.aim = options_.gap.aim;
-    return std::make_unique<GapWatch>(machine_, options_.part, laid_, options_.gap, following, port_,
-                                      [this](double time, int line, const Vec3& offset_W) {
-                                        tell({time, line, offset_W, true});
-                                      });
+    return std::make_unique<ContinuousGapController>(machine_, options_.part, laid_, options_.gap, following,
+                                                     port_,
+                                                     [this](double time, int line, const Vec3& offset_W) {
+                                                       tell({time, line, offset_W, true});
+                                                     });
   }
 
   void tell(const OffsetChange& change) {
@@ -285,9 +287,9 @@ class PrintLoop {
   machine::MachinePort& port_;
   const PrintOptions& options_;
   PrintObserver* observer_;
-  LaidPath laid_;
-  std::unique_ptr<GapWatch> watch_;
-  Feeder feeder_;
+  DepositedBeadMap laid_;
+  std::unique_ptr<ContinuousGapController> watch_;
+  SetpointStreamer feeder_;
   const double started_at_;
   machine::Outputs outputs_;
   PrintResult result_;

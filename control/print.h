@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "control/gap_controller.h"
-#include "control/gap_watch.h"
-#include "control/motion_planner.h"
+#include "control/gap/continuous_gap_controller.h"
+#include "control/gap/gap_controller.h"
+#include "control/motion/motion_planner.h"
 #include "toolpath/program.h"
 
 namespace understudy::control {

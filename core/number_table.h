@@ -15,6 +15,7 @@ struct NumberRow {
 /// Reads a CSV whose first line is exactly `header` (words separated by commas, spaces ignored). Empty lines
 /// and lines that begin with # are passed over. Throws InputError with `name`, line and column for a missing
 /// or different header, a wrong number of cells, and cells that are not finite numbers.
-std::vector<NumberRow> read_number_table(std::istream& in, const std::string& name, const std::vector<std::string>& header);
+std::vector<NumberRow> read_number_table(std::istream& in, const std::string& name,
+                                         const std::vector<std::string>& header);
 
 }  // namespace understudy

@@ -10,7 +10,7 @@ constexpr double kMicrometre = 1e-6;                  // [m]
 constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
 constexpr double kInch = 25.4e-3;                     // [m]
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;  // [m/s]
-constexpr double kCelsiusZero = 273.15;                // [K]
+constexpr double kCelsiusZero = 273.15;               // [K]
 constexpr double kGravity = 9.80665;                  // [m/s^2]
 
 constexpr double from_mm(double v) { return v * kMillimetre; }

@@ -44,17 +44,17 @@ Figures figures(const LimitViolation& v) {
 
 }  // namespace
 
-const char* to_string(Solve s) {
+const char* to_string(SolveStatus s) {
   switch (s) {
-    case Solve::ok:
+    case SolveStatus::ok:
       return "ok";
-    case Solve::unreachable:
+    case SolveStatus::unreachable:
       return "unreachable";
-    case Solve::singular:
+    case SolveStatus::singular:
       return "singular";
-    case Solve::not_converged:
+    case SolveStatus::not_converged:
       return "not converged";
-    case Solve::bad_input:
+    case SolveStatus::bad_input:
       return "bad input";
   }
   return "unknown";
@@ -109,11 +109,13 @@ std::string to_string(const LimitViolation& violation) {
   return is_at;
 }
 
-Solve Mechanism::pose_at_turns(const TipAndTurns& /*at*/, Pose& /*X_BT*/) const { return Solve::bad_input; }
+SolveStatus Mechanism::pose_at_turns(const RotaryTarget& /*at*/, Pose& /*X_BT*/) const {
+  return SolveStatus::bad_input;
+}
 
-Solve Mechanism::axes_at_turns(const TipAndTurns& /*at*/, const TipAndTurns& /*rate*/,
-                               std::span<double> /*axes*/, std::span<double> /*axis_rates*/) const {
-  return Solve::bad_input;
+SolveStatus Mechanism::axes_at_turns(const RotaryTarget& /*at*/, const RotaryTarget& /*rate*/,
+                                     std::span<double> /*axes*/, std::span<double> /*axis_rates*/) const {
+  return SolveStatus::bad_input;
 }
 
 }  // namespace understudy::kinematics

@@ -18,8 +18,8 @@ constexpr int kMaxAxes = 8;
 /// Condition numbers are not told apart above this.
 constexpr double kSingularCondition = 1e7;
 
-enum class Solve { ok, unreachable, singular, not_converged, bad_input };
-const char* to_string(Solve s);
+enum class SolveStatus { ok, unreachable, singular, not_converged, bad_input };
+const char* to_string(SolveStatus s);
 
 enum class LimitKind {
   strut_length,
@@ -55,7 +55,7 @@ struct RotaryAxes {
 };
 
 /// The tip and those axes, or the rates of both.
-struct TipAndTurns {
+struct RotaryTarget {
   Vec3 p_BT{0, 0, 0};   ///< [m]
   double b = 0, c = 0;  ///< [rad], of any number of turns
 };
@@ -75,14 +75,15 @@ class Mechanism {
 
   /// Axis positions for a pose; `previous` picks the branch where there are several, and the turn of an axis
   /// without end. Empty: home. A solution beyond an axis range is still a solution: check() says so.
-  virtual Solve inverse(const Pose& X_BT, std::span<const double> previous, std::span<double> axes) const = 0;
+  virtual SolveStatus inverse(const Pose& X_BT, std::span<const double> previous,
+                              std::span<double> axes) const = 0;
   /// Tool pose for axis positions, on the branch of `seed`.
-  virtual Solve forward(std::span<const double> axes, const Pose& seed, Pose& X_BT) const = 0;
+  virtual SolveStatus forward(std::span<const double> axes, const Pose& seed, Pose& X_BT) const = 0;
   /// d(axes)/d(twist): row per axis; twist = (velocity of the tip, angular velocity), both in B. Of the
   /// smallest norm where a twist leaves a choice. `singular`: rates are filled all the same, for the twists
   /// that the machine can still follow.
-  virtual Solve axis_rates(const Pose& X_BT, std::span<const double> axes,
-                           Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 6>> rates) const = 0;
+  virtual SolveStatus axis_rates(const Pose& X_BT, std::span<const double> axes,
+                                 Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 6>> rates) const = 0;
   /// Condition number of axis_rates with its angular columns divided by the tool's own size, so that both
   /// halves are lengths; kSingularCondition where it is singular or there is no solution.
   virtual double condition_number(const Pose& X_BT, std::span<const double> axes) const = 0;
@@ -93,11 +94,11 @@ class Mechanism {
 
   /// Of a machine with rotary words B and C; the two functions below are for these, `bad_input` elsewhere.
   virtual std::optional<RotaryAxes> rotary_axes() const { return std::nullopt; }
-  virtual Solve pose_at_turns(const TipAndTurns& at, Pose& X_BT) const;
+  virtual SolveStatus pose_at_turns(const RotaryTarget& at, Pose& X_BT) const;
   /// The axes that hold the tip there with B and C as they are, branch and turns included, singular or not,
   /// and what they do while tip and turns move at `rate`.
-  virtual Solve axes_at_turns(const TipAndTurns& at, const TipAndTurns& rate, std::span<double> axes,
-                              std::span<double> axis_rates) const;
+  virtual SolveStatus axes_at_turns(const RotaryTarget& at, const RotaryTarget& rate, std::span<double> axes,
+                                    std::span<double> axis_rates) const;
 };
 
 }  // namespace understudy::kinematics

@@ -8,7 +8,7 @@
 #include "core/digest.h"
 #include "core/output_file.h"
 #include "core/units.h"
-#include "kinematics/chain_kind.h"
+#include "kinematics/chain/chain_kind.h"
 #include "machine/tool_section.h"
 #include "machine/urdf_chain.h"
 

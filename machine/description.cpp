@@ -5,7 +5,7 @@
 #include "core/digest.h"
 #include "core/output_file.h"
 #include "core/units.h"
-#include "kinematics/chain_kind.h"
+#include "kinematics/chain/chain_kind.h"
 #include "machine/calibration_section.h"
 #include "machine/chain_section.h"
 #include "machine/hexapod_section.h"

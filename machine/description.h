@@ -12,17 +12,17 @@
 
 #include "core/image.h"
 #include "geometry/shape.h"
-#include "kinematics/chain.h"
-#include "kinematics/hexapod_passive_rotation.h"
+#include "kinematics/chain/chain.h"
+#include "kinematics/hexapod/hexapod_passive_rotation.h"
 
 namespace understudy::machine {
 
 /// A drive: stepper with a screw, belt or gear behind it. "Unit" is [m], or [rad] for an axis that turns.
 struct Drive {
-  double lead = 0;              ///< [unit/turn] of the motor
-  int steps_per_turn = 0;       ///< full steps
-  int microsteps = 0;           ///< per full step
-  double velocity_max = 0;      ///< [unit/s]
+  double lead = 0;          ///< [unit/turn] of the motor
+  int steps_per_turn = 0;   ///< full steps
+  int microsteps = 0;       ///< per full step
+  double velocity_max = 0;  ///< [unit/s]
   /// Change of speed that the motor takes at once at a corner without losing steps [unit/s]; 0: none beyond
   /// what its acceleration allows within a cycle.
   double velocity_jump = 0;
@@ -180,7 +180,7 @@ struct MachineDescription {
 
   std::array<Drive, kinematics::kMaxAxes> drives{};  ///< one an axis
   Tool tool;
-  Process process;          ///< of a tool that prints
+  Process process;             ///< of a tool that prints
   bool has_microscope = true;  ///< with its laser; without, there is no gap control
   Laser laser;
   Microscope microscope;

@@ -115,7 +115,8 @@ void read_tool(YamlMap& map, Tool& tool) {
 
 void read_process(YamlMap& map, Process& process) {
   if (map.has("material")) process.material = map.text("material");
-  if (map.has("ambient_c")) process.ambient_temperature = kCelsiusZero + map.quantity("ambient_c", {-50, 200});
+  if (map.has("ambient_c"))
+    process.ambient_temperature = kCelsiusZero + map.quantity("ambient_c", {-50, 200});
   if (map.has("fan_air_m_per_s")) process.fan_air_speed = map.quantity("fan_air_m_per_s", {0, 50});
   if (map.has("free_strand_mm")) process.free_strand_diameter = map.quantity("free_strand_mm", {0.01, 20});
   if (map.has("extruder_lag_ms")) process.extruder_lag = map.quantity("extruder_lag_ms", {0, 2000});

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kinematics/chain.h"
+#include "kinematics/chain/chain.h"
 
 namespace understudy::machine {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "control/constraint_check.h"
+#include "control/motion/constraint_check.h"
 #include "core/error.h"
 #include "rehearsal/findings.h"
 
@@ -61,21 +61,21 @@ std::string file_name(const std::string& machine) {
 
 }  // namespace
 
-BeforeCalibration before_calibration(const Stage& stage, const std::string& before,
+BeforeCalibration before_calibration(const TwinSetup& setup, const std::string& before,
                                      const std::string& after) {
-  BeforeCalibration result{stage, file_name(before), file_name(after), {}};
-  MachineDescription& machine = result.stage.machine;
+  BeforeCalibration result{setup, file_name(before), file_name(after), {}};
+  MachineDescription& machine = result.setup.machine;
   machine = machine::load_machine(before);
-  if (machine.mechanism != stage.machine.mechanism)
+  if (machine.mechanism != setup.machine.mechanism)
     throw InputError(fmt::format("--before {}: its mechanism is {}, that of {} is {}", before,
-                                 machine.mechanism, after, stage.machine.mechanism));
-  if (const char* what = difference(machine, stage.machine))
+                                 machine.mechanism, after, setup.machine.mechanism));
+  if (const char* what = difference(machine, setup.machine))
     throw InputError(fmt::format(
         "--before {}: {} than {}; it must be the same machine, before its calibration", before, what, after));
-  if (machine.sha256 == stage.machine.sha256)
+  if (machine.sha256 == setup.machine.sha256)
     throw InputError(
         fmt::format("--before {}: the same file as --machine {}: nothing to compare", before, after));
-  for (const Finding& finding : findings_of(control::check_constraints(stage.program, machine)))
+  for (const Finding& finding : findings_of(control::check_constraints(setup.program, machine)))
     if (finding.severity == Severity::error) {
       result.not_run = finding.message;
       if (finding.gcode_line > 0) result.not_run += fmt::format(" (line {})", finding.gcode_line);

@@ -11,14 +11,15 @@ namespace understudy::rehearsal {
 
 /// The print as the description before the calibration would drive it; the twin stays as it is.
 struct BeforeCalibration {
-  Stage stage;
+  TwinSetup setup;
   std::string machine_before, machine_after;  ///< what files or names they came from
-  std::string not_run;                        ///< why the program cannot run on `stage`; empty: it can
+  std::string not_run;                        ///< why the program cannot run with `setup`; empty: it can
 };
 
-/// `before` is a machine's name or file, `after` what the stage's own machine was called. Throws InputError
+/// `before` is a machine's name or file, `after` what the set-up's own machine was called. Throws InputError
 /// where the two do not describe the same machine: another mechanism, name, drawing or place.
-BeforeCalibration before_calibration(const Stage& stage, const std::string& before, const std::string& after);
+BeforeCalibration before_calibration(const TwinSetup& setup, const std::string& before,
+                                     const std::string& after);
 
 /// Figures of both open-loop runs; nothing while nothing was extruded. `before_run` is null where it did not
 /// run.

@@ -91,18 +91,18 @@ Finding contact_finding(const ContactStretch& stretch, bool touches, double limi
   return f;
 }
 
-Finding loose_finding(const sim::LooseStretch& loose, const Stage& stage) {
+Finding loose_finding(const sim::UnsupportedStretch& loose, const TwinSetup& setup) {
   Finding f;
   f.kind = "adhesion";
   f.gcode_line = loose.line;
   f.time_s = loose.time;
-  f.limit = to_mm(stage.machine.gap.accepted_max);
+  f.limit = to_mm(setup.machine.gap.accepted_max);
   f.unit = "mm";
   f.value = std::isfinite(loose.worst_gap) ? to_mm(loose.worst_gap) : to_mm(sim::kGapReach);
   std::string why;
   if (loose.adhesion == sim::Adhesion::cold) {
     f.value = loose.interface_temperature - kCelsiusZero;
-    f.limit = stage.material.glass_transition - kCelsiusZero;
+    f.limit = setup.material.glass_transition - kCelsiusZero;
     f.unit = "C";
     why = fmt::format(
         "its interface with the bead below is at {:.0f} C, below the glass transition at {:.0f} C", f.value,
@@ -158,10 +158,10 @@ Finding flow_finding(const FlowStretch& stretch) {
   return f;
 }
 
-void add_strand_findings(const TwinRun& run, const Stage& stage, std::vector<Finding>& findings) {
+void add_strand_findings(const TwinRun& run, const TwinSetup& setup, std::vector<Finding>& findings) {
   for (const auto& loose : run.loose)
     if (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose))
-      findings.push_back(loose_finding(loose, stage));
+      findings.push_back(loose_finding(loose, setup));
   for (const auto& stretch : run.flow) findings.push_back(flow_finding(stretch));
   for (const auto& strand : run.strands)
     if (!strand.solved || strand.sag > strand.diameter / 2) findings.push_back(sag_finding(strand));
@@ -231,8 +231,9 @@ std::vector<Finding> findings_of(const control::ConstraintReport& report) {
   return findings;
 }
 
-std::vector<Finding> findings_of(const TwinRun& run, const Stage& stage, control::GapControl gap_control) {
-  const machine::MachineDescription& machine = stage.machine;
+std::vector<Finding> findings_of(const TwinRun& run, const TwinSetup& setup,
+                                 control::GapControl gap_control) {
+  const machine::MachineDescription& machine = setup.machine;
   std::vector<Finding> findings;
   for (const auto& stretch : stretches_of(run.collisions))
     findings.push_back(contact_finding(stretch, true, 0));
@@ -240,7 +241,7 @@ std::vector<Finding> findings_of(const TwinRun& run, const Stage& stage, control
   for (const auto& stretch : stretches_of(run.near_collisions))
     findings.push_back(contact_finding(stretch, false, options.near));
   add_gap_findings(run, machine, gap_control, findings);
-  add_strand_findings(run, stage, findings);
+  add_strand_findings(run, setup, findings);
   const bool explained =
       std::any_of(run.result.approaches.begin(), run.result.approaches.end(),
                   [](const auto& a) { return a.outcome.stop != control::GapStop::none; }) ||

@@ -33,7 +33,7 @@ void check_home(const std::string& path, const std::shared_ptr<const geometry::M
   const auto mechanism = machine.make_mechanism();
   const auto axes = static_cast<std::size_t>(mechanism->axis_count());
   if (mechanism->inverse(machine.X_BT_home, {}, std::span(home.axes_reached).first(axes)) !=
-      kinematics::Solve::ok)
+      kinematics::SolveStatus::ok)
     return;  // told when the machine is started
   bodies.observe(home);
   for (const sim::Contact& contact : bodies.collisions()) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "machine/description.h"
-#include "sim/process/deposition.h"
+#include "sim/deposition/deposition.h"
 #include "toolpath/program.h"
 
 namespace understudy::rehearsal {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "control/gap_controller.h"
+#include "control/gap/gap_controller.h"
 #include "core/frames.h"
 #include "machine/port.h"
 #include "renderer/scene_view.h"
@@ -104,7 +104,7 @@ struct TracePoint {
 
 /// A laser frame kept for the report: the controller's look and the truth beside it.
 struct FrameRecord {
-  control::GapLook look;
+  control::GapSample look;
   double true_gap = 0;  ///< [m]
   std::optional<Vec2> true_dot_px;
 };

@@ -8,22 +8,22 @@
 
 #include <fmt/format.h>
 
-#include "control/constraint_check.h"
+#include "control/motion/constraint_check.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/units.h"
+#include "core/version.h"
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings.h"
 #include "rehearsal/fixture.h"
-#include "rehearsal/pictures.h"
 #include "rehearsal/process_check.h"
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/surface.h"
-#include "rehearsal/version.h"
+#include "report/picture/pictures.h"
 #include "sim/as_built/as_built_file.h"
-#include "toolpath/gcode.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
 namespace fs = std::filesystem;
@@ -64,40 +64,40 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   return gcode;
 }
 
-Stage prepare(const RehearsalRequest& request) {
+TwinSetup prepare(const RehearsalRequest& request) {
   const auto& engines = engine_names();
   if (std::find(engines.begin(), engines.end(), request.engine) == engines.end())
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
-  Stage stage;
-  stage.machine = machine::load_machine(request.machine);
-  stage.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, stage.machine));
-  if (stage.machine.tool.prints()) {
-    stage.material =
-        machine::load_material(request.material.empty() ? stage.machine.process.material : request.material);
-    check_process(stage.program, stage.machine, stage.material);
+  TwinSetup setup;
+  setup.machine = machine::load_machine(request.machine);
+  setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
+  if (setup.machine.tool.prints()) {
+    setup.material =
+        machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);
+    check_process(setup.program, setup.machine, setup.material);
   }
-  if (!request.fixture.empty()) stage.part = read_fixture(find_fixture(request.fixture), stage.machine);
-  stage.as_built = sim::make_as_built(stage.machine, request.as_built, request.seed);
-  stage.engine = request.engine;
-  stage.seed = request.seed;
-  stage.faults = resolve_faults(request.faults, stage.machine);
-  return stage;
+  if (!request.fixture.empty()) setup.part = read_fixture(find_fixture(request.fixture), setup.machine);
+  setup.as_built = sim::make_as_built(setup.machine, request.as_built, request.seed);
+  setup.engine = request.engine;
+  setup.seed = request.seed;
+  setup.faults = resolve_faults(request.faults, setup.machine);
+  return setup;
 }
 
-Record describe_run(const RehearsalRequest& request, const Stage& stage, control::GapControl mode) {
+Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, control::GapControl mode) {
   Record record;
   record.program_name = fs::path(request.program).filename().string();
-  record.machine_name = stage.machine.name;
+  record.machine_name = setup.machine.name;
   record.fixture_name = request.fixture.empty() ? "" : fs::path(request.fixture).filename().string();
   record.gap_control = mode == control::GapControl::off     ? "off"
                        : mode == control::GapControl::start ? "start"
                                                             : "continuous";
-  record.as_built = sim::write_as_built(stage.as_built);
+  record.as_built = sim::write_as_built(setup.as_built);
   record.title = record.program_name + " on " + record.machine_name;
-  record.gap_accepted_min_mm = to_mm(stage.machine.gap.accepted_min);
-  record.gap_accepted_max_mm = to_mm(stage.machine.gap.accepted_max);
-  record.gap_aim_mm = to_mm(stage.machine.gap.aim);
-  const auto mechanism = stage.machine.make_mechanism();
+  record.gap_accepted_min_mm = to_mm(setup.machine.gap.accepted_min);
+  record.gap_accepted_max_mm = to_mm(setup.machine.gap.accepted_max);
+  record.gap_aim_mm = to_mm(setup.machine.gap.aim);
+  const auto mechanism = setup.machine.make_mechanism();
   for (int i = 0; i < mechanism->axis_count(); ++i) {
     // The tip has columns x, y and z of its own.
     const std::string name = mechanism->axis_name(i);
@@ -108,10 +108,10 @@ Record describe_run(const RehearsalRequest& request, const Stage& stage, control
     if (std::isfinite(range.upper)) column.max = range.upper;
     record.axes.push_back(column);
   }
-  record.provenance = {kVersion,     stage.machine.sha256, stage.program.sha256,
+  record.provenance = {kVersion,     setup.machine.sha256, setup.program.sha256,
                        request.seed, request.as_built,     request.command};
-  for (const sim::FaultEvent& event : stage.faults)
-    record.provenance.faults.push_back(describe(event, stage.machine));
+  for (const sim::FaultEvent& event : setup.faults)
+    record.provenance.faults.push_back(describe(event, setup.machine));
   return record;
 }
 
@@ -178,13 +178,13 @@ struct Runs {
   const TwinRun* without() const { return open_loop ? &*open_loop : nullptr; }
 };
 
-Runs run_all(const Stage& stage, control::GapControl mode, bool compare, const Stage* before,
+Runs run_all(const TwinSetup& setup, control::GapControl mode, bool compare, const TwinSetup* before,
              const Progress& progress) {
   Runs runs;
   const RunOptions open_loop{control::GapControl::off, false};
-  std::vector<std::function<void()>> jobs{[&] { runs.main = run_twin(stage, {mode, true}, progress); }};
+  std::vector<std::function<void()>> jobs{[&] { runs.main = run_twin(setup, {mode, true}, progress); }};
   if (compare && mode != control::GapControl::off)
-    jobs.emplace_back([&] { runs.open_loop = run_twin(stage, open_loop, {}); });
+    jobs.emplace_back([&] { runs.open_loop = run_twin(setup, open_loop, {}); });
   if (before) jobs.emplace_back([&] { runs.before = run_twin(*before, open_loop, {}); });
   in_parallel(jobs.size(), static_cast<int>(jobs.size()), [&](std::size_t n) { jobs[n](); });
   return runs;
@@ -193,7 +193,7 @@ Runs run_all(const Stage& stage, control::GapControl mode, bool compare, const S
 void fill_comparison(const BeforeCalibration& before, const Runs& runs, Record& record) {
   const TwinRun* before_run = runs.before ? &*runs.before : nullptr;
   record.calibration = compare_calibrations(before, before_run, runs.open_loop ? *runs.open_loop : runs.main);
-  record.provenance.machine_before_sha256 = before.stage.machine.sha256;
+  record.provenance.machine_before_sha256 = before.setup.machine.sha256;
   if (before_run) record.trace_before_calibration = before_run->trace;
 }
 
@@ -209,26 +209,26 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
     if (progress) progress(share, what);
   };
   report(0, "reading");
-  const Stage stage = prepare(request);
+  const TwinSetup setup = prepare(request);
   std::optional<BeforeCalibration> before;
-  if (!request.before.empty()) before = before_calibration(stage, request.before, request.machine);
+  if (!request.before.empty()) before = before_calibration(setup, request.before, request.machine);
   const SurfaceTask surface = prepare_surface(request.surface);
-  const control::GapControl mode = gap_control_of(request.gap_control, stage.machine);
-  Record record = describe_run(request, stage, mode);
+  const control::GapControl mode = gap_control_of(request.gap_control, setup.machine);
+  Record record = describe_run(request, setup, mode);
 
   std::shared_ptr<const sim::Workpiece> printed;
   report(0.02, "checking limits");
-  const auto constraints = control::check_constraints(stage.program, stage.machine);
+  const auto constraints = control::check_constraints(setup.program, setup.machine);
   record.findings = findings_of(constraints);
   if (!any_error(record.findings)) {
     const Runs runs =
-        run_all(stage, mode, request.compare_without_gap_control || before,
-                before && before->not_run.empty() ? &before->stage : nullptr,
+        run_all(setup, mode, request.compare_without_gap_control || before,
+                before && before->not_run.empty() ? &before->setup : nullptr,
                 [&](double share, const std::string& what) { report(0.05 + 0.85 * share, what); });
     const TwinRun* without = runs.without();
-    fill_figures(runs.main, without, stage.machine, record);
+    fill_figures(runs.main, without, setup.machine, record);
     if (before) fill_comparison(*before, runs, record);
-    auto findings = findings_of(runs.main, stage, mode);
+    auto findings = findings_of(runs.main, setup, mode);
     record.findings.insert(record.findings.end(), findings.begin(), findings.end());
     record.trace = runs.main.trace;
     record.trace_stride = runs.main.trace_stride;
@@ -242,7 +242,7 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   record.go = !any_error(record.findings);
   if (request.pictures) {
     report(0.92, "drawing");
-    add_pictures(stage, printed.get(), record);
+    add_pictures(setup, printed.get(), record);
   }
   report(1, "done");
   return record;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "regression/scenario_faults.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/record.h"
-#include "rehearsal/scenario_faults.h"
 
 namespace understudy::rehearsal {
 

@@ -1,6 +1,6 @@
 #include "rehearsal/rotary_words.h"
 
-#include "kinematics/five_axis.h"
+#include "kinematics/chain/five_axis.h"
 
 namespace understudy::rehearsal {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "machine/description.h"
-#include "toolpath/gcode.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
 

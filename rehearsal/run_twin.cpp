@@ -11,10 +11,10 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/trace_observer.h"
+#include "sim/deposition/bead_temperature.h"
 #include "sim/plant/plant.h"
-#include "sim/process/bead_temperature.h"
-#include "sim/process/beads_near.h"
 #include "sim/sensors/microscope.h"
+#include "sim/surface/beads_near.h"
 #include "sim/twin/observer_thread.h"
 #include "sim/twin/simulated_port.h"
 
@@ -49,7 +49,7 @@ struct ExposureTruth {
 std::vector<FrameRecord> pair_with_truth(const control::PrintResult& result,
                                          const std::map<std::uint64_t, ExposureTruth>& truth) {
   std::vector<FrameRecord> frames;
-  const auto add = [&](const control::GapLook& look) {
+  const auto add = [&](const control::GapSample& look) {
     FrameRecord record;
     record.look = look;
     if (const auto found = truth.find(look.frame.number); found != truth.end()) {
@@ -67,23 +67,23 @@ std::vector<FrameRecord> pair_with_truth(const control::PrintResult& result,
   return frames;
 }
 
-std::unique_ptr<sim::Plant> make_plant(const Stage& stage) {
-  if (stage.engine == "mujoco") return sim::make_mujoco_plant(stage.machine, stage.as_built);
-  if (stage.engine == "bullet") return sim::make_bullet_plant(stage.machine, stage.as_built);
-  if (stage.engine == "quasistatic") return sim::make_quasistatic_plant(stage.machine, stage.as_built);
+std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup) {
+  if (setup.engine == "mujoco") return sim::make_mujoco_plant(setup.machine, setup.as_built);
+  if (setup.engine == "bullet") return sim::make_bullet_plant(setup.machine, setup.as_built);
+  if (setup.engine == "quasistatic") return sim::make_quasistatic_plant(setup.machine, setup.as_built);
   throw InputError(
-      fmt::format("unknown engine {}: one of {}", stage.engine, fmt::join(engine_names(), ", ")));
+      fmt::format("unknown engine {}: one of {}", setup.engine, fmt::join(engine_names(), ", ")));
 }
 
 /// What the printed material knows of its own temperature.
-sim::DepositionOptions deposition_options(const Stage& stage, FlowWatch& flow,
+sim::DepositionOptions deposition_options(const TwinSetup& setup, FlowWatch& flow,
                                           sim::AirStrandSolver& strands) {
   sim::DepositionOptions options;
   options.laid = [&flow](const sim::LaidBead& bead) { flow.add(bead); };
-  if (!stage.machine.tool.prints()) return options;
-  options.loose = [&strands](const sim::LooseStretch& stretch) { strands.add(stretch); };
-  options.glass_transition = stage.material.glass_transition;
-  options.substrate_temperature = sim::BeadTemperature(stage.machine, stage.material);
+  if (!setup.machine.tool.prints()) return options;
+  options.loose = [&strands](const sim::UnsupportedStretch& stretch) { strands.add(stretch); };
+  options.glass_transition = setup.material.glass_transition;
+  options.substrate_temperature = sim::BeadTemperature(setup.machine, setup.material);
   return options;
 }
 
@@ -91,13 +91,13 @@ constexpr double kLaserSees = 6e-3;  // [m], around the tip
 
 /// Everything that watches a run, and what it watches.
 struct Watch {
-  explicit Watch(const Stage& stage, const RunOptions& options)
-      : workpiece(std::make_shared<sim::Workpiece>(stage.part)),
-        flow(stage.program, stage.machine),
-        strands(stage.machine, stage.material),
-        deposition(stage.machine, workpiece, deposition_options(stage, flow, strands)),
+  explicit Watch(const TwinSetup& setup, const RunOptions& options)
+      : workpiece(std::make_shared<sim::Workpiece>(setup.part)),
+        flow(setup.program, setup.machine),
+        strands(setup.machine, setup.material),
+        deposition(setup.machine, workpiece, deposition_options(setup, flow, strands)),
         trace(deposition),
-        collision(stage.machine, stage.as_built, stage.part, collision_options()),
+        collision(setup.machine, setup.as_built, setup.part, collision_options()),
         thread(options.watch_collisions ? std::vector<sim::Observer*>{&deposition, &trace, &collision}
                                         : std::vector<sim::Observer*>{&deposition, &trace}) {}
 
@@ -143,12 +143,12 @@ const std::vector<std::string>& engine_names() {
   return names;
 }
 
-TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& progress) {
+TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progress& progress) {
   const auto started = std::chrono::steady_clock::now();
-  const auto plant = make_plant(stage);
-  Watch watch(stage, options);
+  const auto plant = make_plant(setup);
+  Watch watch(setup, options);
   std::optional<sim::Microscope> microscope;
-  if (stage.machine.has_microscope) microscope.emplace(stage.machine, stage.part, stage.seed);
+  if (setup.machine.has_microscope) microscope.emplace(setup.machine, setup.part, setup.seed);
   std::map<std::uint64_t, ExposureTruth> truth;
   const auto expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
     watch.thread.drain();  // the laser sees what has been printed by now
@@ -157,16 +157,16 @@ TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& 
     return microscope->expose(X_WT, region, number);
   };
   sim::TwinOptions twin;
-  twin.faults = stage.faults;
-  sim::SimulatedPort port(stage.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
+  twin.faults = setup.faults;
+  sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
                           {&watch.thread}, twin);
 
   control::PrintOptions print_options;
   print_options.gap_control = options.gap_control;
-  print_options.part = stage.part.get();
+  print_options.part = setup.part.get();
   Relay relay(progress, watch.thread, watch.trace);
   TwinRun run;
-  run.result = control::print(stage.program, stage.machine, port, print_options, &relay);
+  run.result = control::print(setup.program, setup.machine, port, print_options, &relay);
   watch.thread.drain();
   if (!port.engine_failure().empty()) throw MachineError(port.engine_failure());
   watch.deposition.finish();

@@ -12,14 +12,14 @@
 #include "rehearsal/rehearse.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
-#include "sim/process/air_strands.h"
-#include "sim/process/deposition.h"
+#include "sim/deposition/deposition.h"
+#include "sim/strand/air_strands.h"
 #include "toolpath/program.h"
 
 namespace understudy::rehearsal {
 
 /// What a run reads; immutable, shared by runs in several threads.
-struct Stage {
+struct TwinSetup {
   machine::MachineDescription machine;
   machine::Material material;  ///< of a tool that prints
   toolpath::Program program;
@@ -39,7 +39,7 @@ struct TwinRun {
   std::vector<sim::Contact> collisions, near_collisions;
   CollisionFigures collision;
   sim::DepositionSummary deposition;
-  std::vector<sim::LooseStretch> loose;
+  std::vector<sim::UnsupportedStretch> loose;
   std::vector<FlowStretch> flow;
   std::vector<sim::AirStrand> strands;
   std::shared_ptr<sim::Workpiece> workpiece;  ///< as printed
@@ -55,6 +55,6 @@ struct RunOptions {
 const std::vector<std::string>& engine_names();
 
 /// Throws MachineError when the engine fails, Interrupted.
-TwinRun run_twin(const Stage& stage, const RunOptions& options, const Progress& progress);
+TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progress& progress);
 
 }  // namespace understudy::rehearsal

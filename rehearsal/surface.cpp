@@ -5,10 +5,10 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/fixture.h"
-#include "sim/process/as_printed.h"
-#include "sim/process/deviation.h"
-#include "sim/process/roughness.h"
-#include "sim/process/surface_profile.h"
+#include "sim/surface/as_printed.h"
+#include "sim/surface/deviation.h"
+#include "sim/surface/roughness.h"
+#include "sim/surface/surface_profile.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -25,10 +25,9 @@ void measure_line(const SurfaceTask& task, const sim::Workpiece& workpiece, Reco
   const sim::Roughness roughness = sim::roughness(profile.heights, profile.pitch);
   record.surface->ra_um = to_um(roughness.ra);
   record.surface->rz_um = to_um(roughness.rz);
-  record.profile_note =
-      fmt::format("cut-off {:g} mm, {} sampling length{}{}", to_mm(roughness.cutoff), roughness.sampling_lengths,
-                  roughness.sampling_lengths == 1 ? "" : "s",
-                  roughness.cutoff_is_standard ? "" : "; ISO 4288 asks for a longer line");
+  record.profile_note = fmt::format("cut-off {:g} mm, {} sampling length{}{}", to_mm(roughness.cutoff),
+                                    roughness.sampling_lengths, roughness.sampling_lengths == 1 ? "" : "s",
+                                    roughness.cutoff_is_standard ? "" : "; ISO 4288 asks for a longer line");
   const std::size_t stride = profile.heights.size() / kChartPoints + 1;
   for (std::size_t i = 0; i < profile.heights.size(); i += stride)
     record.profile.push_back({to_mm(profile.pitch * static_cast<double>(i)), to_um(profile.heights[i])});
@@ -39,7 +38,8 @@ void measure_deviation(const SurfaceTask& task, const sim::Workpiece& workpiece,
   const sim::SurfaceDeviation deviation = sim::summarise(samples);
   if (deviation.covered > 0) record.surface->deviation_p95_um = to_um(deviation.p95);
   record.deviation_note = fmt::format(
-      "of the intended surface {:.1f} % has material within 1 mm; there the print lies {:+.0f} um off on the mean, "
+      "of the intended surface {:.1f} % has material within 1 mm; there the print lies {:+.0f} um off on the "
+      "mean, "
       "{:.0f} um at the median, {:.0f} um at 95 %, {:.0f} um at most",
       100 * deviation.coverage, to_um(deviation.mean), to_um(deviation.p50), to_um(deviation.p95),
       to_um(deviation.largest));
@@ -65,7 +65,8 @@ SurfaceTask prepare_surface(const SurfaceRequest& request) {
   const auto& v = request.profile_mm;
   if (!v.empty() && (v.size() != 6 || Vec3(v[3] - v[0], v[4] - v[1], v[5] - v[2]).norm() < 1e-3))
     throw InputError("--profile: six numbers that tell two points apart, x,y,z,x,y,z in mm");
-  if (request.probe.size() != 3 || !(Vec3(request.probe[0], request.probe[1], request.probe[2]).norm() > 1e-9))
+  if (request.probe.size() != 3 ||
+      !(Vec3(request.probe[0], request.probe[1], request.probe[2]).norm() > 1e-9))
     throw InputError("--probe: three numbers that are a direction, x,y,z");
   return task;
 }

@@ -6,8 +6,8 @@
 
 #include "control/print.h"
 #include "rehearsal/record.h"
+#include "sim/deposition/deposition.h"
 #include "sim/observer.h"
-#include "sim/process/deposition.h"
 
 namespace understudy::rehearsal {
 

@@ -17,7 +17,8 @@ namespace understudy::renderer {
   X(ActiveTexture)                                                                                           \
   X(AttachShader)                                                                                            \
   X(BindBuffer)                                                                                              \
-  X(BindFramebuffer) X(BindRenderbuffer) X(BindTexture) X(BindVertexArray) X(BlitFramebuffer) X(BufferData)  \
+  X(BindFramebuffer)                                                                                         \
+  X(BindRenderbuffer) X(BindTexture) X(BindVertexArray) X(BlitFramebuffer) X(BufferData)                     \
       X(CheckFramebufferStatus) X(Clear) X(ClearBufferfv) X(CompileShader) X(CreateProgram) X(CreateShader)  \
           X(DeleteBuffers) X(DeleteFramebuffers) X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader)     \
               X(DeleteTextures) X(DeleteVertexArrays) X(ColorMask) X(DepthFunc) X(Disable) X(DrawArrays)     \

@@ -13,11 +13,11 @@
 namespace understudy::renderer {
 
 struct LaserScene {
-  std::shared_ptr<const geometry::Mesh> part;  ///< may be null: nothing but the table
+  std::shared_ptr<const geometry::Mesh> part;     ///< may be null: nothing but the table
   std::shared_ptr<const geometry::Mesh> printed;  ///< beads near the tool, in W; may be null
-  bool table = true;                           ///< the plane z = 0 of W
-  std::vector<geometry::Shape> tool_bodies;    ///< in T; they occlude beam and view
-  Pose X_WT = Pose::Identity();                ///< true pose
+  bool table = true;                              ///< the plane z = 0 of W
+  std::vector<geometry::Shape> tool_bodies;       ///< in T; they occlude beam and view
+  Pose X_WT = Pose::Identity();                   ///< true pose
   Pose X_TC = Pose::Identity();
   Pose X_TL = Pose::Identity();
   Camera camera;

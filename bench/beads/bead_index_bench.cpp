@@ -16,8 +16,8 @@
 #include "core/random.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "sim/collision/bead_index.h"
-#include "sim/collision/bead_shape.h"
+#include "sim/beads/bead_index.h"
+#include "sim/beads/bead_shape.h"
 
 namespace understudy::sim {
 namespace {

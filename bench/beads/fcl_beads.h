@@ -6,7 +6,7 @@
 
 #include "core/frames.h"
 #include "geometry/shape.h"
-#include "sim/collision/bead.h"
+#include "sim/beads/bead.h"
 
 namespace understudy::sim {
 

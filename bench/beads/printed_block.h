@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "sim/collision/bead.h"
+#include "sim/beads/bead.h"
 
 namespace understudy::sim {
 

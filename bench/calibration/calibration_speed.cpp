@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/calibration/ceres_peer.h"
-#include "calibration/estimator.h"
+#include "calibration/estimators/estimator.h"
 #include "calibration/pose_choice.h"
 #include "calibration/synthetic.h"
 #include "machine/description.h"

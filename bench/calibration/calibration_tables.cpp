@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "calibration/study_tables.h"
 #include "core/error.h"
 #include "machine/description.h"
+#include "studies/calibration/study_tables.h"
 
 namespace understudy::bench {
 namespace {

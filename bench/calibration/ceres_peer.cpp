@@ -57,7 +57,8 @@ class PoseError {
     for (std::size_t i = 0; i < kStruts; ++i) lengths[i] = g.length_offset[i] + sample_.displacement[i];
     const auto forward = kinematics::forward(g, lengths, seed_);
     Mat6 J;
-    if (forward.status != kinematics::Solve::ok || jacobian(g, forward.X_BT, J) != kinematics::Solve::ok)
+    if (forward.status != kinematics::SolveStatus::ok ||
+        jacobian(g, forward.X_BT, J) != kinematics::SolveStatus::ok)
       return false;
     seed_ = forward.X_BT;
     write_error(blocks, forward.X_BT, Mat6(J.inverse()), out);
@@ -124,7 +125,7 @@ CeresAnswer solve_with_ceres(const calibration::Problem& problem, bool normal_eq
   options.gradient_tolerance = 1e-30;
   options.parameter_tolerance = 1e-10;  // of the parameters' norm, 0.5 m: steps of 0.05 nm
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &peer, &summary);
+  ceres::SolveStatus(options, &peer, &summary);
   const double* pointers[kStruts];
   for (std::size_t i = 0; i < kStruts; ++i) pointers[i] = blocks[i].data();
   return {summary.IsSolutionUsable(), geometry_of(pointers, g.deviation),

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "tests/kinematics/arm_machines.h"
+#include "tests/kinematics/chain/arm_machines.h"
 
 #ifdef UNDERSTUDY_HAVE_KDL
 #include <kdl/chain.hpp>
@@ -104,7 +104,7 @@ void bench_numeric(const Cases& cases) {
   const auto start = Clock::now();
   for (const Pose& X : cases.poses) {
     ArmAxes axes{};
-    solved += arm->inverse(X, {}, axes) == Solve::ok && reaches(cases, axes, X);
+    solved += arm->inverse(X, {}, axes) == SolveStatus::ok && reaches(cases, axes, X);
   }
   std::printf("our numeric inverse, from home %8.0f ns/pose, %.2f %% solved (to 1e-12)\n",
               seconds_since(start) / kPoses * 1e9, 100.0 * solved / kPoses);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "tests/kinematics/g4.h"
+#include "tests/kinematics/hexapod/g4.h"
 
 namespace understudy::kinematics {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bench/kinematics/linuxcnc_genhexkins.h"
-#include "kinematics/hexapod_batch.h"
-#include "kinematics/hexapod_far.h"
-#include "tests/kinematics/workspace_pose.h"
+#include "kinematics/hexapod/hexapod_batch.h"
+#include "kinematics/hexapod/hexapod_global_forward.h"
+#include "tests/kinematics/workspace/workspace_pose.h"
 
 namespace understudy::bench {
 namespace {
@@ -25,7 +25,7 @@ constexpr int kRounds = 21;  // odd; the median of these is told
 /// Where the peer is not installed: measured with linuxcnc-uspace of Debian 12 on two cores,
 /// 2026-11-21.
 constexpr double kPeerInverse = 177, kPeerForward = 9'500;  // [ns], medians
-constexpr int kPeerRefused = 674, kPeerElsewhere = 117;  // of 4096 far guesses, in the reference's own set
+constexpr int kPeerRefused = 674, kPeerElsewhere = 117;     // of 4096 far guesses, in the reference's own set
 
 struct Case {
   Pose X, X_near, X_far;
@@ -123,9 +123,9 @@ void compare_accuracy(const HexapodGeometry& g, const std::vector<Case>& cases, 
   for (const Case& c : cases) {
     ours = std::max(ours, (forward(g, c.lengths, c.X_near).X_BT.translation() - c.X.translation()).norm());
     const ForwardResult from_seed = forward(g, c.lengths, c.X_far);
-    plain.add(from_seed.status == Solve::ok, from_seed.X_BT, c.X);
-    const ForwardResult from_far = forward_from_far(g, c.lengths, c.X_far, Pose::Identity());
-    far.add(from_far.status == Solve::ok, from_far.X_BT, c.X);
+    plain.add(from_seed.status == SolveStatus::ok, from_seed.X_BT, c.X);
+    const ForwardResult from_far = forward_global(g, c.lengths, c.X_far, Pose::Identity());
+    far.add(from_far.status == SolveStatus::ok, from_far.X_BT, c.X);
     if (peer == nullptr) continue;
     Genhexkins::World world = c.world_near;
     unsolved += peer->forward(c.lengths_mm, world) != 0;
@@ -140,7 +140,7 @@ void compare_accuracy(const HexapodGeometry& g, const std::vector<Case>& cases, 
   const auto row = [](const char* name, const Counts& n) {
     std::printf("  %-42s %6d %10d %8d\n", name, n.right, n.elsewhere, n.refused);
   };
-  row("ours, seed and home (forward_from_far)", far);
+  row("ours, seed and home (forward_global)", far);
   row("ours, seed alone (forward)", plain);
   if (peer != nullptr)
     row("genhexkins", peer_far);
@@ -154,7 +154,7 @@ void show_batch(const HexapodGeometry& g, const std::vector<Case>& cases, double
   constexpr std::size_t kTimes = 32;  // over: a batch worth its threads
   const std::size_t count = kTimes * cases.size();
   std::vector<StrutLengths> lengths, found(count);
-  std::vector<Solve> status(count);
+  std::vector<SolveStatus> status(count);
   std::vector<ForwardResult> results(count);
   for (std::size_t n = 0; n < count; ++n) {
     const Case& c = cases[n % cases.size()];

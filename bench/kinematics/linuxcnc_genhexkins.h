@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "kinematics/hexapod.h"
+#include "kinematics/hexapod/hexapod.h"
 
 namespace understudy::bench {
 

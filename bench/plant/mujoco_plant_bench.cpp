@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "machine/description.h"
-#include "sim/plant/mjcf.h"
-#include "sim/plant/mujoco_engine.h"
+#include "sim/plant/mujoco/mjcf.h"
+#include "sim/plant/mujoco/mujoco_engine.h"
 #include "sim/plant/plant.h"
 
 namespace understudy::sim {
@@ -42,8 +42,8 @@ std::vector<DriveCommand> circle_commands(const machine::MachineDescription& mac
     twist.head<3>() = radius * rate * Vec3(-std::sin(angle), std::cos(angle), 0);
     kinematics::StrutLengths lengths{};
     Mat6 J;
-    if (kinematics::inverse(machine.hexapod.geometry, X_BT, lengths) != kinematics::Solve::ok ||
-        kinematics::jacobian(machine.hexapod.geometry, X_BT, J) != kinematics::Solve::ok)
+    if (kinematics::inverse(machine.hexapod.geometry, X_BT, lengths) != kinematics::SolveStatus::ok ||
+        kinematics::jacobian(machine.hexapod.geometry, X_BT, J) != kinematics::SolveStatus::ok)
       throw std::runtime_error("the circle leaves the workspace");
     const Twist rates = J * twist;
     auto& command = commands[static_cast<std::size_t>(k)];

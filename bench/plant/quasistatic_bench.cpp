@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "machine/description.h"
-#include "sim/plant/quasistatic.h"
+#include "sim/plant/quasistatic/quasistatic.h"
 
 namespace understudy::sim {
 namespace {
@@ -43,8 +43,8 @@ std::vector<PathSample> circle_path(const machine::MachineDescription& machine) 
     twist.head<3>() = radius * rate * Vec3(-std::sin(angle), std::cos(angle), 0);
     kinematics::StrutLengths lengths{};
     Mat6 J;
-    if (kinematics::inverse(geometry, X_BT, lengths) != kinematics::Solve::ok ||
-        kinematics::jacobian(geometry, X_BT, J) != kinematics::Solve::ok)
+    if (kinematics::inverse(geometry, X_BT, lengths) != kinematics::SolveStatus::ok ||
+        kinematics::jacobian(geometry, X_BT, J) != kinematics::SolveStatus::ok)
       throw std::runtime_error("the circle leaves the workspace");
     const Twist rates = J * twist;
     auto& sample = path[static_cast<std::size_t>(k)];
@@ -126,7 +126,7 @@ int run() {
         watched += warm.X_BT.translation().x();
       }
     });
-    if (warm.status != kinematics::Solve::ok) throw std::runtime_error("a pose was not found");
+    if (warm.status != kinematics::SolveStatus::ok) throw std::runtime_error("a pose was not found");
   }
   if (!std::isfinite(watched)) throw std::runtime_error("the plant left the path");
 

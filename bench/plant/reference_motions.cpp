@@ -38,7 +38,7 @@ void solve(const kinematics::Mechanism& mechanism, const Pose& X_BT, double time
   const auto count = static_cast<std::size_t>(mechanism.axis_count());
   const AxisArray previous = axes;
   const auto status = mechanism.inverse(X_BT, std::span(previous).first(count), std::span(axes).first(count));
-  if (status != kinematics::Solve::ok)
+  if (status != kinematics::SolveStatus::ok)
     throw MachineError(fmt::format("the motion is {} at {:.3f} s", kinematics::to_string(status), time));
 }
 

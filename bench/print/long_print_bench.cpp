@@ -10,7 +10,7 @@
 
 #include "core/units.h"
 #include "rehearsal/run_twin.h"
-#include "toolpath/gcode.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy {
 namespace {
@@ -57,17 +57,17 @@ double memory_peak_mb() {
 }
 
 void run(std::size_t moves) {
-  rehearsal::Stage stage;
-  stage.machine = machine::load_machine("five-axis");
-  stage.material = machine::load_material(stage.machine.process.material);
+  rehearsal::TwinSetup setup;
+  setup.machine = machine::load_machine("five-axis");
+  setup.material = machine::load_material(setup.machine.process.material);
   toolpath::GcodeOptions options;
-  options.X_WT_home = stage.machine.X_WB * stage.machine.X_BT_home;
-  stage.program = toolpath::parse_gcode(program_of(moves), "generated", options);
-  stage.as_built = sim::make_as_built(stage.machine, "nominal", 0);
-  stage.engine = "quasistatic";
+  options.X_WT_home = setup.machine.X_WB * setup.machine.X_BT_home;
+  setup.program = toolpath::parse_gcode(program_of(moves), "generated", options);
+  setup.as_built = sim::make_as_built(setup.machine, "nominal", 0);
+  setup.engine = "quasistatic";
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  const auto result = rehearsal::run_twin(stage, {control::GapControl::off, true}, {});
+  const auto result = rehearsal::run_twin(setup, {control::GapControl::off, true}, {});
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double used = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   const auto& laid = result.deposition;

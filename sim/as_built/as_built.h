@@ -23,10 +23,10 @@ struct AsBuilt {
       axis_zero{};  ///< [m] or [rad], true position where a drive reads 0
 };
 
-/// `set` is nominal (what the controller knows), sampled (that, off by the tolerances left after calibration),
-/// manufactured (the drawing, off by those of manufacture), or an as-built file (as_built_file.h), which alters
-/// the drawing. So calibrating a machine file changes neither a manufactured twin nor a file's, only what the
-/// controller knows of them. Throws InputError for another word.
+/// `set` is nominal (what the controller knows), sampled (that, off by the tolerances left after
+/// calibration), manufactured (the drawing, off by those of manufacture), or an as-built file
+/// (as_built_file.h), which alters the drawing. So calibrating a machine file changes neither a manufactured
+/// twin nor a file's, only what the controller knows of them. Throws InputError for another word.
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set, std::uint64_t seed);
 
 }  // namespace understudy::sim

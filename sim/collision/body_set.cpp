@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/collision/penetration.h"
+#include "sim/distance/penetration.h"
 
 namespace understudy::sim {
 namespace {
@@ -135,7 +135,7 @@ Separation BodySet::surfaces(const Body& body, const Pose& X_W1, const Body& obs
   return world_.distance(body.fcl, X_W1, obstacle.fcl, X_W2);
 }
 
-Separation BodySet::separation(const BodyPair& pair, const Posture& posture, bool check_inside) {
+Separation BodySet::separation(const BodyPair& pair, const Configuration& posture, bool check_inside) {
   Body &body = bodies_[pair.body], &obstacle = bodies_[pair.obstacle];
   if (body.owner == Owner::link || obstacle.owner == Owner::link) links_.pose(posture.axes);
   const Pose X_W1 = place(body, posture.X_WT), X_W2 = place(obstacle, posture.X_WT);
@@ -151,7 +151,7 @@ Separation BodySet::separation(const BodyPair& pair, const Posture& posture, boo
   return result;
 }
 
-std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const Posture& posture,
+std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const Configuration& posture,
                                                      std::size_t before) {
   Body& body = bodies_[pair.body];
   if (body.owner == Owner::link) links_.pose(posture.axes);
@@ -159,7 +159,7 @@ std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const
   return beads_->nearest(*body.solid, X_WS, kBeadReach, before);
 }
 
-double BodySet::bead_clearance(const BodyPair& pair, const Posture& posture, const Bead& bead) {
+double BodySet::bead_clearance(const BodyPair& pair, const Configuration& posture, const Bead& bead) {
   Body& body = bodies_[pair.body];
   if (body.owner == Owner::link) links_.pose(posture.axes);
   const Vec3 from(bead.from_W[0], bead.from_W[1], bead.from_W[2]),

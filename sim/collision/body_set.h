@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "sim/collision/bead_index.h"
+#include "sim/beads/bead_index.h"
 #include "sim/collision/chain_bodies.h"
 #include "sim/collision/collision.h"
-#include "sim/collision/convex_solid.h"
 #include "sim/collision/fcl_world.h"
-#include "sim/collision/mesh_clearance.h"
+#include "sim/distance/convex_solid.h"
+#include "sim/distance/mesh_clearance.h"
 
 namespace understudy::sim {
 
@@ -47,13 +47,13 @@ class BodySet {
 
   /// Distance of the two surfaces at a pose of the tool; where they overlap, minus the depth. `check_inside`
   /// also finds a body that lies wholly inside a closed part, which no surface shows.
-  Separation separation(const BodyPair& pair, const Posture& posture, bool check_inside);
+  Separation separation(const BodyPair& pair, const Configuration& posture, bool check_inside);
 
   /// The nearest of the first `before` beads; nothing within kBeadReach.
-  std::optional<BeadIndex::Near> nearest_bead(const BodyPair& pair, const Posture& posture,
+  std::optional<BeadIndex::Near> nearest_bead(const BodyPair& pair, const Configuration& posture,
                                               std::size_t before);
   /// [m], at least, between the pair's body and one bead.
-  double bead_clearance(const BodyPair& pair, const Posture& posture, const Bead& bead);
+  double bead_clearance(const BodyPair& pair, const Configuration& posture, const Bead& bead);
 
  private:
   enum class Owner { tool, strut, link, world };

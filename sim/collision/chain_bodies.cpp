@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/collision/convex_solid.h"
+#include "sim/distance/convex_solid.h"
 
 namespace understudy::sim {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "geometry/shape.h"
 #include "sim/as_built/as_built.h"
-#include "sim/collision/posture.h"
+#include "sim/collision/configuration.h"
 
 namespace understudy::sim {
 

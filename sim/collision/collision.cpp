@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "sim/collision/body_set.h"
-#include "sim/collision/watched_pair.h"
+#include "sim/collision/conservative_advancement.h"
 
 namespace understudy::sim {
 namespace {
@@ -18,8 +18,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastAccuracy = 0.05e-3;  // [m], of min_clearance()
 constexpr double kNozzleFineness = 4;  // the nozzle works a few margins from the part: looked at more often
 
-Posture posture_between(const Snapshot& from, const Snapshot& to, double t) {
-  Posture posture{interpolate(from.X_WT, to.X_WT, t), from.axes_reached};
+Configuration posture_between(const Snapshot& from, const Snapshot& to, double t) {
+  Configuration posture{interpolate(from.X_WT, to.X_WT, t), from.axes_reached};
   for (std::size_t i = 0; i < posture.axes.size(); ++i)
     posture.axes[i] += t * (to.axes_reached[i] - from.axes_reached[i]);
   return posture;
@@ -62,7 +62,7 @@ struct CollisionObserver::State {
     return pair.nozzle_at_work ? options.nozzle_contact : options.near;
   }
 
-  void look(std::size_t index, const Posture& posture, double time, int line) {
+  void look(std::size_t index, const Configuration& posture, double time, int line) {
     const BodyPair& pair = bodies.pairs()[index];
     if (pair.printed) return look_at_beads(index, posture, time, line);
     Look& at = looks[index];
@@ -76,7 +76,7 @@ struct CollisionObserver::State {
     at.budget = allowed_motion(seen.distance, watch(index, line));
   }
 
-  void look_at_beads(std::size_t index, const Posture& posture, double time, int line) {
+  void look_at_beads(std::size_t index, const Configuration& posture, double time, int line) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
     at.clearance = kBeadReach;
@@ -98,7 +98,7 @@ struct CollisionObserver::State {
   }
 
   // Material has appeared since the last snapshot: nearer than what the pair's budget counts with, perhaps.
-  void mind_new_beads(std::size_t index, const Posture& posture) {
+  void mind_new_beads(std::size_t index, const Configuration& posture) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
     const std::size_t count = beads_for(pair);

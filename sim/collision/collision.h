@@ -9,8 +9,8 @@
 #include "geometry/mesh.h"
 #include "machine/description.h"
 #include "sim/as_built/as_built.h"
-#include "sim/collision/bead_index.h"
-#include "sim/collision/posture.h"
+#include "sim/beads/bead_index.h"
+#include "sim/collision/configuration.h"
 #include "sim/observer.h"
 
 namespace understudy::sim {
@@ -18,7 +18,7 @@ namespace understudy::sim {
 /// The bodies of a machine: those of the tool, and the struts of a hexapod or the links of a chain. Shared by
 /// collision checks and pictures. Each shape's X_FS is its pose in W.
 std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& machine,
-                                            const AsBuilt& as_built, const Posture& posture);
+                                            const AsBuilt& as_built, const Configuration& posture);
 /// Tool bodies and platform, six strut capsules from base joint to ball joint.
 std::vector<geometry::Shape> hexapod_bodies(const machine::MachineDescription& machine,
                                             const kinematics::HexapodGeometry& geometry, const Pose& X_WT);
@@ -41,8 +41,8 @@ struct CollisionOptions {
   /// Number of the first bead that is still under the nozzle, which presses it by design; asked at every
   /// snapshot. Without it no bead is fresh.
   std::function<std::size_t()> fresh_from;
-  /// [m]: the nozzle runs level with the beads of its own layer and presses into them by half a usual layer and
-  /// a machine's play; deeper is a contact.
+  /// [m]: the nozzle runs level with the beads of its own layer and presses into them by half a usual layer
+  /// and a machine's play; deeper is a contact.
   double bead_press = 0.10e-3;
 };
 

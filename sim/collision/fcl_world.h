@@ -5,7 +5,7 @@
 
 #include "core/frames.h"
 #include "geometry/shape.h"
-#include "sim/collision/separation.h"
+#include "sim/distance/separation.h"
 
 namespace understudy::sim {
 

@@ -21,7 +21,7 @@ std::vector<geometry::Shape> hexapod_bodies(const machine::MachineDescription& m
 }
 
 std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& machine,
-                                            const AsBuilt& as_built, const Posture& posture) {
+                                            const AsBuilt& as_built, const Configuration& posture) {
   if (!machine.chain) return hexapod_bodies(machine, as_built.hexapod, posture.X_WT);
   std::vector<geometry::Shape> bodies;
   for (geometry::Shape shape : machine.tool.bodies) {

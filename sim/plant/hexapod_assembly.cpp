@@ -17,7 +17,8 @@ ScrewTurning::ScrewTurning(const machine::MachineDescription& machine, const AsB
 double ScrewTurning::growth(const Pose& X_WT, int strut) const {
   if (coupling_.lead == 0) return 0;
   double angle = 0;
-  if (kinematics::passive_rotation(geometry_, coupling_, X_BW_ * X_WT, strut, angle) != kinematics::Solve::ok)
+  if (kinematics::passive_rotation(geometry_, coupling_, X_BW_ * X_WT, strut, angle) !=
+      kinematics::SolveStatus::ok)
     throw MachineError(fmt::format(
         "strut {} lies along one of its joints: the turn of its screw is not defined", strut + 1));
   return coupling_.lead / (2 * std::numbers::pi) * angle;
@@ -29,7 +30,7 @@ Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt&
   for (std::size_t i = 0; i < kStruts; ++i) lengths[i] = displacement[i] + as_built.hexapod.length_offset[i];
   const auto found =
       kinematics::forward(as_built.hexapod, machine.screw_coupling(), lengths, machine.X_BT_home);
-  if (found.status != kinematics::Solve::ok)
+  if (found.status != kinematics::SolveStatus::ok)
     throw MachineError(fmt::format(
         "the loops cannot be closed for strut lengths {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} mm: {}",
         to_mm(lengths[0]), to_mm(lengths[1]), to_mm(lengths[2]), to_mm(lengths[3]), to_mm(lengths[4]),
@@ -40,7 +41,7 @@ Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt&
 machine::AxisArray home_displacement(const machine::MachineDescription& machine, const AsBuilt& as_built) {
   kinematics::StrutLengths lengths{};
   if (kinematics::inverse(as_built.hexapod, machine.screw_coupling(), machine.X_BT_home, lengths) !=
-      kinematics::Solve::ok)
+      kinematics::SolveStatus::ok)
     throw MachineError("the as-built machine does not reach its home pose");
   machine::AxisArray displacement{};
   for (std::size_t i = 0; i < kStruts; ++i) displacement[i] = lengths[i] - as_built.hexapod.length_offset[i];

@@ -1,7 +1,7 @@
 // One strut as a chain of joints: universal joint, screw beside it by `dev`, ball joint.
 #pragma once
 
-#include "kinematics/hexapod.h"
+#include "kinematics/hexapod/hexapod.h"
 
 namespace understudy::sim {
 

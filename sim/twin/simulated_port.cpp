@@ -66,7 +66,7 @@ SimulatedPort::SimulatedPort(const machine::MachineDescription& machine, Plant& 
   for (int i = 0; i < axes; ++i) ranges_.push_back(mechanism_->axis_range(i));
   const auto solved = mechanism_->inverse(machine.X_BT_home, {},
                                           std::span(last_.position).first(static_cast<std::size_t>(axes)));
-  if (solved != kinematics::Solve::ok)
+  if (solved != kinematics::SolveStatus::ok)
     throw InputError(machine.file.string() + ": the home pose cannot be reached: " + to_string(solved));
   AxisArray displacement{};
   for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = last_.position[i] - drive_zero_[i];
@@ -202,7 +202,7 @@ void SimulatedPort::observe(const Target& target) {
   s.X_WT = plant_.tool_pose();
   const auto axes = std::span(target.position).first(static_cast<std::size_t>(axis_count()));
   Pose X_BT;
-  if (mechanism_->forward(axes, X_BT_commanded_, X_BT) == kinematics::Solve::ok) X_BT_commanded_ = X_BT;
+  if (mechanism_->forward(axes, X_BT_commanded_, X_BT) == kinematics::SolveStatus::ok) X_BT_commanded_ = X_BT;
   s.X_WT_commanded = machine_.X_WB * X_BT_commanded_;
   s.axes_commanded = target.position;
   s.axes = state().position;

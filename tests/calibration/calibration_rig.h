@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibration/bound.h"
-#include "calibration/estimator.h"
+#include "calibration/estimators/estimator.h"
 #include "calibration/pose_choice.h"
 #include "calibration/synthetic.h"
 #include "core/units.h"

@@ -25,7 +25,7 @@ TEST(RandomPoses, LieInTheRegionAndBreakNoLimit) {
     EXPECT_LE(angle_between(rig().mechanism->home().linear(), X.linear()), from_deg(20 + 15));
     EXPECT_GE(X.linear()(2, 2), std::cos(from_deg(20)) - 1e-12);
     std::vector<double> axes(6);
-    ASSERT_EQ(rig().mechanism->inverse(X, {}, axes), kinematics::Solve::ok);
+    ASSERT_EQ(rig().mechanism->inverse(X, {}, axes), kinematics::SolveStatus::ok);
     std::vector<kinematics::LimitViolation> violations;
     rig().mechanism->check(X, axes, violations);
     EXPECT_TRUE(violations.empty()) << to_string(violations[0]);

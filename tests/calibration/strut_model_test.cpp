@@ -1,7 +1,7 @@
 // Every derivative against central differences of what it is the derivative of.
 #include <gtest/gtest.h>
 
-#include "calibration/fit.h"
+#include "calibration/estimators/fit.h"
 #include "tests/calibration/calibration_rig.h"
 
 namespace understudy::calibration {

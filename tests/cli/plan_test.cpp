@@ -59,7 +59,8 @@ TEST(PlanSurface, RefusesWhatItCannotPlanAndWritesNothing) {
 TEST(PlanSurface, RowsOnTheCoreMakeTheShippedConformalFinishAgain) {
   const Folder folder;
   const Outcome outcome = understudy(
-      "plan surface crown_core --tilt -17 17 --rows 28 --pitch 0.42 --layers 3 --step 1 --chord 4 --clearance 4 -o " +
+      "plan surface crown_core --tilt -17 17 --rows 28 --pitch 0.42 --layers 3 --step 1 --chord 4 "
+      "--clearance 4 -o " +
       (folder / "conformal.gcode"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(without_comments(read_file(folder / "conformal.gcode")),
@@ -68,7 +69,8 @@ TEST(PlanSurface, RowsOnTheCoreMakeTheShippedConformalFinishAgain) {
 
 TEST(PlanPlanar, MakesTheShippedStaircaseAgain) {
   const Folder folder;
-  const Outcome outcome = understudy("plan planar crown --core crown_base --pitch 0.42 -o " + (folder / "planar.gcode"));
+  const Outcome outcome =
+      understudy("plan planar crown --core crown_base --pitch 0.42 -o " + (folder / "planar.gcode"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   // 17 layers of 0.13 mm from the base at 18.20 mm to the crown's top at 20.41 mm.
   EXPECT_THAT(outcome.out, HasSubstr("17 layers of 0.13 mm"));

@@ -2,18 +2,18 @@
 // of a gap once the dot is measured.
 //
 // Not control-cycle code, and not watched here: MotionPlanner::push() and finish(), which run ahead of the
-// port's queue and grow the lookahead; Feeder, which calls them; close_gap(), GapWatch and
-// vision::measure_dot(), which work on a frame that owns its pixels, ahead of the queue or while the axes
-// rest, and keep every look for the report.
+// port's queue and grow the lookahead; SetpointStreamer, which calls them; close_gap(),
+// ContinuousGapController and vision::measure_dot(), which work on a frame that owns its pixels, ahead of the
+// queue or while the axes rest, and keep every look for the report.
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "control/gap_follower.h"
-#include "control/gap_reading.h"
-#include "control/motion_planner.h"
+#include "control/gap/gap_follower.h"
+#include "control/gap/gap_reading.h"
+#include "control/motion/motion_planner.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "machine/description.h"
@@ -23,7 +23,7 @@
 namespace understudy::control {
 namespace {
 
-using kinematics::Solve;
+using kinematics::SolveStatus;
 using machine::Setpoint;
 using machine::Status;
 
@@ -52,7 +52,7 @@ TEST_P(CycleOf, KinematicsNeitherAllocatesNorLocksNorTouchesFiles) {
   nan.translation().x() = std::nan("");
   poses.push_back(nan);
   std::array<double, kinematics::kMaxAxes> home{}, axes{};
-  ASSERT_EQ(mechanism_->inverse(mechanism_->home(), {}, std::span(home).first(axes_)), Solve::ok);
+  ASSERT_EQ(mechanism_->inverse(mechanism_->home(), {}, std::span(home).first(axes_)), SolveStatus::ok);
   Eigen::Matrix<double, Eigen::Dynamic, 6> rates(static_cast<Eigen::Index>(axes_), 6);
   int solved = 0;
   double condition = 0;
@@ -60,12 +60,12 @@ TEST_P(CycleOf, KinematicsNeitherAllocatesNorLocksNorTouchesFiles) {
     for (const Pose& X_BT : poses) {
       axes = home;
       const std::span<double> found(axes.data(), axes_);
-      const Solve status = mechanism_->inverse(X_BT, found, found);
+      const SolveStatus status = mechanism_->inverse(X_BT, found, found);
       Pose X_back;
       static_cast<void>(mechanism_->forward(found, mechanism_->home(), X_back));
       static_cast<void>(mechanism_->axis_rates(X_BT, found, rates));
       condition += mechanism_->condition_number(X_BT, found);
-      solved += status == Solve::ok ? 1 : 0;
+      solved += status == SolveStatus::ok ? 1 : 0;
     }
   });
   EXPECT_EQ(made, Calls{});

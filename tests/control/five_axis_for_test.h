@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "control/motion_planner.h"
-#include "kinematics/five_axis.h"
-#include "toolpath/gcode.h"
+#include "control/motion/motion_planner.h"
+#include "kinematics/chain/five_axis.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::control {
 

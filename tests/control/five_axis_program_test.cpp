@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "control/constraint_check.h"
+#include "control/motion/constraint_check.h"
 #include "tests/control/five_axis_for_test.h"
 
 namespace understudy::control {

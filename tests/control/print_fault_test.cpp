@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
-#include "tests/control/bead_program.h"
+#include "tests/control/gap/bead_program.h"
 
 namespace understudy::control {
 namespace {
@@ -100,7 +100,7 @@ class WrongPort : public machine::LoopbackPort {
     o.queue_capacity = capacity;
     const auto mechanism = hexapod().make_mechanism();
     EXPECT_EQ(mechanism->inverse(hexapod().X_BT_home, {}, std::span<double>(o.start.data(), 6)),
-              kinematics::Solve::ok);
+              kinematics::SolveStatus::ok);
     return o;
   }
 };

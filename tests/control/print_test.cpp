@@ -8,7 +8,7 @@
 
 #include "control/approach.h"
 #include "core/units.h"
-#include "tests/control/bead_program.h"
+#include "tests/control/gap/bead_program.h"
 
 namespace understudy::control {
 namespace {
@@ -125,7 +125,8 @@ TEST(Print, BeginsWhereTheMachineStands) {
   const auto mechanism = hexapod().make_mechanism();
   Pose X_BT = hexapod().X_BT_home;
   X_BT.translation().z() += 8e-3;
-  ASSERT_EQ(mechanism->inverse(X_BT, {}, std::span<double>(options.start.data(), 6)), kinematics::Solve::ok);
+  ASSERT_EQ(mechanism->inverse(X_BT, {}, std::span<double>(options.start.data(), 6)),
+            kinematics::SolveStatus::ok);
   machine::LoopbackPort port(options);
   ASSERT_TRUE(print(bead_program(), hexapod(), port, without_gap_control()).completed);
   const auto& first = port.history().front();

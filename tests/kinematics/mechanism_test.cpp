@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/kinematics/g4.h"
+#include "tests/kinematics/hexapod/g4.h"
 
 namespace understudy::kinematics {
 namespace {
@@ -38,20 +38,20 @@ TEST(Mechanism, HexapodBehindTheInterfaceIsTheSameHexapod) {
 
   const Pose X = tilted({0.01, -0.02, 0.005}, from_deg(12), 0.7);
   std::array<double, kMaxAxes> axes{};
-  ASSERT_EQ(mechanism->inverse(X, {}, axes), Solve::ok);
+  ASSERT_EQ(mechanism->inverse(X, {}, axes), SolveStatus::ok);
   StrutLengths lengths{};
-  ASSERT_EQ(inverse(g, X, lengths), Solve::ok);
+  ASSERT_EQ(inverse(g, X, lengths), SolveStatus::ok);
   for (std::size_t i = 0; i < kStruts; ++i) EXPECT_EQ(axes[i], lengths[i]);
   EXPECT_EQ(axes[6], 0);
 
   Pose X_found = Pose::Identity();
-  ASSERT_EQ(mechanism->forward(axes, X_home, X_found), Solve::ok);
+  ASSERT_EQ(mechanism->forward(axes, X_home, X_found), SolveStatus::ok);
   EXPECT_LE((X_found.translation() - X.translation()).norm(), 1e-10);
 
   Eigen::Matrix<double, Eigen::Dynamic, 6> rates(6, 6);
   Mat6 J;
-  ASSERT_EQ(mechanism->axis_rates(X, axes, rates), Solve::ok);
-  ASSERT_EQ(jacobian(g, X, J), Solve::ok);
+  ASSERT_EQ(mechanism->axis_rates(X, axes, rates), SolveStatus::ok);
+  ASSERT_EQ(jacobian(g, X, J), SolveStatus::ok);
   EXPECT_EQ(Mat6(rates), J);
   EXPECT_EQ(mechanism->condition_number(X, axes), condition_number(g, X));
 }
@@ -62,9 +62,9 @@ TEST(Mechanism, TooFewAxesAreBadInput) {
   std::array<double, 5> axes{};
   Pose X = Pose::Identity();
   Eigen::Matrix<double, Eigen::Dynamic, 6> rates(5, 6);
-  EXPECT_EQ(mechanism->inverse(X, {}, axes), Solve::bad_input);
-  EXPECT_EQ(mechanism->forward(axes, X, X), Solve::bad_input);
-  EXPECT_EQ(mechanism->axis_rates(X, axes, rates), Solve::bad_input);
+  EXPECT_EQ(mechanism->inverse(X, {}, axes), SolveStatus::bad_input);
+  EXPECT_EQ(mechanism->forward(axes, X, X), SolveStatus::bad_input);
+  EXPECT_EQ(mechanism->axis_rates(X, axes, rates), SolveStatus::bad_input);
 }
 
 }  // namespace

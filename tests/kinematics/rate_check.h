@@ -18,7 +18,7 @@ inline double worst_rate_difference(const Mechanism& mechanism, const Pose& X, s
   constexpr double h = 1e-5;
   const int n = mechanism.axis_count();
   Eigen::Matrix<double, Eigen::Dynamic, 6> rates(n, 6);
-  EXPECT_EQ(mechanism.axis_rates(X, axes, rates), Solve::ok);
+  EXPECT_EQ(mechanism.axis_rates(X, axes, rates), SolveStatus::ok);
   double worst = 0;
   for (int column = 0; column < 6; ++column) {
     Twist twist = Twist::Zero();
@@ -27,7 +27,7 @@ inline double worst_rate_difference(const Mechanism& mechanism, const Pose& X, s
       std::array<double, kMaxAxes> found{};
       const Pose X_moved = make_pose(Mat3(exp_rotation(sign * twist.tail<3>()) * X.linear()),
                                      Vec3(X.translation() + sign * twist.head<3>()));
-      EXPECT_EQ(mechanism.inverse(X_moved, axes, found), Solve::ok);
+      EXPECT_EQ(mechanism.inverse(X_moved, axes, found), SolveStatus::ok);
       return found;
     };
     const auto ahead = moved(1), behind = moved(-1);

@@ -107,7 +107,7 @@ TEST_F(CalibrationSection, ACalibratedArmReachesPosesByItsMeasuredAxes) {
     const Pose X = make_pose(Mat3(exp_rotation(some(random, 0.1)) * read.X_BT_home.linear()),
                              Vec3(read.X_BT_home.translation() + some(random, 0.03)));
     std::array<double, 6> axes{};
-    ASSERT_EQ(mechanism->inverse(X, {}, axes), kinematics::Solve::ok);
+    ASSERT_EQ(mechanism->inverse(X, {}, axes), kinematics::SolveStatus::ok);
     // 1e-12 of the solver, and the file's digits at an arm's length.
     EXPECT_LT((kinematics::forward(truth, axes).translation() - X.translation()).norm(), 1e-10);
   }
@@ -134,7 +134,8 @@ TEST_F(CalibrationSection, MustLeaveHomeWithinTheLimits) {
   MachineDescription m = calibrated_hexapod();
   m.hexapod.limits.strut_max = 0.19;  // does not matter: the file's own limits do
   EXPECT_NO_THROW(back(m));
-  // Base joints 24 mm lower, ball joints 24 mm higher: struts at home are some 45 mm shorter than 189 mm, below 170.
+  // Base joints 24 mm lower, ball joints 24 mm higher: struts at home are some 45 mm shorter than 189 mm,
+  // below 170.
   for (auto& b : m.hexapod.geometry.base_joint) b.z() -= 24e-3;
   for (auto& a : m.hexapod.geometry.platform_joint) a.z() += 24e-3;
   try {

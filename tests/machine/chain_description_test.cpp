@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
-#include "kinematics/chain.h"
+#include "kinematics/chain/chain.h"
 #include "machine/description.h"
 #include "tests/machine/edited_file.h"
 #include "tests/machine/scara.h"

@@ -80,7 +80,7 @@ TEST(MachineDescription, ShippedHexapodIsMachineG4) {
     EXPECT_NEAR(to_mm(d.norm()), 189.2924, 1e-4);
   }
   kinematics::StrutLengths lengths;
-  ASSERT_EQ(kinematics::inverse(m.hexapod.geometry, m.X_BT_home, lengths), kinematics::Solve::ok);
+  ASSERT_EQ(kinematics::inverse(m.hexapod.geometry, m.X_BT_home, lengths), kinematics::SolveStatus::ok);
   EXPECT_NEAR(to_mm(lengths[0]), 188.6972, 1e-4);
   // Ball joints 16 mm apart or more, base joints 45 mm or more (reference A, to the millimetre).
   EXPECT_NEAR(to_mm((m.hexapod.geometry.platform_joint[0] - m.hexapod.geometry.platform_joint[1]).norm()),

@@ -58,12 +58,12 @@ double share_below(const std::vector<double>& values, double limit) {
 
 Vec3 tip_error(const MachineDescription& m, const kinematics::HexapodGeometry& truth, const Pose& X_BT) {
   kinematics::StrutLengths lengths;
-  EXPECT_EQ(kinematics::inverse(m.hexapod.geometry, X_BT, lengths), kinematics::Solve::ok);
+  EXPECT_EQ(kinematics::inverse(m.hexapod.geometry, X_BT, lengths), kinematics::SolveStatus::ok);
   // The drive's displacement is length - l_i0 of the controller; the built strut adds its own l_i0.
   for (std::size_t i = 0; i < lengths.size(); ++i)
     lengths[i] += truth.length_offset[i] - m.hexapod.geometry.length_offset[i];
   const auto result = kinematics::forward(truth, lengths, X_BT);
-  EXPECT_EQ(result.status, kinematics::Solve::ok);
+  EXPECT_EQ(result.status, kinematics::SolveStatus::ok);
   return result.X_BT.translation() - X_BT.translation();
 }
 
@@ -87,9 +87,9 @@ TEST(Tolerances, ScatterOfTheHomeTipFollowsFromTheJacobian) {
   // l = sqrt(|d|^2 - dev^2): each strut's length scatters by 2 sigma_joint^2 |d|^2 / l^2 + sigma_offset^2,
   // and the tip by J^-1 times that times J^-T.
   Mat6 J;
-  ASSERT_EQ(kinematics::jacobian(m.hexapod.geometry, m.X_BT_home, J), kinematics::Solve::ok);
+  ASSERT_EQ(kinematics::jacobian(m.hexapod.geometry, m.X_BT_home, J), kinematics::SolveStatus::ok);
   kinematics::StrutLengths lengths;
-  ASSERT_EQ(kinematics::inverse(m.hexapod.geometry, m.X_BT_home, lengths), kinematics::Solve::ok);
+  ASSERT_EQ(kinematics::inverse(m.hexapod.geometry, m.X_BT_home, lengths), kinematics::SolveStatus::ok);
   const double l2 = lengths[0] * lengths[0],
                d2 = l2 + m.hexapod.geometry.deviation * m.hexapod.geometry.deviation;
   const double variance =

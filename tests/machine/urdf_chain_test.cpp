@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/random.h"
-#include "kinematics/chain.h"
+#include "kinematics/chain/chain.h"
 #include "machine/urdf_writer.h"
 
 namespace understudy::machine {
@@ -133,7 +133,7 @@ TEST(UrdfChain, TheShippedArmReachesPosesByTheNumericInverse) {
     std::array<double, 6> q{}, found{};
     for (double& v : q) v = random.uniform(-2.7, 2.7);
     const Pose X = forward(d.chain, q);
-    ASSERT_EQ(machine->inverse(X, {}, found), kinematics::Solve::ok);
+    ASSERT_EQ(machine->inverse(X, {}, found), kinematics::SolveStatus::ok);
     const Pose reached = forward(d.chain, found);
     EXPECT_LE((reached.translation() - X.translation()).norm(), 1e-11);
     EXPECT_LE(angle_between(reached.linear(), X.linear()), 1e-11);

@@ -10,8 +10,8 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "regression/scenario.h"
 #include "rehearsal/rehearse.h"
-#include "rehearsal/scenario.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -25,7 +25,8 @@ class FaultyRehearsal : public testing::Test {
   FaultyRehearsal() {
     std::filesystem::create_directories(folder_);
     // From -3 to +3 mm in 6 s, 45 mm over the table; struts 1 and 2 move steadily.
-    std::ofstream(folder_ / "line.gcode") << "G21\nG90\nM82 M109 S230\nG94\nG0 X-3 Y0 Z45\nG1 X3 Y0 Z45 E0.5 F60\n";
+    std::ofstream(folder_ / "line.gcode")
+        << "G21\nG90\nM82 M109 S230\nG94\nG0 X-3 Y0 Z45\nG1 X3 Y0 Z45 E0.5 F60\n";
   }
   ~FaultyRehearsal() override { std::filesystem::remove_all(folder_); }
 
@@ -58,7 +59,7 @@ class FaultyRehearsal : public testing::Test {
       if (a.time < from) continue;
       Mat6 J;
       ASSERT_EQ(kinematics::jacobian(machine_.hexapod.geometry, machine_.X_WB.inverse() * a.X_WT, J),
-                kinematics::Solve::ok);
+                kinematics::SolveStatus::ok);
       const Eigen::Matrix<double, 6, 1> column = J.inverse().col(0);
       const Vec3 expected = machine_.X_WB.linear() * (column.head<3>() * change(a.time));
       // The next order, (64 um)^2 over the platform's 30 mm, is 0.14 um; a play of a strut shifts with it.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "toolpath/gcode.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "rehearsal/fixture.h"
-#include "toolpath/gcode.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
 namespace {

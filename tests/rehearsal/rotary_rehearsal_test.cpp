@@ -83,8 +83,8 @@ class RotaryRehearsal : public testing::Test {
       ASSERT_EQ(a.trace[k].time, b.trace[k].time);
       ASSERT_EQ(a.trace[k].line, b.trace[k].line);
       const Pose &P = a.trace[k].X_WT_programmed, &Q = b.trace[k].X_WT_programmed;
-      // Poses told to 1e-15 m, planned to 1e-8 m of their way; turns of axes and of poses are timed on grids of
-      // their own, to 1e-5 of a radian.
+      // Poses told to 1e-15 m, planned to 1e-8 m of their way; turns of axes and of poses are timed on grids
+      // of their own, to 1e-5 of a radian.
       ASSERT_LT((P.translation() - Q.translation()).norm(), 1e-8) << a.trace[k].time;
       ASSERT_LT((P.linear() - Q.linear()).norm(), 1e-5) << a.trace[k].time;
       // Rounding of the last digit may take a drive to the next microstep.

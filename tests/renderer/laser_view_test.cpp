@@ -11,7 +11,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
-#include "laser_scene.h"
+#include "tests/renderer/laser_scene.h"
 
 namespace understudy::renderer {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "laser_scene.h"
+#include "tests/renderer/laser_scene.h"
 
 namespace understudy::renderer {
 namespace {

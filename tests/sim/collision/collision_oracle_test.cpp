@@ -9,8 +9,8 @@
 #include "core/random.h"
 #include "sim/collision/collision.h"
 #include "sim/collision/fcl_world.h"
-#include "sim/collision/mesh_clearance.h"
-#include "sim/collision/penetration.h"
+#include "sim/distance/mesh_clearance.h"
+#include "sim/distance/penetration.h"
 #include "tests/sim/collision/bodies_for_tests.h"
 
 namespace understudy::sim {

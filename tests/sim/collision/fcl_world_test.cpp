@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 #include "core/units.h"
-#include "sim/collision/penetration.h"
+#include "sim/distance/penetration.h"
 #include "tests/sim/collision/bodies_for_tests.h"
 
 namespace understudy::sim {

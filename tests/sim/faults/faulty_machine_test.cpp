@@ -61,7 +61,8 @@ std::vector<Setpoint> run_axis(const SimulatedPort& port, double way, double dur
 /// The tip's shift per metre of strut 1: a column of the inverse Jacobian, in W.
 Vec3 tip_per_strut(const machine::MachineDescription& machine) {
   Mat6 J;
-  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, machine.X_BT_home, J), kinematics::Solve::ok);
+  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, machine.X_BT_home, J),
+            kinematics::SolveStatus::ok);
   return machine.X_WB.linear() * J.inverse().col(0).head<3>();
 }
 

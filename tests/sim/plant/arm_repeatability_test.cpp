@@ -11,7 +11,7 @@
 
 #include "core/random.h"
 #include "core/units.h"
-#include "sim/plant/quasistatic.h"
+#include "sim/plant/quasistatic/quasistatic.h"
 
 namespace understudy::sim {
 namespace {
@@ -40,7 +40,7 @@ std::vector<PathSample> standard_poses(const kinematics::Mechanism& mechanism, c
     PathSample sample;
     const std::span<double> axes = std::span(sample.position).first(kAxes);
     std::vector<kinematics::LimitViolation> violations;
-    if (mechanism.inverse(X_BT, {}, axes) != kinematics::Solve::ok) return {};
+    if (mechanism.inverse(X_BT, {}, axes) != kinematics::SolveStatus::ok) return {};
     mechanism.check(X_BT, axes, violations);
     if (!violations.empty()) return {};
     poses.push_back(sample);
@@ -78,7 +78,7 @@ double test_arm(double play, bool random_sides, const Placement& placement = {})
         for (int i = 0; i < kAxes; ++i)
           sampler.place_gap(i, random_sides && random.uniform() < 0.5 ? play / 2 : -play / 2);
         Pose X_WT;
-        EXPECT_EQ(sampler.sample(pose, X_WT), kinematics::Solve::ok);
+        EXPECT_EQ(sampler.sample(pose, X_WT), kinematics::SolveStatus::ok);
         attained.push_back(X_WT.translation());
       }
       sum += repeatability(attained);

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "kinematics/hexapod_passive_rotation.h"
+#include "kinematics/hexapod/hexapod_passive_rotation.h"
 #include "sim/plant/plant.h"
 #include "tests/sim/plant/machine_g4.h"
 #include "tests/sim/plant/motion.h"
@@ -74,7 +74,7 @@ TEST(BulletPlant, StrutsCarryTheWeight) {
   add(machine.hexapod.masses.platform, machine.hexapod.masses.platform_centre_T);
   for (const Vec3& ball : machine.hexapod.geometry.platform_joint) add(machine.hexapod.masses.nut, ball);
   Mat6 J;
-  ASSERT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::Solve::ok);
+  ASSERT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::SolveStatus::ok);
   const Twist expected = -J.transpose().partialPivLu().solve(wrench);
   const auto force = plant->drive_force();
   // 0.2 mN: what six motors of 1 mg weigh, and what creeps at 1 um/s.
@@ -191,7 +191,7 @@ TEST(BulletPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
   X_BT.translation() += Vec3(0.008, -0.005, -0.01);
   kinematics::StrutLengths lengths{};
   ASSERT_EQ(kinematics::inverse(built.hexapod, machine.screw_coupling(), X_BT, lengths),
-            kinematics::Solve::ok);
+            kinematics::SolveStatus::ok);
   const machine::AxisArray start = plant->displacement();
   for (int k = 1; k <= steps_for(*plant, 0.4); ++k) {
     const double s = std::min(1.0, k * plant->timestep() / 0.3), blend = s * s * s * (10 + s * (6 * s - 15)),

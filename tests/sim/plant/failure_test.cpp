@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/error.h"
-#include "sim/plant/mjcf.h"
-#include "sim/plant/mujoco_engine.h"
+#include "sim/plant/mujoco/mjcf.h"
+#include "sim/plant/mujoco/mujoco_engine.h"
 #include "sim/plant/plant.h"
 #include "tests/sim/plant/machine_g4.h"
 #include "tests/sim/plant/motion.h"

@@ -31,7 +31,7 @@ Forces holding_forces(const machine::MachineDescription& machine, const Pose& X_
   // A nut and its rod end hang in the ball joint, so their weight is the platform's.
   for (const Vec3& ball : machine.hexapod.geometry.platform_joint) add(machine.hexapod.masses.nut, ball);
   Mat6 J;
-  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::Solve::ok);
+  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::SolveStatus::ok);
   return -J.transpose().partialPivLu().solve(wrench);
 }
 

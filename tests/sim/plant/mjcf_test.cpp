@@ -1,9 +1,9 @@
 // What is exported is what the plant runs: MuJoCo reads it and finds the machine in it.
-#include "sim/plant/mjcf.h"
+#include "sim/plant/mujoco/mjcf.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/plant/mujoco_engine.h"
+#include "sim/plant/mujoco/mujoco_engine.h"
 #include "tests/sim/plant/machine_g4.h"
 
 namespace understudy::sim {

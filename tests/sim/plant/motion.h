@@ -16,8 +16,8 @@ inline DriveCommand drive_command(const kinematics::HexapodGeometry& geometry, c
                                   const Twist& twist = Twist::Zero()) {
   kinematics::StrutLengths lengths{};
   Mat6 J;
-  EXPECT_EQ(kinematics::inverse(geometry, X_BT, lengths), kinematics::Solve::ok);
-  EXPECT_EQ(kinematics::jacobian(geometry, X_BT, J), kinematics::Solve::ok);
+  EXPECT_EQ(kinematics::inverse(geometry, X_BT, lengths), kinematics::SolveStatus::ok);
+  EXPECT_EQ(kinematics::jacobian(geometry, X_BT, J), kinematics::SolveStatus::ok);
   const Twist rates = J * twist;
   DriveCommand command;
   for (int i = 0; i < kinematics::kStruts; ++i) {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
-#include "sim/plant/mjcf.h"
-#include "sim/plant/mujoco_engine.h"
+#include "sim/plant/mujoco/mjcf.h"
+#include "sim/plant/mujoco/mujoco_engine.h"
 #include "sim/plant/plant.h"
 #include "tests/sim/plant/small_chains.h"
 

@@ -28,7 +28,7 @@ double slope(const machine::MachineDescription& machine, const Pose& X_BT) {
 /// Tip height in B when every strut sits at the end of its play: sign +1 pulled long, -1 pushed short.
 double tip_at_play_end(const AsBuilt& built, const Pose& X_BT, int sign) {
   kinematics::StrutLengths lengths{};
-  EXPECT_EQ(kinematics::inverse(built.hexapod, X_BT, lengths), kinematics::Solve::ok);
+  EXPECT_EQ(kinematics::inverse(built.hexapod, X_BT, lengths), kinematics::SolveStatus::ok);
   const double dev = built.hexapod.deviation;
   for (std::size_t i = 0; i < kStruts; ++i) {
     // The nut slides along the screw, the ball along the line between the joints.
@@ -37,7 +37,7 @@ double tip_at_play_end(const AsBuilt& built, const Pose& X_BT, int sign) {
     lengths[i] = std::sqrt(distance * distance - dev * dev);
   }
   const auto result = kinematics::forward(built.hexapod, lengths, X_BT);
-  EXPECT_EQ(result.status, kinematics::Solve::ok);
+  EXPECT_EQ(result.status, kinematics::SolveStatus::ok);
   return result.X_BT.translation().z();
 }
 

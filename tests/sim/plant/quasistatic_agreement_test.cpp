@@ -1,7 +1,7 @@
 // The quasistatic hexapod beside the MuJoCo plant, play 100 um.
 #include <gtest/gtest.h>
 
-#include "sim/plant/quasistatic.h"
+#include "sim/plant/quasistatic/quasistatic.h"
 #include "tests/sim/plant/machine_g4.h"
 #include "tests/sim/plant/motion.h"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
-#include "sim/plant/quasistatic.h"
+#include "sim/plant/quasistatic/quasistatic.h"
 
 namespace understudy::sim {
 namespace {
@@ -72,7 +72,7 @@ TEST(QuasistaticChain, SpinningArmPullsOnTheElbowOnly) {
   sample.position = pose_of(0.3, std::numbers::pi / 2);
   sample.velocity[0] = 2;
   Pose X_WT;
-  ASSERT_EQ(sampler.sample(sample, X_WT), kinematics::Solve::ok);
+  ASSERT_EQ(sampler.sample(sample, X_WT), kinematics::SolveStatus::ok);
   EXPECT_NEAR(sampler.drive_force()[1], kForeMass * 4 * kUpper * kFore / 2, 1e-12);
   EXPECT_NEAR(sampler.drive_force()[0], 0, 1e-12);
 }

@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 
 #include "core/error.h"
-#include "sim/plant/quasistatic.h"
+#include "sim/plant/quasistatic/quasistatic.h"
 #include "tests/sim/plant/machine_g4.h"
 #include "tests/sim/plant/motion.h"
 
@@ -18,7 +18,7 @@ Forces forces(const machine::AxisArray& force) { return Eigen::Map<const Forces>
 
 Mat6 jacobian_at(const machine::MachineDescription& machine, const Pose& X_BT) {
   Mat6 J;
-  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::Solve::ok);
+  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::SolveStatus::ok);
   return J;
 }
 
@@ -178,7 +178,7 @@ TEST(QuasistaticHexapod, FrictionHoldsThePlayOverTwiceItsWidth) {
       const Forces rates = J.col(2) * -a;
       for (std::size_t i = 0; i < kStruts; ++i) sample.acceleration[i] = rates(static_cast<Eigen::Index>(i));
       Pose X_WT;
-      EXPECT_EQ(sampler.sample(sample, X_WT), kinematics::Solve::ok);
+      EXPECT_EQ(sampler.sample(sample, X_WT), kinematics::SolveStatus::ok);
       const double gap = sampler.gap()[0];
       if (before * gap < 0) return sampler.drive_force()[0];
       before = gap;

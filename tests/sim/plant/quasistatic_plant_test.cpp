@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "kinematics/hexapod_passive_rotation.h"
-#include "sim/plant/quasistatic.h"
+#include "kinematics/hexapod/hexapod_passive_rotation.h"
+#include "sim/plant/quasistatic/quasistatic.h"
 #include "tests/guard/cycle_guard.h"
 #include "tests/sim/plant/machine_g4.h"
 #include "tests/sim/plant/motion.h"
@@ -180,7 +180,7 @@ TEST(QuasistaticPlant, ScrewsThatTurnMoveTheToolAsKinematicsSays) {
   X_BT.linear() = exp_rotation(Vec3(0.15, 0.1, 0));
   kinematics::StrutLengths lengths{};
   ASSERT_EQ(kinematics::inverse(built.hexapod, machine.screw_coupling(), X_BT, lengths),
-            kinematics::Solve::ok);
+            kinematics::SolveStatus::ok);
   DriveCommand command;
   for (std::size_t i = 0; i < kinematics::kStruts; ++i)
     command.position[i] = lengths[i] - built.hexapod.length_offset[i];
@@ -199,15 +199,15 @@ TEST(QuasistaticSampler, SaysWhatHasNoPoseAndGoesOn) {
   home.position = drive_command(machine.hexapod.geometry, machine.X_BT_home).position;
   Pose X_WT = Pose::Identity();
   bad.position.fill(std::numeric_limits<double>::infinity());
-  EXPECT_EQ(sampler.sample(bad, X_WT), kinematics::Solve::bad_input);
+  EXPECT_EQ(sampler.sample(bad, X_WT), kinematics::SolveStatus::bad_input);
   bad = home;
   bad.position[0] = -0.15;
-  EXPECT_NE(sampler.sample(bad, X_WT), kinematics::Solve::ok);
+  EXPECT_NE(sampler.sample(bad, X_WT), kinematics::SolveStatus::ok);
   EXPECT_TRUE(X_WT.isApprox(Pose::Identity(), 0));
   std::array<PathSample, 3> path{home, bad, home};
   std::array<Pose, 3> poses;
   EXPECT_EQ(sampler.sample(path, poses), 1U);
-  EXPECT_EQ(sampler.sample(home, X_WT), kinematics::Solve::ok);
+  EXPECT_EQ(sampler.sample(home, X_WT), kinematics::SolveStatus::ok);
 }
 
 TEST(QuasistaticSampler, RestsWhereThePlantRests) {
@@ -221,7 +221,7 @@ TEST(QuasistaticSampler, RestsWhereThePlantRests) {
   sample.position = drive_command(built.hexapod, X_BT).position;
   plant->reset(sample.position);
   Pose X_WT;
-  ASSERT_EQ(sampler.sample(sample, X_WT), kinematics::Solve::ok);
+  ASSERT_EQ(sampler.sample(sample, X_WT), kinematics::SolveStatus::ok);
   EXPECT_LE((X_WT.translation() - plant->tool_pose().translation()).norm(), 1e-10);
 }
 

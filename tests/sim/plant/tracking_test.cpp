@@ -68,7 +68,7 @@ Pose random_pose(const machine::MachineDescription& machine, Random& random) {
     const Pose X_BT =
         make_pose(exp_rotation(tilt * axis), Vec3(machine.X_BT_home.translation() + Vec3(x, y, z)));
     kinematics::StrutLengths lengths{};
-    if (kinematics::inverse(machine.hexapod.geometry, X_BT, lengths) != kinematics::Solve::ok) continue;
+    if (kinematics::inverse(machine.hexapod.geometry, X_BT, lengths) != kinematics::SolveStatus::ok) continue;
     const auto [low, high] = std::minmax_element(lengths.begin(), lengths.end());
     if (*low > from_mm(173) && *high < from_mm(237)) return X_BT;
   }
@@ -151,7 +151,7 @@ TEST(MujocoPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
   X_BT.translation() += Vec3(0.008, -0.005, -0.01);
   kinematics::StrutLengths lengths{};
   ASSERT_EQ(kinematics::inverse(built.hexapod, machine.screw_coupling(), X_BT, lengths),
-            kinematics::Solve::ok);
+            kinematics::SolveStatus::ok);
   machine::AxisArray displacement{};
   for (std::size_t i = 0; i < lengths.size(); ++i)
     displacement[i] = lengths[i] - built.hexapod.length_offset[i];

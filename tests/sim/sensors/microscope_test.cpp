@@ -10,7 +10,7 @@
 
 #include "core/random.h"
 #include "core/units.h"
-#include "vision/dot.h"
+#include "vision/dot/dot.h"
 
 namespace understudy::sim {
 namespace {

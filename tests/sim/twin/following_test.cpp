@@ -10,7 +10,7 @@
 #include "sim/as_built/as_built.h"
 #include "sim/sensors/microscope.h"
 #include "sim/twin/simulated_port.h"
-#include "tests/control/bead_program.h"
+#include "tests/control/gap/bead_program.h"
 #include "tests/geometry/test_solids.h"
 
 namespace understudy::sim {

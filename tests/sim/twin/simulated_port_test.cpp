@@ -87,7 +87,7 @@ class SimulatedPortTest : public ::testing::Test {
 TEST_F(SimulatedPortTest, StartsAtRestAtHome) {
   kinematics::StrutLengths lengths{};
   ASSERT_EQ(kinematics::inverse(machine_.hexapod.geometry, machine_.X_BT_home, lengths),
-            kinematics::Solve::ok);
+            kinematics::SolveStatus::ok);
   for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_NEAR(home_[i], lengths[i], 1e-12);
   EXPECT_FALSE(port_.state().moving);
 }

@@ -1,0 +1,293 @@
+#include "control/gap/gap_controller.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "control/gap/gap_response_test.h"
+#include "control/gap/gap_sensor.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/units.h"
+
+namespace understudy::control {
+
+using machine::Status;
+
+namespace {
+
+constexpr double kTrusted = 3;         // standard deviations kept between a step's end and the accepted band
+constexpr double kScaleError = 0.15;   // of a step: wrong slope or calibration that still counts as plausible
+constexpr double kUnmodelled = 20e-6;  // [m]: surface roughness and facets, as-built curvature of the motion
+constexpr double kJump = 10e-6;        // [m], beyond noise: the mechanism has moved, older looks do not count
+constexpr int kStallsMax = 2;
+constexpr double kProbe = 0.1e-3;   // [m], a step while no reading has followed one yet
+constexpr double kBlind = 0.25e-3;  // [m], in all until then: two such steps, and noise
+constexpr double kStepMin = 1e-6;   // [m], about two microsteps: less is no motion
+
+/// Gap minus commanded height, averaged over the last looks: motion along the axis changes both alike, so
+/// looks at different heights add up.
+class GapEstimate {
+ public:
+  explicit GapEstimate(int window) : window_(static_cast<std::size_t>(std::max(1, window))) {}
+
+  /// A look that is not to be averaged stands alone until the next.
+  void add(double height, const GapReading& reading, bool averaged) {
+    const double offset = reading.gap - height;
+    const double scatter = std::hypot(reading.sigma, sigma_);
+    if (!averaging_ || !averaged || std::abs(offset - offset_) > kTrusted * scatter + kJump) looks_.clear();
+    averaging_ = averaged;
+    looks_.push_back({offset, reading.sigma});
+    if (looks_.size() > window_) looks_.pop_front();
+    update();
+  }
+  double gap(double height) const { return height + offset_; }
+  double sigma() const { return sigma_; }
+  bool full() const { return averaging_ && looks_.size() == window_; }
+  int missing() const { return static_cast<int>(window_ - looks_.size()); }
+
+ private:
+  struct Look {
+    double offset, sigma;
+  };
+  void update() {
+    double weights = 0, sum = 0;
+    for (const Look& look : looks_) {
+      const double weight = 1 / std::max(look.sigma * look.sigma, 1e-18);
+      weights += weight;
+      sum += weight * look.offset;
+    }
+    offset_ = sum / weights;
+    sigma_ = 1 / std::sqrt(weights);
+  }
+
+  std::size_t window_;
+  std::deque<Look> looks_;
+  bool averaging_ = false;
+  double offset_ = 0, sigma_ = 0;
+};
+
+class Approach {
+ public:
+  Approach(const machine::MachineDescription& machine, const LocalSurface& surface, const Pose& X_WT_start,
+           double standoff, GapMotion& motion, const GapControllerOptions& options)
+      : limits_(machine.gap),
+        X_WT_start_(X_WT_start),
+        standoff_(standoff),
+        motion_(motion),
+        options_(options),
+        aim_(options.aim > 0 ? options.aim : machine.gap.aim),
+        play_(machine.tip_play()),
+        proof_(limits_.accepted_min / 2, kBlind),
+        eye_(machine, surface, options, motion.port()),
+        height_(standoff) {
+    if (aim_ <= limits_.accepted_min || aim_ >= limits_.accepted_max)
+      throw InputError(
+          fmt::format("the gap aimed at is {:.3f} mm, not between {:.3f} and {:.3f} mm, the accepted gaps",
+                      to_mm(aim_), to_mm(limits_.accepted_min), to_mm(limits_.accepted_max)));
+  }
+
+  GapOutcome run() {
+    GapStop stop = descend();
+    if (stop == GapStop::too_close) stop = try_again_from_above();
+    outcome_.stop = stop;
+    if (stop != GapStop::none) retreat();
+    outcome_.offset_W = height_ * tool_axis(X_WT_start_);
+    return std::move(outcome_);
+  }
+
+ private:
+  GapStop descend();
+  GapStop look(GapEstimate& estimate, std::optional<Expectation>& expected);
+  GapStop judge(const GapEstimate& estimate);
+  bool reached(const GapEstimate& estimate) const;
+  double next_step(const GapEstimate& estimate) const;
+  GapStop try_again_from_above();
+  GapStop move_to(double height);
+  void retreat();
+  GapStop stop_for(GapStop reason, std::string why) {
+    outcome_.why = std::move(why);
+    return reason;
+  }
+
+  const machine::GapLimits limits_;
+  const Pose X_WT_start_;
+  const double standoff_;
+  GapMotion& motion_;
+  const GapControllerOptions& options_;
+  const double aim_;
+  const double play_;
+  ApproachResponseTest proof_;
+  GapSensor eye_;
+  double height_;  ///< [m], commanded tip above S along the tool axis
+  GapOutcome outcome_;
+};
+
+GapStop Approach::descend() {
+  GapEstimate estimate(options_.frames_averaged);
+  std::optional<Expectation> expected;
+  for (int stops = 0; stops < options_.stops_max; ++stops) {
+    stop_if_interrupted();
+    if (const GapStop s = look(estimate, expected); s != GapStop::none) return s;
+    const double gap = estimate.gap(height_);
+    outcome_.gap = gap;
+    outcome_.sigma = estimate.sigma();
+    if (const GapStop s = judge(estimate); s != GapStop::none) return s;
+    if (reached(estimate)) return GapStop::none;
+
+    const double step = next_step(estimate);
+    if (step < kStepMin) {
+      expected = Expectation{gap, kUnmodelled};
+      continue;
+    }
+    if (const GapStop s = move_to(height_ - step); s != GapStop::none) return s;
+    expected = Expectation{gap - step, kScaleError * step + play_ + kUnmodelled};
+  }
+  return stop_for(
+      GapStop::no_progress,
+      fmt::format("{} stops did not reach the gap of {:.3f} mm: it reads {:.3f} mm, 1 sigma {:.3f} mm",
+                  options_.stops_max, to_mm(aim_), to_mm(outcome_.gap), to_mm(outcome_.sigma)));
+}
+
+GapStop Approach::look(GapEstimate& estimate, std::optional<Expectation>& expected) {
+  machine::MachinePort& port = motion_.port();
+  if (port.wait_until(port.now() + options_.settle_time) != Status::ok)
+    return stop_for(GapStop::port_failed,
+                    fmt::format("the machine failed: {}", to_string(port.state().fault)));
+  GapSample look;
+  const GapStop s = eye_.take(expected, look);
+  std::string why = look.why;
+  if (s == GapStop::none) {
+    proof_.add(height_, look.reading.gap, look.reading.sigma);
+    estimate.add(height_, look.reading, look.reading.gap - aim_ <= options_.slow_zone);
+  }
+  outcome_.looks.push_back(std::move(look));
+  return s == GapStop::none ? s : stop_for(s, std::move(why));
+}
+
+bool Approach::reached(const GapEstimate& estimate) const {
+  return estimate.full() && estimate.gap(height_) - aim_ <= options_.tolerance;
+}
+
+GapStop Approach::judge(const GapEstimate& estimate) {
+  const double gap = estimate.gap(height_), sigma = estimate.sigma();
+  if (gap < limits_.accepted_min)
+    return stop_for(GapStop::too_close, fmt::format("the gap reads {:.3f} mm, less than {:.3f} mm",
+                                                    to_mm(gap), to_mm(limits_.accepted_min)));
+  const double depth = gap - aim_ - height_;  // how far below S the tip would have to go
+  if (depth > options_.depth_max)
+    return stop_for(
+        GapStop::too_far,
+        fmt::format("the gap reads {:.3f} mm at {:.3f} mm above the start: the surface is {:.3f} mm lower "
+                    "than programmed, at most {:.3f} mm are allowed",
+                    to_mm(gap), to_mm(height_), to_mm(depth), to_mm(options_.depth_max)));
+  if (proof_.stalls() >= kStallsMax)
+    return stop_for(GapStop::no_progress, fmt::format("the gap still reads {:.3f} mm after {} steps down",
+                                                      to_mm(gap), proof_.stalls()));
+  if (!reached(estimate) && proof_.room(height_) < kStepMin)
+    return stop_for(
+        GapStop::no_progress,
+        fmt::format("the gap reads {:.3f} mm, but by the steps since a reading last followed one {:.3f} mm "
+                    "are sure: what shines may not be the dot",
+                    to_mm(gap), to_mm(proof_.room(height_) + limits_.accepted_min / 2)));
+  if (reached(estimate) && kTrusted * sigma > aim_ - limits_.accepted_min)
+    return stop_for(
+        GapStop::implausible,
+        fmt::format("the gap of {:.3f} mm is known to {:.3f} mm only (1 sigma), too little to stay above "
+                    "{:.3f} mm",
+                    to_mm(gap), to_mm(sigma), to_mm(limits_.accepted_min)));
+  return GapStop::none;
+}
+
+/// Far away a fraction of what is left. In the slow zone what is left is shared between the looks still to be
+/// averaged, and no step uses up more than half of the way to the accepted band's end. Never farther than is
+/// proved, never upwards.
+double Approach::next_step(const GapEstimate& estimate) const {
+  const double gap = estimate.gap(height_), left = gap - aim_, room = proof_.room(height_);
+  if (left > options_.slow_zone)
+    return std::min(options_.step_fraction * left, proof_.proved() ? room : std::min(room, kProbe));
+  const double share = left / std::max(1, estimate.missing());
+  const double safe = gap - kTrusted * estimate.sigma() - limits_.accepted_min;
+  return std::max(0.0, std::min({share, safe, (gap - limits_.accepted_min) / 2, room}));
+}
+
+GapStop Approach::try_again_from_above() {
+  const std::string first = outcome_.why;
+  proof_.restart();
+  const double height = std::max(standoff_, height_ + options_.retreat);
+  if (const GapStop s = move_to(height); s != GapStop::none) return s;
+  const GapStop s = descend();
+  if (s != GapStop::none) outcome_.why = fmt::format("{} (before, {})", outcome_.why, first);
+  return s;
+}
+
+GapStop Approach::move_to(double height) {
+  Pose X_WT = X_WT_start_;
+  X_WT.translation() += height * tool_axis(X_WT_start_);
+  try {
+    const Status s = motion_.move_to(X_WT);
+    if (s == Status::ok) {
+      height_ = height;
+      return GapStop::none;
+    }
+    std::string why = fmt::format("the machine did not move: {}", to_string(s));
+    if (s == Status::faulted) why += fmt::format(" ({})", to_string(motion_.port().state().fault));
+    return stop_for(GapStop::port_failed, std::move(why));
+  } catch (const InputError& error) {
+    return stop_for(GapStop::unreachable, error.what());
+  }
+}
+
+/// Upwards from wherever the last command went: a move that failed on the way down has ended above that.
+void Approach::retreat() {
+  const GapStop reason = outcome_.stop;
+  const std::string why = outcome_.why;
+  const double from = height_;
+  const GapStop failed = move_to(from + options_.retreat);
+  const std::string end = failed == GapStop::none
+                              ? fmt::format("; retreated by {:.3f} mm", to_mm(options_.retreat))
+                              : fmt::format("; could not retreat: {}", outcome_.why);
+  outcome_.stop = reason;
+  outcome_.why = why + end;
+}
+
+}  // namespace
+
+const char* to_string(GapStop s) {
+  switch (s) {
+    case GapStop::none:
+      return "aim reached";
+    case GapStop::no_dot:
+      return "no dot";
+    case GapStop::saturated:
+      return "dot saturated";
+    case GapStop::partly_hidden:
+      return "dot partly hidden";
+    case GapStop::implausible:
+      return "implausible reading";
+    case GapStop::stale_frame:
+      return "stale frame";
+    case GapStop::too_close:
+      return "too close";
+    case GapStop::too_far:
+      return "too far";
+    case GapStop::no_progress:
+      return "no progress";
+    case GapStop::unreachable:
+      return "out of reach";
+    case GapStop::port_failed:
+      return "machine failed";
+  }
+  return "unknown";
+}
+
+GapOutcome close_gap(const machine::MachineDescription& machine, const LocalSurface& surface,
+                     const Pose& X_WT_start, double standoff, GapMotion& motion,
+                     const GapControllerOptions& options) {
+  return Approach(machine, surface, X_WT_start, standoff, motion, options).run();
+}
+
+}  // namespace understudy::control

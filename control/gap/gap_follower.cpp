@@ -1,0 +1,228 @@
+#include "control/gap/gap_follower.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace understudy::control {
+namespace {
+
+constexpr double kTrusted = 3;          // standard deviations kept above the floor
+constexpr int kRepeatsMax = 3;          // readings equal to the last bit: a camera's noise forbids one
+constexpr double kSpeckleShare = 0.01;  // of a new pattern that a look from the same place is worth
+
+}  // namespace
+
+GapFollowerOptions gap_follower_options(const machine::MachineDescription& machine) {
+  GapFollowerOptions options;
+  options.aim = machine.gap.aim;
+  options.speckle_length = machine.laser.waist_diameter;
+  options.floor = options.step_max = machine.gap.accepted_min / 2;
+  options.unproved_max = (options.aim - options.floor) / 2;
+  return options;
+}
+
+double GapFollower::sigma() const { return std::sqrt(std::max(0.0, p_ee_)); }
+
+void GapFollower::start(double time, double path, double gap, double sigma) {
+  start_unknown(time, path);
+  known_ = true;
+  error_ = gap;
+  p_ee_ = sigma * sigma + options_.unmodelled * options_.unmodelled;
+}
+
+void GapFollower::start_unknown(double time, double path) {
+  const GapFollowerOptions options = options_;
+  *this = GapFollower(options);
+  time_ = time;
+  path_ = advanced_path_ = path;
+  used_path_ = path - options_.speckle_length;
+  p_ss_ = options_.slope_sigma * options_.slope_sigma;
+  resume(time, path);
+}
+
+void GapFollower::resume(double time, double path) {
+  seen_time_ = time;
+  seen_path_ = path;
+  missed_ = 0;
+  reasons_.fill(0);
+}
+
+/// The error's line, no farther beyond the last good reading than it can be trusted.
+double GapFollower::predicted_error(double path) const {
+  return error_ + slope_ * std::max(0.0, std::min(path, used_path_ + options_.extrapolated_max) - path_);
+}
+
+/// Its slope walks over the path, and its height with time.
+void GapFollower::predict(double time, double path) {
+  const double s = std::max(0.0, path - path_), dt = std::max(0.0, time - time_);
+  const double q = options_.slope_walk;
+  error_ = predicted_error(path);
+  p_ee_ += s * (2 * p_es_ + s * p_ss_) + q * s * s * s / 3 + options_.drift * options_.drift * dt;
+  p_es_ += s * p_ss_ + q * s * s / 2;
+  p_ss_ += q * s;
+  path_ = std::max(path_, path);
+  time_ = std::max(time_, time);
+}
+
+void GapFollower::correct(double innovation, double variance) {
+  const double total = p_ee_ + variance;
+  const double k_e = p_ee_ / total, k_s = p_es_ / total;
+  error_ += k_e * innovation;
+  slope_ += k_s * innovation;
+  p_ss_ -= k_s * p_es_;
+  p_es_ *= 1 - k_e;
+  p_ee_ *= 1 - k_e;
+}
+
+GapVerdict GapFollower::observe(const GapObservation& o) {
+  if (!std::isfinite(o.gap) || !(o.sigma >= 0) || !std::isfinite(o.correction + o.path + o.time + o.sigma)) {
+    miss(time_, path_, GapStop::implausible);
+    return GapVerdict::jump;
+  }
+  same_readings_ = o.gap == last_reading_ ? same_readings_ + 1 : 0;
+  last_reading_ = o.gap;
+  if (same_readings_ >= kRepeatsMax - 1) {
+    miss(o.time, o.path, GapStop::stale_frame);
+    return GapVerdict::repeated;
+  }
+  if (!known_) {
+    begin(o);
+    judge(o);
+    return known_ ? GapVerdict::used : GapVerdict::not_yet;
+  }
+  predict(o.time, o.path);
+  // From the same place the same speckle: such looks hardly add.
+  const double fresh = std::clamp((o.path - used_path_) / options_.speckle_length, kSpeckleShare, 1.0);
+  const double variance = o.sigma * o.sigma / fresh + options_.unmodelled * options_.unmodelled;
+  const double innovation = o.gap - o.correction - error_;
+  if (o.path - used_path_ > options_.extrapolated_max) proof_.forget();
+  const double spread = std::sqrt(p_ee_ + o.sigma * o.sigma) + options_.unmodelled;
+  if (std::abs(innovation) > options_.gate * spread && !lasting_step(innovation, o.sigma * o.sigma)) {
+    miss(o.time, o.path, GapStop::implausible);
+    return GapVerdict::jump;
+  }
+  if (steps_ >= options_.step_looks) {
+    proof_.forget();
+  } else {
+    if (proof_.observe(o.gap - o.still, variance, innovation, p_ee_ + variance)) proof_.restart(o.correction);
+    correct(innovation, variance);
+  }
+  steps_ = 0;
+  step_sum_ = step_squares_ = 0;
+  used_path_ = o.path;
+  resume(o.time, o.path);
+  judge(o);
+  return GapVerdict::used;
+}
+
+/// Readings in a row that agree on a step too small for a bead: the machine's own (play that changes sides).
+bool GapFollower::lasting_step(double innovation, double variance) {
+  const bool other_side = steps_ > 0 && innovation * step_sum_ < 0;
+  if (other_side || std::abs(innovation) > options_.step_max) {
+    steps_ = 0;
+    step_sum_ = step_squares_ = 0;
+    if (!other_side) return false;
+  }
+  ++steps_;
+  step_sum_ += innovation;
+  step_squares_ += innovation * innovation;
+  if (steps_ < options_.step_looks) return false;
+  const double mean = step_sum_ / steps_, scatter = step_squares_ / steps_ - mean * mean;
+  if (scatter > options_.gate * options_.gate * (variance + options_.unmodelled * options_.unmodelled)) {
+    steps_ = 0;
+    step_sum_ = step_squares_ = 0;
+    return false;
+  }
+  error_ += mean;
+  p_ee_ += variance / steps_;
+  return true;
+}
+
+/// The mean of the first readings that agree.
+void GapFollower::begin(const GapObservation& o) {
+  const double error = o.gap - o.correction;
+  const double mean = steps_ > 0 ? step_sum_ / steps_ : error;
+  if (std::abs(error - mean) > options_.gate * o.sigma + options_.step_max) {
+    steps_ = 0;
+    step_sum_ = 0;
+  }
+  if (steps_ == 0) path_ = o.path;
+  ++steps_;
+  step_sum_ += error;
+  if (steps_ < options_.step_looks) return;
+  known_ = true;
+  error_ = step_sum_ / steps_;
+  p_ee_ = o.sigma * o.sigma / steps_ + std::pow(options_.slope_sigma * (o.path - path_), 2);
+  path_ = used_path_ = o.path;
+  time_ = o.time;
+  steps_ = 0;
+  step_sum_ = 0;
+  resume(o.time, o.path);
+}
+
+void GapFollower::pass(double dt, double way) {
+  seen_time_ += dt;
+  seen_path_ += way;
+  held_time_ += dt;
+  held_path_ += way;
+}
+
+void GapFollower::miss(double time, double path, GapStop why) {
+  ++missed_;
+  ++reasons_[static_cast<std::size_t>(why)];
+  const double blind = time - seen_time_;
+  const bool far = path - seen_path_ >= options_.blind_path;
+  if ((blind >= options_.blind_time && far) || blind >= options_.blind_time_max)
+    raise(static_cast<GapStop>(std::max_element(reasons_.begin(), reasons_.end()) - reasons_.begin()));
+}
+
+void GapFollower::judge(const GapObservation& o) {
+  if (!known_) return;
+  if (gap(o.correction) - kTrusted * sigma() < options_.floor) raise(GapStop::too_close);
+  if (std::abs(wanted()) > options_.travel_max + kTrusted * sigma()) raise(GapStop::too_far);
+  judge_proof(o);
+}
+
+/// The part's own dot would have come down with the tool, or risen while the tool waits.
+void GapFollower::judge_proof(const GapObservation& o) {
+  const bool held = wanted() < lowest() - options_.unproved_max / 2 - kTrusted * sigma();
+  if (held && !held_) {
+    held_time_ = o.time;
+    held_path_ = o.path;
+  }
+  held_ = held;
+  if (held && o.time - held_time_ >= options_.blind_time && o.path - held_path_ >= options_.blind_path)
+    raise(GapStop::no_progress);
+}
+
+/// The correction that is proved to be safe.
+double GapFollower::lowest() const {
+  return std::max(-options_.travel_max, proof_.highest() - options_.unproved_max);
+}
+
+/// Rate and acceleration are limited; what is left is taken over within settle_time, and the line's own climb
+/// at once.
+GapFollower::Correction GapFollower::advance(double dt, double path, bool follow) {
+  const double climb = std::max(0.0, path - advanced_path_);
+  advanced_path_ = std::max(advanced_path_, path);
+  double rate = 0;
+  if (follow && known_) {
+    const double wanted = options_.aim - predicted_error(path);
+    const double target = std::clamp(wanted, lowest(), options_.travel_max);
+    const double left = target - correction_.value;
+    const bool on_line = path > path_ && path < used_path_ + options_.extrapolated_max && wanted == target;
+    const double line_rate = on_line ? -slope_ * climb / dt : 0;
+    // Half of the acceleration: the other half is there for the target to move meanwhile.
+    const double reach = std::min(std::abs(left) / options_.settle_time,
+                                  std::sqrt(options_.acceleration_max * std::abs(left)));
+    rate = std::clamp(line_rate + std::copysign(reach, left), -options_.rate_max, options_.rate_max);
+  }
+  const double change = options_.acceleration_max * dt;
+  const double next = correction_.rate + std::clamp(rate - correction_.rate, -change, change);
+  correction_.value += 0.5 * (correction_.rate + next) * dt;
+  correction_.rate = next;
+  proof_.reach(correction_.value);
+  return correction_;
+}
+
+}  // namespace understudy::control

@@ -1,0 +1,131 @@
+// Follows the gap along the path: from readings that come late and scatter to a correction along the tool
+// axis. What is estimated is the gap that there would be without any correction, as a line over the path: a
+// reading, less the correction that was in force in the middle of its exposure, does not depend on what was
+// decided since (a Smith predictor), and the line gives the gap where the next setpoint will be.
+//
+// Speckle is averaged by a Kalman filter whose noise is that of the readings. What jumps is not followed: a
+// fresh bead or an edge lifts the reading by more than its noise explains. What does not move when the
+// correction does is not believed for long (control/gap/gap_response_test.h). Nothing here allocates or
+// throws.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "control/gap/gap_controller.h"
+#include "control/gap/gap_response_test.h"
+
+namespace understudy::control {
+
+struct GapFollowerOptions {
+  double aim = 0;                   ///< [m], gap along the path
+  double rate_max = 0.5e-3;         ///< [m/s], of the correction
+  double acceleration_max = 20e-3;  ///< [m/s^2], of the correction: it is smooth
+  double travel_max = 0.5e-3;       ///< [m], of the correction: the open-loop error of the paper's machine
+  /// [m], of the correction towards the part until readings show that they follow it: a spot that stands
+  /// still in the picture leads no farther.
+  double unproved_max = 40e-6;
+  double settle_time = 0.03;        ///< [s], in which a small step of the estimate is taken over
+  double gate = 4;                  ///< standard deviations that a reading may be off
+  double unmodelled = 2e-6;         ///< [m], a reading may be off besides: facets and roughness
+  double slope_sigma = 0.025;       ///< [m/m], of the error over the path before it was measured
+  double slope_walk = 0.04;         ///< [1/m], variance of that slope's change over a metre
+  double drift = 2e-6;              ///< [m/sqrt(s)], of the error of a tool at rest
+  double speckle_length = 0.15e-3;  ///< [m] of path after which speckle is new
+  double step_max = 50e-6;          ///< [m], a lasting step of the machine; a bead is at least twice as high
+  int step_looks = 4;               ///< in a row that show the same step
+  double extrapolated_max = 1e-3;   ///< [m] of path beyond the last good reading; the correction rests then
+  double blind_time = 0.5;          ///< [s] without a good reading ...
+  double blind_path = 1.5e-3;       ///< [m] ... and at least so far, is a stop: longer than a bead is wide
+  double blind_time_max = 3;        ///< [s], however slow
+  double floor = 50e-6;             ///< [m], the gap less three sigma must stay above this
+};
+
+/// For a machine: its aim, its speckle, half of its smallest accepted gap as floor and as the largest step,
+/// and half of what lies between aim and floor as unproved travel.
+GapFollowerOptions gap_follower_options(const machine::MachineDescription& machine);
+
+/// One reading, brought together with what was commanded in the middle of its exposure.
+struct GapObservation {
+  double time = 0;        ///< [s], middle of the exposure
+  double path = 0;        ///< [m], travelled by then; turns count
+  double correction = 0;  ///< [m], in force then
+  double gap = 0;         ///< [m], as read
+  double sigma = 0;       ///< [m]
+  /// [m], what a spot that stands still in the picture would read here, up to a constant; NaN: it begins anew
+  double still = 0;
+};
+
+enum class GapVerdict { used, jump, repeated, not_yet };
+
+class GapFollower {
+ public:
+  struct Correction {
+    double value = 0;  ///< [m], along the tool axis, positive away from the part
+    double rate = 0;   ///< [m/s]
+  };
+
+  explicit GapFollower(const GapFollowerOptions& options) : options_(options) {}
+
+  /// The gap is known, as after an approach: the correction begins at 0 from here.
+  void start(double time, double path, double gap, double sigma);
+  /// Nothing is known: `step_looks` readings that agree begin it; the correction stays at 0 until then.
+  void start_unknown(double time, double path);
+  /// Readings begin again after a part of the path where there could be none.
+  void resume(double time, double path);
+
+  /// Time and path in which nothing was to be seen: the clock of stops stands still.
+  void pass(double dt, double way);
+
+  GapVerdict observe(const GapObservation& o);
+  /// A look without a reading, for a reason.
+  void miss(double time, double path, GapStop why);
+
+  /// The correction a cycle later, where the path will be then. `follow` false: it comes to rest.
+  Correction advance(double dt, double path, bool follow);
+
+  double gap(double correction) const { return error_ + correction; }  ///< [m], at the last good reading
+  double sigma() const;                                                ///< [m]
+  /// What the gap will be at a place of the path with a correction.
+  double predicted_gap(double path, double correction) const { return predicted_error(path) + correction; }
+  bool known() const { return known_; }
+
+  /// Why the print must stop; none: it need not. Sticky.
+  GapStop stop() const { return stop_; }
+  double blind_since() const { return seen_time_; }        ///< [s], the last good reading
+  int missed() const { return missed_; }                   ///< looks since then
+  double wanted() const { return options_.aim - error_; }  ///< [m], the correction that would reach the aim
+
+ private:
+  double predicted_error(double path) const;
+  void predict(double time, double path);
+  void correct(double innovation, double variance);
+  bool lasting_step(double innovation, double variance);
+  void begin(const GapObservation& o);
+  void judge(const GapObservation& o);
+  void judge_proof(const GapObservation& o);
+  double lowest() const;
+  void raise(GapStop reason) { stop_ = stop_ == GapStop::none ? reason : stop_; }
+
+  GapFollowerOptions options_;
+  bool known_ = false;
+  double time_ = 0, path_ = 0;             // of the estimate
+  double error_ = 0, slope_ = 0;           // [m], [m/m]: gap without correction, and over the path
+  double p_ee_ = 0, p_es_ = 0, p_ss_ = 0;  // covariance
+  double used_path_ = 0;                   // of the last reading that was used
+  double last_reading_ = -1;
+  int same_readings_ = 0;  // in a row, to the last bit
+  int steps_ = 0;          // readings in a row that are off to one side
+  double step_sum_ = 0, step_squares_ = 0;
+  double seen_time_ = 0, seen_path_ = 0;  // of the last good reading, or where looking began
+  int missed_ = 0;
+  CusumTest proof_;
+  double held_time_ = 0, held_path_ = 0;  // since when readings ask for more than is proved
+  bool held_ = false;
+  std::array<int, 16> reasons_{};  // of those, by GapStop
+  GapStop stop_ = GapStop::none;
+  Correction correction_;
+  double advanced_path_ = 0;
+};
+
+}  // namespace understudy::control

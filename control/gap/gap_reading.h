@@ -1,0 +1,60 @@
+// From the dot's pixel to the gap: the laser's line, the local surface and the camera, inverted.
+#pragma once
+
+#include <optional>
+
+#include "machine/description.h"
+#include "vision/dot/dot.h"
+
+namespace understudy::control {
+
+/// The surface near the tool axis, in T with the tip at gap 0 on it:
+///   z = slope . (x, y) + 1/2 (x, y) curvature (x, y)^T      (z along the tool axis, away from the part)
+struct LocalSurface {
+  Vec2 slope{0, 0};
+  Eigen::Matrix2d curvature = Eigen::Matrix2d::Zero();  ///< [1/m], negative where the part bulges to the tool
+};
+
+/// Quadratic fit of the nominal part around the point under the tool, within `radius` [m]. The part is in
+/// the frame of X_WT. Throws InputError when the axis does not meet the part within 20 mm of the tip.
+LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT, double radius);
+
+/// Of the tip over the nominal part [m], along the tool axis; nothing where that does not meet the part
+/// within 20 mm. What reaches up to `radius` [m] above the tip is seen.
+std::optional<double> height_over(const geometry::Mesh& part, const Pose& X_WT, double radius);
+
+struct GapReading {
+  double gap = 0;          ///< [m], along the tool axis, positive outside the part
+  double sigma = 0;        ///< [m], from the dot's covariance
+  double residual_px = 0;  ///< [px], distance of the dot from the line on which it must move
+  /// Second moment of the dot over that of the whole beam, in the direction where it is smallest: 0.36 where
+  /// an edge hides half of it.
+  double narrowest = 1;
+};
+
+/// Where the dot must appear for a gap. False when the beam misses the modelled surface or the camera.
+bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                 Vec2& pixel);
+
+/// Where the beam meets the surface for a gap, in T. False when it misses the modelled surface.
+bool dot_place(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+               Vec3& p_T);
+
+/// Second moments [px^2] of the dot's picture for a gap: a round Gaussian beam on the surface's tangent
+/// plane, seen by the camera through its blur. False when the beam misses the modelled surface.
+bool predict_spread(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                    Eigen::Matrix2d& spread_px2);
+
+/// Inverts predict_dot by Newton; false when there is no gap in [-1 mm, 8 mm] that explains the dot.
+bool read_gap(const machine::MachineDescription& machine, const LocalSurface& surface,
+              const vision::DotMeasurement& dot, GapReading& reading);
+
+/// Whether the dot is as wide as the whole beam draws it: noise may narrow it, an edge that hides a tenth of
+/// it does so by more.
+bool whole(const GapReading& reading, const vision::DotMeasurement& dot);
+
+/// Part of the sensor in which the dot of gaps in [gap - below, gap + above] lies, with margin; clipped.
+Region region_for_gap(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                      double below, double above, int margin_px);
+
+}  // namespace understudy::control

@@ -1,0 +1,182 @@
+#include "control/gap/gap_sensor.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/units.h"
+
+namespace understudy::control {
+
+using machine::Status;
+using vision::DotStatus;
+
+namespace {
+
+constexpr double kPatience = 2.0;  // [s], for one frame
+constexpr int kAsked = 3;          // times, for a frame that is lost or stale, while the tool stands
+constexpr int kMarginRadii = 5;    // of the spot, kept free around the predicted dot
+constexpr double kTrusted = 4;     // standard deviations that a reading may be off without suspicion
+
+}  // namespace
+
+vision::DotOptions dot_options(const machine::MachineDescription& machine) {
+  const machine::Microscope& microscope = machine.microscope;
+  const machine::Laser& laser = machine.laser;
+  // Scale where the beam crosses the tip plane: within a few per cent of that at any gap.
+  const Vec3 b = laser.X_TL.linear().col(2), o = laser.X_TL.translation();
+  const Vec3 crossing_C = microscope.X_TC.inverse() * Vec3(o - o.z() / b.z() * b);
+  const double scale = microscope.camera.focal_px / crossing_C.z();  // [px/m]
+  vision::DotOptions options;
+  options.expected_radius_px = std::hypot(laser.waist_diameter / 2 * scale, 2 * microscope.blur_px);
+  options.grey_per_electron = 255 / microscope.full_well;
+  const double speckle_px = scale * laser.wavelength / microscope.aperture_sine;
+  options.speckle_area_px2 = speckle_px * speckle_px / std::numbers::pi;
+  return options;
+}
+
+GapSensor::GapSensor(const machine::MachineDescription& machine, const LocalSurface& surface,
+                     const GapControllerOptions& options, machine::MachinePort& port)
+    : machine_(machine),
+      surface_(surface),
+      options_(options),
+      port_(port),
+      dot_options_(dot_options(machine)) {}
+
+GapStop GapSensor::take(const std::optional<Expectation>& expected, GapSample& look) {
+  const Camera& camera = machine_.microscope.camera;
+  const Region sensor{0, 0, camera.width, camera.height};
+  const Region region = expected ? region_around(*expected) : sensor;
+  GapStop stop = expose_standing(region, look);
+  if (stop != GapStop::none) return stop;
+  const bool missed = look.dot.status == DotStatus::no_dot || look.dot.status == DotStatus::clipped_by_border;
+  // A dot outside the region shows on the whole sensor, and its reading then says what went wrong.
+  if (missed && region != sensor)
+    if (stop = expose_standing(sensor, look); stop != GapStop::none) return stop;
+  if (stop = judge_dot(look); stop != GapStop::none) return stop;
+  if (stop = judge_reading(expected, look); stop != GapStop::none) return stop;
+  look.used = true;
+  return GapStop::none;
+}
+
+GapStop GapSensor::expose_standing(const Region& region, GapSample& look) {
+  GapStop stop = GapStop::none;
+  for (int asked = 1; asked <= kAsked; ++asked) {
+    stop = expose(region, kPatience, look);
+    const bool again = stop == GapStop::stale_frame || stop == GapStop::port_failed;
+    if (!again || port_.state().fault != machine::Fault::none) return stop;
+  }
+  look.why += fmt::format("; it was asked for {} times", kAsked);
+  return stop;
+}
+
+Region GapSensor::region_around(const Expectation& expected) const {
+  const int margin = static_cast<int>(std::ceil(kMarginRadii * dot_options_.expected_radius_px));
+  return region_for_gap(machine_, surface_, expected.gap, expected.bound, expected.bound, margin);
+}
+
+GapStop GapSensor::expose_around(const Expectation& expected, double patience, GapSample& look) {
+  return expose(region_around(expected), patience, look);
+}
+
+GapStop GapSensor::read(GapSample& look) const {
+  if (const GapStop stop = judge_dot(look); stop != GapStop::none) return stop;
+  return judge_reading(std::nullopt, look);
+}
+
+GapStop GapSensor::expose(const Region& region, double patience, GapSample& look) {
+  look.frame = {};
+  const double asked_at = port_.now();
+  const Status status = port_.capture(region, look.frame, asked_at + patience);
+  if (status != Status::ok) {
+    look.why = fmt::format("no picture from the microscope: {}", to_string(status));
+    if (status == Status::faulted) look.why += fmt::format(" ({})", to_string(port_.state().fault));
+    return GapStop::port_failed;
+  }
+  const machine::Frame& frame = look.frame;
+  look.time = frame.exposed_at;
+  const double age = frame.received_at - frame.exposed_at;
+  if (last_number_ == frame.number) {
+    look.why = fmt::format("frame {} was delivered twice", frame.number);
+    return GapStop::stale_frame;
+  }
+  last_number_ = frame.number;
+  if (frame.exposed_at < asked_at || !(age <= options_.frame_age_max)) {
+    look.why = fmt::format(
+        "frame {} was exposed {:.3f} s before it came, {:.3f} s before it was asked for; allowed "
+        "are {:.3f} s and 0 s",
+        frame.number, age, asked_at - frame.exposed_at, options_.frame_age_max);
+    return GapStop::stale_frame;
+  }
+  const Image& image = frame.image;
+  const auto pixels = static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
+  if (!(image.region == region) || image.pixels.size() != pixels) {
+    look.why = fmt::format("the camera read {} x {} px at ({}, {}) instead of {} x {} px at ({}, {})",
+                           image.region.width, image.region.height, image.region.x, image.region.y,
+                           region.width, region.height, region.x, region.y);
+    return GapStop::implausible;
+  }
+  look.dot = vision::measure_dot(image, dot_options_);
+  return GapStop::none;
+}
+
+GapStop GapSensor::judge_dot(GapSample& look) const {
+  const vision::DotMeasurement& dot = look.dot;
+  switch (dot.status) {
+    case DotStatus::ok:
+      return GapStop::none;
+    case DotStatus::no_dot:
+      look.why = fmt::format("no dot: the brightest spot stands out by {:.0f} grey levels, {:.0f} are needed",
+                             dot.contrast, dot_options_.contrast_min);
+      return GapStop::no_dot;
+    case DotStatus::saturated:
+      look.why =
+          fmt::format("the dot is saturated: {:.0f} % of its pixels are white, at most {:.0f} % may be",
+                      100 * dot.saturated_fraction, 100 * dot_options_.saturated_fraction_max);
+      return GapStop::saturated;
+    case DotStatus::clipped_by_border:
+      look.why = fmt::format("the dot at ({:.1f}, {:.1f}) px is cut by the picture's border",
+                             dot.position_px.x(), dot.position_px.y());
+      return GapStop::implausible;
+    case DotStatus::not_a_spot:
+      break;
+  }
+  look.why = fmt::format(
+      "what shines at ({:.1f}, {:.1f}) px with a radius of {:.1f} px is not the dot, whose radius is "
+      "about {:.1f} px",
+      dot.position_px.x(), dot.position_px.y(), dot.radius_px, dot_options_.expected_radius_px);
+  return GapStop::implausible;
+}
+
+GapStop GapSensor::judge_reading(const std::optional<Expectation>& expected, GapSample& look) const {
+  const Vec2& at = look.dot.position_px;
+  GapReading& reading = look.reading;
+  if (!read_gap(machine_, surface_, look.dot, reading)) {
+    look.why = fmt::format("no gap explains a dot at ({:.1f}, {:.1f}) px", at.x(), at.y());
+    return GapStop::implausible;
+  }
+  if (reading.residual_px > options_.residual_max_px) {
+    look.why = fmt::format(
+        "the dot at ({:.1f}, {:.1f}) px is {:.1f} px off the line on which it moves, at most {:.1f} px "
+        "are plausible",
+        at.x(), at.y(), reading.residual_px, options_.residual_max_px);
+    return GapStop::implausible;
+  }
+  if (!whole(reading, look.dot)) {
+    look.why = fmt::format(
+        "the dot at ({:.1f}, {:.1f}) px is {:.0f} % as wide as the beam draws it here, 1 sigma {:.0f} %: "
+        "something hides a part of it",
+        at.x(), at.y(), 100 * std::sqrt(std::max(0.0, reading.narrowest)), 50 * look.dot.spread_sigma);
+    return GapStop::partly_hidden;
+  }
+  if (!expected) return GapStop::none;
+  const double bound = expected->bound + kTrusted * reading.sigma;
+  if (!(std::abs(reading.gap - expected->gap) <= bound)) {
+    look.why = fmt::format("the gap reads {:.3f} mm where the motion leaves {:.3f} mm, within {:.3f} mm",
+                           to_mm(reading.gap), to_mm(expected->gap), to_mm(bound));
+    return GapStop::implausible;
+  }
+  return GapStop::none;
+}
+
+}  // namespace understudy::control

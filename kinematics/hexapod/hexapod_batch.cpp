@@ -1,0 +1,103 @@
+#include "kinematics/hexapod/hexapod_batch.h"
+
+#include <algorithm>
+#include <array>
+#include <thread>
+#include <vector>
+
+#include "kinematics/hexapod/hexapod_batch_simd.h"
+#include "kinematics/hexapod/hexapod_numbers.h"
+
+namespace understudy::kinematics {
+namespace {
+
+static_assert(sizeof(Pose) == 16 * sizeof(double) && sizeof(StrutLengths) == kStruts * sizeof(double));
+
+constexpr long kBlock = 64;  // answers kept at a time
+// Poses; fewer take less time than some starts of a thread.
+constexpr long kInverseWorthAThread = 8192;
+constexpr long kForwardWorthAThread = 1024;
+
+using TwoLanes [[gnu::vector_size(16)]] = double;
+
+bool has_avx2() {
+#ifdef UNDERSTUDY_AVX2
+  return __builtin_cpu_supports("avx2");
+#else
+  return false;
+#endif
+}
+
+simd::InverseMany inverse_many() {
+#ifdef UNDERSTUDY_AVX2
+  if (has_avx2()) return simd::inverse_many_avx2;
+#endif
+  return simd::inverse_many<TwoLanes>;
+}
+
+simd::ForwardMany forward_many() {
+#ifdef UNDERSTUDY_AVX2
+  if (has_avx2()) return simd::forward_many_avx2;
+#endif
+  return simd::forward_many<TwoLanes>;
+}
+
+/// work(begin, end) for parts of [0, count), on as many threads as are worth it.
+template <typename Work>
+void in_parts(long count, long worth_a_thread, int threads, const Work& work) {
+  const long wanted = threads > 0 ? threads : static_cast<long>(std::thread::hardware_concurrency());
+  const long parts = std::clamp(wanted, 1L, std::max(1L, count / worth_a_thread));
+  std::vector<std::thread> others;
+  for (long n = 1; n < parts; ++n)
+    others.emplace_back([&, n] { work(count * n / parts, count * (n + 1) / parts); });
+  work(0L, count / parts);
+  for (std::thread& other : others) other.join();
+}
+
+}  // namespace
+
+void inverse_batch(const HexapodGeometry& geometry, std::span<const Pose> X_BT,
+                   std::span<StrutLengths> lengths, std::span<SolveStatus> status, int threads) {
+  const auto count = static_cast<long>(std::min({X_BT.size(), lengths.size(), status.size()}));
+  const simd::Hexapod g = plain_numbers(geometry);
+  const simd::InverseMany many = inverse_many();
+  in_parts(count, kInverseWorthAThread, threads, [&](long begin, long end) {
+    std::array<bool, kBlock> ok;
+    for (long at = begin; at < end; at += kBlock) {
+      const long size = std::min(kBlock, end - at);
+      const auto first = static_cast<std::size_t>(at);
+      const long done = many(g, X_BT[first].data(), lengths[first].data(), ok.data(), size);
+      for (long n = 0; n < size; ++n) {
+        const auto k = static_cast<std::size_t>(at + n);
+        const bool have = n < done && ok[static_cast<std::size_t>(n)];
+        status[k] = have ? SolveStatus::ok : inverse(geometry, X_BT[k], lengths[k]);
+      }
+    }
+  });
+}
+
+void forward_batch(const HexapodGeometry& geometry, std::span<const StrutLengths> lengths,
+                   std::span<const Pose> seeds, std::span<ForwardResult> results,
+                   const ForwardOptions& options, int threads) {
+  const auto count = static_cast<long>(std::min({lengths.size(), seeds.size(), results.size()}));
+  const simd::Hexapod g = plain_numbers(geometry);
+  const simd::ForwardMany many = forward_many();
+  const simd::NewtonSettings settings = newton_settings(options);
+  in_parts(count, kForwardWorthAThread, threads, [&](long begin, long end) {
+    std::array<simd::Answer, kBlock> answers;
+    for (long at = begin; at < end; at += kBlock) {
+      const long size = std::min(kBlock, end - at);
+      const auto first = static_cast<std::size_t>(at);
+      const long done = many(g, lengths[first].data(), seeds[first].data(), settings, answers.data(), size);
+      for (long n = 0; n < size; ++n) {
+        const auto k = static_cast<std::size_t>(at + n);
+        const simd::Answer& a = answers[static_cast<std::size_t>(n)];
+        results[k] = n < done && a.ok ? ForwardResult{SolveStatus::ok, pose_of(a.X),
+                                                      static_cast<int>(a.iterations), a.residual}
+                                      : forward(geometry, lengths[k], seeds[k], options);
+      }
+    }
+  });
+}
+
+}  // namespace understudy::kinematics

@@ -1,0 +1,22 @@
+// The hexapod's kinematics for arrays of poses: several poses in the lanes of one instruction (AVX2 where the
+// processor has it), and ranges of them on all cores. Every result is that of the single call, to the bit,
+// whatever the processor and the number of threads. Not for control cycles: threads are started and joined.
+#pragma once
+
+#include <span>
+
+#include "kinematics/hexapod/hexapod.h"
+
+namespace understudy::kinematics {
+
+/// As many as the shortest span holds; `threads` 0: one for each core. Lengths of a pose without an answer
+/// stay as they were.
+void inverse_batch(const HexapodGeometry& geometry, std::span<const Pose> X_BT,
+                   std::span<StrutLengths> lengths, std::span<SolveStatus> status, int threads = 0);
+
+/// Each from its own seed, by the branch rule of forward().
+void forward_batch(const HexapodGeometry& geometry, std::span<const StrutLengths> lengths,
+                   std::span<const Pose> seeds, std::span<ForwardResult> results,
+                   const ForwardOptions& options = {}, int threads = 0);
+
+}  // namespace understudy::kinematics

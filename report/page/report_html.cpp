@@ -1,0 +1,88 @@
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "report/page/page_parts.h"
+#include "report/report.h"
+#include "report/report_value.h"
+#include "report/summary_value.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+std::string escape_html(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&')
+      escaped += "&amp;";
+    else if (c == '<')
+      escaped += "&lt;";
+    else if (c == '>')
+      escaped += "&gt;";
+    else if (c == '"')
+      escaped += "&quot;";
+    else
+      escaped += c;
+  }
+  return escaped;
+}
+
+// Inside <script> only "</" and "<!--" can end or bend the block, and in JSON '<' stands in strings only.
+std::string escape_json_for_script(const std::string& json) {
+  std::string escaped;
+  escaped.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<')
+      escaped += "\\u003c";
+    else
+      escaped += c;
+  }
+  return escaped;
+}
+
+// One pass, so that a marker inside an inserted part stays as it is.
+std::string fill(std::string_view page, const std::vector<std::pair<std::string_view, std::string>>& parts) {
+  std::string filled;
+  for (std::size_t at = 0; at < page.size();) {
+    const std::size_t open = page.find("{{", at);
+    filled += page.substr(at, open - at);
+    if (open == std::string_view::npos) break;
+    const std::size_t close = page.find("}}", open);
+    const std::string_view marker = page.substr(open + 2, close - open - 2);
+    const auto part =
+        std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.first == marker; });
+    if (part == parts.end()) throw std::logic_error("the page has an unknown marker " + std::string(marker));
+    filled += part->second;
+    at = close + 2;
+  }
+  return filled;
+}
+
+std::string drawing() {
+  std::string script;
+  for (const std::string_view part :
+       {kPageFormat, kPageElements, kPageVerdict, kPageTables, kPageCharts, kPageFrames, kPageMain})
+    script.append(part).append("\n");
+  return script;
+}
+
+}  // namespace
+
+std::string report_html(const Record& record) {
+  const nlohmann::ordered_json report = report_value(record);
+  const std::string verdict = record.go ? "GO" : "NO-GO";
+  return fill(kPageTemplate, {{"title", escape_html(verdict + ": " + record.title)},
+                              {"verdict", verdict},
+                              {"reason", escape_html(verdict_sentence(record))},
+                              {"dygraph-licence", std::string(kDygraphLicence)},
+                              {"dygraph-style", std::string(kDygraphStyle)},
+                              {"style", std::string(kPageStyle)},
+                              {"dygraph-script", std::string(kDygraphScript)},
+                              {"record", escape_json_for_script(to_text(report, -1))},
+                              {"script", drawing()}});
+}
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,178 @@
+#include "report/report_value.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "core/units.h"
+#include "report/picture/png.h"
+#include "report/report.h"
+#include "report/summary_value.h"
+#include "report/trace_values.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A chart is about a thousand pixels wide: four points a pixel hide nothing and keep the page near a
+// megabyte.
+constexpr std::size_t kChartPoints = 4000;
+constexpr int kTraceDigits = 8;
+
+std::string data_uri(const std::string& png) { return "data:image/png;base64," + base64(png); }
+
+Json pixel(const Vec2& p) { return {stable_number(p.x(), "pixel x"), stable_number(p.y(), "pixel y")}; }
+
+Json names_value(const Record& record) {
+  Json names = Json::object();
+  const auto put = [&](const char* key, const std::string& name) {
+    if (!name.empty()) names[key] = name;
+  };
+  put("program", record.program_name);
+  put("machine", record.machine_name);
+  put("fixture", record.fixture_name);
+  put("gap_control", record.gap_control);
+  put("seed", std::to_string(record.provenance.seed));  // JavaScript's numbers hold 53 bits only
+  return names;
+}
+
+Json axes_value(const Record& record) {
+  Json axes = Json::array();
+  for (const AxisColumn& column : record.axes) {
+    const bool angle = column.name.ends_with("_deg");
+    const auto in_file_units = [&](double v) { return angle ? to_deg(v) : to_mm(v); };
+    Json axis;
+    axis["name"] = column.name;
+    if (column.min) axis["min"] = stable_number(in_file_units(*column.min), "axis min");
+    if (column.max) axis["max"] = stable_number(in_file_units(*column.max), "axis max");
+    axes.push_back(axis);
+  }
+  return axes;
+}
+
+Json trace_value(const std::vector<TracePoint>& trace, const Record& record) {
+  const std::vector<std::string> columns = trace_columns(record);
+  std::vector<Json> values(columns.size(), Json::array());
+  std::vector<double> row;
+  for (const std::size_t i : thin_out(trace, kChartPoints)) {
+    trace_row(trace[i], record, columns, row);
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const bool whole = columns[c] == "line" || columns[c] == "extruding";
+      if (!std::isfinite(row[c]))
+        values[c].push_back(nullptr);  // nothing below the tip
+      else if (whole)
+        values[c].push_back(static_cast<int>(row[c]));
+      else
+        values[c].push_back(stable_number(row[c], columns[c].c_str(), kTraceDigits));
+    }
+  }
+  Json object;
+  object["points"] = trace.size();
+  for (std::size_t c = 0; c < columns.size(); ++c) object["columns"][columns[c]] = std::move(values[c]);
+  return object;
+}
+
+Json frame_value(const FrameRecord& frame) {
+  const control::GapSample& look = frame.look;
+  const Image& image = look.frame.image;
+  Json object;
+  object["time_s"] = stable_number(look.time, "frame time");
+  object["used"] = look.used;
+  if (!look.why.empty()) object["why"] = look.why;
+  object["dot"] = vision::to_string(look.dot.status);
+  if (look.dot.status != vision::DotStatus::no_dot) object["measured_px"] = pixel(look.dot.position_px);
+  if (frame.true_dot_px) object["true_px"] = pixel(*frame.true_dot_px);
+  if (look.reading.sigma > 0) {  // a look that could not be inverted has none
+    object["reading_mm"] = stable_number(to_mm(look.reading.gap), "reading");
+    object["sigma_um"] = stable_number(to_um(look.reading.sigma), "sigma");
+    object["residual_px"] = stable_number(look.reading.residual_px, "residual");
+  }
+  if (std::isfinite(frame.true_gap)) object["true_gap_mm"] = stable_number(to_mm(frame.true_gap), "true gap");
+  if (!image.pixels.empty()) {
+    object["region"] = {image.region.x, image.region.y, image.region.width, image.region.height};
+    object["image"] = data_uri(encode_png(image));
+  }
+  return object;
+}
+
+Json picture_value(const renderer::Picture& picture, const std::string& caption) {
+  Json object;
+  if (!caption.empty()) object["caption"] = caption;
+  object["width"] = picture.width;
+  object["height"] = picture.height;
+  object["image"] = data_uri(encode_png(picture));
+  return object;
+}
+
+constexpr std::size_t kStrandsShown = 50;
+
+Json strands_value(const std::vector<StrandRow>& strands) {
+  Json rows = Json::array();
+  for (const StrandRow& strand : strands) {
+    if (rows.size() == kStrandsShown) break;
+    Json row;
+    row["line"] = strand.line;
+    row["time_s"] = stable_number(strand.time_s, "strand time");
+    row["length_mm"] = stable_number(strand.length_mm, "strand length");
+    row["diameter_mm"] = stable_number(strand.diameter_mm, "strand diameter");
+    row["speed_mm_per_s"] = stable_number(strand.speed_mm_per_s, "strand speed");
+    if (strand.solved) row["sag_um"] = stable_number(strand.sag_um, "sag");
+    row["solid_after_s"] = stable_number(strand.solid_after_s, "strand solid");
+    row["duration_s"] = stable_number(strand.duration_s, "strand duration");
+    row["held_at_end"] = strand.held_at_end;
+    row["small"] = strand.small;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+constexpr std::size_t kFramesShown =
+    60;  // more come from following a path: those with pictures stand for them
+
+Json profile_value(const Record& record) {
+  Json object;
+  object["note"] = record.profile_note;
+  object["position_mm"] = object["height_um"] = Json::array();
+  for (const auto& [position, height] : record.profile) {
+    object["position_mm"].push_back(stable_number(position, "profile position"));
+    object["height_um"].push_back(stable_number(height, "profile height"));
+  }
+  return object;
+}
+
+}  // namespace
+
+Json report_value(const Record& record) {
+  Json report;
+  report["schema"] = "understudy.report/1";
+  report["title"] = record.title;
+  report["reason"] = verdict_sentence(record);
+  report["names"] = names_value(record);
+  report["summary"] = summary_value(record);
+  if (record.gap_accepted_max_mm > 0)
+    report["gap_band"] = {{"min_mm", stable_number(record.gap_accepted_min_mm, "gap band min")},
+                          {"max_mm", stable_number(record.gap_accepted_max_mm, "gap band max")},
+                          {"aim_mm", stable_number(record.gap_aim_mm, "gap aim")}};
+  report["axes"] = axes_value(record);
+  if (!record.trace.empty()) report["trace"] = trace_value(record.trace, record);
+  if (!record.trace_without_gap_control.empty())
+    report["trace_without_gap_control"] = trace_value(record.trace_without_gap_control, record);
+  if (!record.trace_before_calibration.empty())
+    report["trace_before_calibration"] = trace_value(record.trace_before_calibration, record);
+  if (record.trace_stride > 1) report["trace_stride"] = record.trace_stride;
+  if (!record.strands.empty()) report["strands"] = strands_value(record.strands);
+  if (!record.profile.empty()) report["profile"] = profile_value(record);
+  if (!record.deviation_note.empty()) report["deviation_note"] = record.deviation_note;
+  report["frames"] = Json::array();
+  const bool all_frames = record.frames.size() <= kFramesShown;
+  for (const FrameRecord& frame : record.frames)
+    if (all_frames || !frame.look.frame.image.pixels.empty()) report["frames"].push_back(frame_value(frame));
+  report["pictures"] = Json::array();
+  for (std::size_t i = 0; i < record.pictures.size(); ++i)
+    report["pictures"].push_back(picture_value(
+        record.pictures[i], i < record.picture_captions.size() ? record.picture_captions[i] : std::string()));
+  return report;
+}
+
+}  // namespace understudy::rehearsal

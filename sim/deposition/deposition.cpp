@@ -1,0 +1,299 @@
+#include "sim/deposition/deposition.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
+
+#include "sim/deposition/bead_builder.h"
+#include "sim/deposition/extruder.h"
+#include "sim/deposition/gap_sums.h"
+#include "sim/deposition/unsupported_stretch_recorder.h"
+
+namespace understudy::sim {
+namespace {
+
+constexpr double kGapJump = 0.5e-3;  // [m], between two snapshots: the axis went over an edge
+constexpr double kRounding = 1e-9;   // [m], of a gap: coordinates of 0.1 m through files and rotations
+constexpr double kThinnest = 1e-6;   // [m]: what is thinner has a volume but is in nobody's way
+constexpr double kFills = 0.99;      // of the gap
+constexpr double kSide = 0.35;       // of the width, where an overhang is felt for
+constexpr double kWidestLine = 5;    // bores: nobody asks for wider, see process_check
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PathPoint between(const PathPoint& a, const PathPoint& b, double f, double gap) {
+  return {a.time + f * (b.time - a.time), a.tip_W + f * (b.tip_W - a.tip_W),
+          ((1 - f) * a.axis_W + f * b.axis_W).normalized(), gap};
+}
+
+// What lies below the tip at a snapshot.
+struct Ground {
+  double gap = kInfinity;
+  bool printed = false;                      // it is a bead
+  double interface_temperature = kInfinity;  // [K]
+};
+
+Bead shape_of(const Element& element) {
+  const LaidBead& laid = element.bead;
+  // What fills the way from the surface to the nozzle is as high as the tip everywhere; a thinner strand lies
+  // on the surface, unless it hangs.
+  const bool lies = laid.adhesion == Adhesion::buried ||
+                    (laid.adhesion != Adhesion::loose && laid.adhesion != Adhesion::fused &&
+                     laid.height < kFills * laid.gap);
+  const double half = laid.height / 2;
+  const auto middle = [&](const Vec3& tip, const Vec3& foot) -> Vec3 {
+    if (lies) return foot + half * laid.normal_W;
+    return tip - half * laid.normal_W;
+  };
+  const Vec3 from = middle(element.tip_from_W, laid.from_W), to = middle(element.tip_to_W, laid.to_W);
+  const auto floats = [](const Vec3& v) {
+    return std::array{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+  };
+  Bead bead;
+  bead.from_W = floats(from);
+  bead.to_W = floats(to);
+  bead.up_W = floats(laid.normal_W);
+  bead.height = static_cast<float>(laid.height);
+  bead.width = std::max(bead.height, static_cast<float>(laid.width));
+  bead.laid_at = static_cast<float>(laid.time);
+  bead.line = laid.line;
+  return bead;
+}
+
+}  // namespace
+
+struct DepositionObserver::State {
+  State(const machine::MachineDescription& machine, std::shared_ptr<Workpiece> stands_below,
+        DepositionOptions with)
+      : workpiece(std::move(stands_below)),
+        options(std::move(with)),
+        filament_area(std::numbers::pi / 4 * machine.tool.filament_diameter * machine.tool.filament_diameter),
+        nozzle_flat(machine.tool.flat_diameter),
+        accepted_min(machine.gap.accepted_min),
+        accepted_max(machine.gap.accepted_max),
+        extruder(machine.process.extruder_lag),
+        builder(kWidestLine * machine.tool.nozzle_diameter,
+                [this](const Element& element) { keep(element); }),
+        loose(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter, options.loose),
+        sums(machine.gap.accepted_min - kRounding, machine.gap.accepted_max + kRounding),
+        usual_height(machine.gap.aim) {}
+
+  std::shared_ptr<Workpiece> workpiece;
+  DepositionOptions options;
+  double filament_area;               // [m^2]
+  double nozzle_flat;                 // [m]
+  double accepted_min, accepted_max;  // [m]
+  Extruder extruder;
+  BeadBuilder builder;
+  UnsupportedStretchRecorder loose;
+  GapSums sums;
+  DepositionSummary totals;
+
+  std::optional<Snapshot> last;
+  Ground ground;                                 // at `last`
+  double most_filament = 0, first_filament = 0;  // [m]
+  UnsupportedStretchRecorder::Conditions conditions;
+  double usual_height;  // [m], of the last element that sticks: what a fused one gets
+  bool flows = false;
+  bool started = false;
+  bool emptied = false;  // the nozzle, after the end
+
+  double path = 0;             // [m], of the tip
+  std::deque<double> fresh;    // path at the end of each bead that may be under the nozzle
+  std::size_t fresh_from = 0;  // number of the first of them
+
+  // [m^3]; what was drawn back is no melt that waits.
+  double column() const { return emptied ? 0 : std::max(0.0, extruder.column()) * filament_area; }
+
+  double take_column() {
+    const double volume = column();
+    emptied = true;
+    return volume;
+  }
+
+  void keep(const Element& element) {
+    const LaidBead& bead = element.bead;
+    totals.laid_volume += bead.volume;
+    if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
+      totals.deposited_volume += bead.volume;
+    if (bead.adhesion == Adhesion::sticks) usual_height = bead.height;
+    ++totals.beads;
+    loose.add(element, conditions);
+    conditions.interface_temperature = kInfinity;
+    if (bead.height > kThinnest) {
+      workpiece->add(shape_of(element));
+      fresh.push_back(path);
+    }
+    if (options.laid) options.laid(bead);
+  }
+
+  void move_on(double step) {
+    path += step;
+    const double window = nozzle_flat + 2 * builder.last_width();
+    while (!fresh.empty() && fresh.front() < path - window) {
+      fresh.pop_front();
+      ++fresh_from;
+    }
+  }
+
+  Ground look(const Pose& X_WT, double time, double fan, double temperature) const {
+    Ground seen;
+    const auto hit = workpiece->below(X_WT, fresh_from);
+    if (!hit) return seen;
+    seen.gap = hit->distance;
+    seen.printed = hit->body == Workpiece::Body::bead;
+    if (seen.printed && options.glass_transition > 0) {
+      const double age = time - static_cast<double>(workpiece->beads().bead(hit->bead).laid_at);
+      const double substrate = options.substrate_temperature ? options.substrate_temperature(age, fan) : 0.0;
+      seen.interface_temperature = 0.5 * (temperature + substrate);
+    }
+    return seen;
+  }
+
+  // Nothing in reach below the middle, but perhaps below half of the width.
+  Ground look_beside(const Snapshot& s, const Vec3& heading) const {
+    const Vec3 axis = tool_axis(s.X_WT), across = axis.cross(heading);
+    Ground best;
+    if (across.norm() < 1e-6 * heading.norm() || heading.norm() == 0) return best;
+    const double reach = kSide * std::max(builder.last_width(), nozzle_flat / 2);
+    for (const double side : {reach, -reach}) {
+      Pose X_WT = s.X_WT;
+      X_WT.translation() += side * across.normalized();
+      const Ground seen = look(X_WT, s.time, s.fan, s.nozzle_temperature);
+      if (seen.printed && seen.gap <= accepted_max + kRounding && seen.gap > -kSoftDepth &&
+          seen.gap < best.gap)
+        best = seen;
+    }
+    return best;
+  }
+
+  Ground ground_at(const Snapshot& s, const Vec3& heading) const {
+    const Ground seen = look(s.X_WT, s.time, s.fan, s.nozzle_temperature);
+    if (seen.gap <= accepted_max + kRounding || workpiece->beads().size() == 0) return seen;
+    const Ground beside = look_beside(s, heading);
+    return std::isfinite(beside.gap) ? beside : seen;
+  }
+
+  Adhesion adhesion_of(double gap, const Ground& below) const {
+    if (gap > accepted_max + kRounding) return Adhesion::loose;
+    if (below.printed && gap > -kSoftDepth && gap < accepted_min - kRounding) return Adhesion::fused;
+    if (gap <= kRounding) return Adhesion::buried;
+    if (below.interface_temperature < options.glass_transition) return Adhesion::cold;
+    return Adhesion::sticks;
+  }
+
+  // From a to b nothing changes but linearly.
+  void extrude(const PathPoint& a, const PathPoint& b, const Ground& below, double volume, int line) {
+    const Adhesion adhesion = adhesion_of(0.5 * (a.gap + b.gap), below);
+    builder.extrude(a, b, adhesion, volume, line, usual_height);
+    const double length = (b.foot_W() - a.foot_W()).norm();
+    if (adhesion == Adhesion::fused) {
+      totals.fused_length += length;
+    } else {
+      sums.add(a.gap, b.gap, length, b.time, line);
+    }
+    conditions.interface_temperature =
+        std::min(conditions.interface_temperature, below.interface_temperature);
+    conditions.on_printed = below.printed;
+  }
+
+  // The interval from `from` (a share of it) to its end, cut where the gap passes a level.
+  void extrude_interval(const PathPoint& a, const PathPoint& b, const Ground& before, double from,
+                        double volume, int line) {
+    // On to a bead or off it is an edge as well.
+    const bool jump = !(std::abs(b.gap - a.gap) <= kGapJump) || before.printed != ground.printed;
+    std::array<double, 5> cuts{from, 1, 1, 1, 1};
+    std::size_t count = 1;
+    if (jump && a.gap != b.gap) {
+      if (0.5 > from) cuts[count++] = 0.5;  // nobody saw the edge: half-way
+    } else if (a.gap != b.gap) {
+      std::array<double, 3> levels{accepted_max, ground.printed ? accepted_min : 0.0, -kSoftDepth};
+      if (b.gap > a.gap) std::reverse(levels.begin(), levels.end());
+      for (const double level : levels) {
+        const double f = (level - a.gap) / (b.gap - a.gap);
+        if (f > from && f < 1 && (ground.printed || level >= 0)) cuts[count++] = f;
+      }
+    }
+    cuts[count] = 1;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double f0 = cuts[i], f1 = cuts[i + 1], middle = 0.5 * (f0 + f1);
+      const auto gap_at = [&](double f) {
+        if (a.gap == b.gap) return a.gap;
+        if (jump) return middle < 0.5 ? a.gap : b.gap;
+        return a.gap + f * (b.gap - a.gap);
+      };
+      const PathPoint p = between(a, b, f0, gap_at(f0)), q = between(a, b, f1, gap_at(f1));
+      if (!started) totals.start_gap = p.gap;
+      started = true;
+      extrude(p, q, jump && middle < 0.5 ? before : ground, volume * (f1 - f0) / (1 - from), line);
+    }
+  }
+
+  void observe(const Snapshot& now) {
+    const Vec3 heading = now.X_WT.translation() - last->X_WT.translation();
+    const double step = heading.norm(), fed = now.filament - last->filament;
+    const Extruder::Flow flow = extruder.advance(now.filament - first_filament, now.time - last->time);
+    most_filament = std::max(most_filament, now.filament);
+    move_on(step);
+    const Ground before = ground;
+    ground = ground_at(now, heading);
+    conditions.nozzle_temperature = now.nozzle_temperature;
+    conditions.fan = now.fan;
+    const double volume = flow.filament * filament_area;
+    flows = volume > 0 && fed > 0;
+    if (!flows) {
+      if (volume > 0) builder.ooze(volume);
+      builder.pause(step);
+      return;
+    }
+    if (flow.from > 0) builder.pause(flow.from * step);  // after a retraction the nozzle fills first
+    const PathPoint a{last->time, last->X_WT.translation(), tool_axis(last->X_WT), before.gap};
+    const PathPoint b{now.time, now.X_WT.translation(), tool_axis(now.X_WT), ground.gap};
+    extrude_interval(a, b, before, flow.from, volume, now.line);
+  }
+};
+
+DepositionObserver::DepositionObserver(const machine::MachineDescription& machine,
+                                       std::shared_ptr<Workpiece> workpiece, DepositionOptions options)
+    : state_(std::make_unique<State>(machine, std::move(workpiece), std::move(options))) {}
+
+DepositionObserver::~DepositionObserver() = default;
+
+void DepositionObserver::observe(const Snapshot& snapshot) {
+  State& s = *state_;
+  if (s.last) {
+    s.observe(snapshot);
+  } else {
+    s.first_filament = s.most_filament = snapshot.filament;
+    s.ground = s.look(snapshot.X_WT, snapshot.time, snapshot.fan, snapshot.nozzle_temperature);
+  }
+  s.last = snapshot;
+}
+
+void DepositionObserver::finish() {
+  State& s = *state_;
+  if (s.started) s.builder.ooze(s.take_column());
+  s.builder.close();
+  s.loose.finish();
+}
+
+double DepositionObserver::gap() const { return state_->ground.gap; }
+std::size_t DepositionObserver::fresh_from() const { return state_->fresh_from; }
+bool DepositionObserver::flowing() const { return state_->flows; }
+
+DepositionSummary DepositionObserver::summary() const {
+  const State& s = *state_;
+  DepositionSummary summary = s.totals;
+  s.sums.fill(summary);
+  summary.extruded_volume = (s.most_filament - s.first_filament) * s.filament_area;
+  summary.column_volume = s.column() + s.builder.carried_volume();
+  return summary;
+}
+
+const std::vector<UnsupportedStretch>& DepositionObserver::loose_stretches() const {
+  return state_->loose.stretches();
+}
+
+}  // namespace understudy::sim

@@ -1,0 +1,51 @@
+#include "sim/deposition/gap_sums.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace understudy::sim {
+namespace {
+
+// Share of a linear ramp of the gap that is at or below `level`.
+double share_below(double from, double to, double level) {
+  const double low = std::min(from, to), high = std::max(from, to);
+  if (high <= level) return 1;
+  if (low > level || std::isinf(high)) return low > level ? 0 : 0.5;
+  return (level - low) / (high - low);
+}
+
+}  // namespace
+
+void GapSums::add(double from, double to, double length, double time, int line) {
+  if (length <= 0) return;
+  length_ += length;
+  const double below = share_below(from, to, low_);
+  below_ += length * below;
+  in_band_ += length * (share_below(from, to, high_) - below);
+  if (!std::isfinite(from) || !std::isfinite(to)) return;
+  surface_length_ += length;
+  moment_ += 0.5 * (from + to) * length;
+  max_ = std::max({max_, from, to});
+  if (const double low = std::min(from, to); low < min_) {
+    min_ = low;
+    min_time_ = time;
+    min_line_ = line;
+  }
+}
+
+void GapSums::fill(DepositionSummary& summary) const {
+  summary.length = length_;
+  if (length_ > 0) {
+    summary.in_band_fraction = in_band_ / length_;
+    summary.below_band_fraction = below_ / length_;
+    summary.above_band_fraction = std::max(0.0, 1 - summary.in_band_fraction - summary.below_band_fraction);
+  }
+  if (surface_length_ <= 0) return;
+  summary.gap_min = min_;
+  summary.gap_min_line = min_line_;
+  summary.gap_min_time = min_time_;
+  summary.gap_mean = moment_ / surface_length_;
+  summary.gap_max = max_;
+}
+
+}  // namespace understudy::sim

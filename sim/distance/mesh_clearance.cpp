@@ -1,0 +1,112 @@
+#include "sim/distance/mesh_clearance.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+
+#include "sim/distance/gjk.h"
+
+namespace understudy::sim {
+namespace {
+constexpr int kLeafTriangles = 2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+}  // namespace
+
+MeshClearance::MeshClearance(std::shared_ptr<const geometry::Mesh> mesh)
+    : mesh_(std::move(mesh)), order_(mesh_->triangles().size()) {
+  std::iota(order_.begin(), order_.end(), 0);
+  nodes_.emplace_back();
+  build(0, 0, static_cast<int>(order_.size()));
+}
+
+void MeshClearance::build(int node, int first, int count) {
+  const auto corner = [&](int triangle, std::size_t k) -> const Vec3& {
+    return mesh_
+        ->vertices()[static_cast<std::size_t>(mesh_->triangles()[static_cast<std::size_t>(triangle)][k])];
+  };
+  Vec3 lower = Vec3::Constant(kInfinity), upper = -lower;
+  for (int i = first; i < first + count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& p = corner(order_[static_cast<std::size_t>(i)], k);
+      lower = lower.cwiseMin(p);
+      upper = upper.cwiseMax(p);
+    }
+  }
+  Node result;
+  result.centre = 0.5 * (lower + upper);
+  result.half = 0.5 * (upper - lower);
+  if (count <= kLeafTriangles) {
+    result.first = first;
+    result.count = count;
+    nodes_[static_cast<std::size_t>(node)] = result;
+    return;
+  }
+  Eigen::Index axis = 0;
+  result.half.maxCoeff(&axis);
+  const auto middle = [&](int triangle) {
+    return corner(triangle, 0)[axis] + corner(triangle, 1)[axis] + corner(triangle, 2)[axis];
+  };
+  const int half = count / 2;
+  const auto begin = order_.begin() + first;
+  std::nth_element(begin, begin + half, begin + count, [&](int a, int b) {
+    const double ma = middle(a), mb = middle(b);
+    return ma < mb || (ma == mb && a < b);
+  });
+  result.first = static_cast<int>(nodes_.size());
+  nodes_[static_cast<std::size_t>(node)] = result;
+  nodes_.resize(nodes_.size() + 2);
+  build(result.first, first, half);
+  build(result.first + 1, first + half, count - half);
+}
+
+template <typename Core>
+Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
+  const Pose X_SW = X_WS.inverse(Eigen::Isometry);
+  // The distance is convex: over a box it is at least its tangent at the centre.
+  const auto bound = [&](int node) {
+    const Node& n = nodes_[static_cast<std::size_t>(node)];
+    const Vec3 p = X_SW * n.centre;
+    const Vec3 away = p - core.nearest(p);
+    const double distance = away.norm();
+    if (distance == 0) return 0.0;
+    return distance - (X_WS.linear() * away).cwiseAbs().dot(n.half) / distance;
+  };
+  Separation best{kInfinity, Vec3::Zero()};
+  struct Entry {
+    int node;
+    double bound;
+  };
+  std::array<Entry, 128> stack;  // one more a level, and the count of triangles halves at each
+  std::size_t size = 0;
+  stack[size++] = {0, bound(0)};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.bound >= best.distance) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(entry.node)];
+    if (node.count == 0) {
+      Entry near{node.first, bound(node.first)}, far{node.first + 1, bound(node.first + 1)};
+      if (far.bound < near.bound) std::swap(near, far);
+      stack[size++] = far;
+      stack[size++] = near;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const auto& t = mesh_->triangles()[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])];
+      Triangle corners;
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = X_SW * mesh_->vertices()[static_cast<std::size_t>(t[k])];
+      const GjkResult result = distance_to_triangle(core, corners, best.distance);
+      if (result.distance < best.distance) best = {result.distance, X_WS * result.on_other};
+    }
+  }
+  return best;
+}
+
+Separation MeshClearance::distance(const ConvexSolid& solid, const Pose& X_WS) const {
+  Separation result = std::visit([&](const auto& core) { return search(core, X_WS); }, solid.core);
+  result.distance -= solid.radius;
+  return result;
+}
+
+}  // namespace understudy::sim

@@ -1,0 +1,72 @@
+// Where the plays of a machine are: at rest by the sign of what they carry, or on their way across.
+//
+// Every axis has a gap g in [-b/2, +b/2], positive where the link has run ahead of its drive. A contact only
+// pushes: f <= 0 at +b/2, f >= 0 at -b/2, f = 0 between, and friction holds the gap where it is while |f| is
+// below it. `load` is the f that keeps all gaps at rest (inverse dynamics). Gaps for which that f is not
+// allowed move by
+//   M g'' + c g' = f(g) - load,
+// M the mass matrix told in axis positions. The law is stepped implicitly, so a stop takes all speed away:
+// nothing bounces, and nothing here is stiff.
+//
+// A strut has two plays in series with a body between, the nut. What the nut weighs keeps its own play shut
+// until the rod pushes more than that: f(g) has a ledge of that height where one play is used up.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "kinematics/mechanism.h"
+
+namespace understudy::sim {
+
+constexpr int kMaxPlays = kinematics::kMaxAxes;
+using AxisVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxPlays, 1>;
+using AxisMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxPlays, kMaxPlays>;
+
+/// Of one axis; [m] or [rad], [N] or [N m].
+struct SeriesPlay {
+  double inner = 0;     ///< total travel between the drive and the body between (the nut)
+  double outer = 0;     ///< total travel between that body and what it carries
+  double friction = 0;  ///< below which the gap stays
+  double damping = 0;   ///< while it moves
+  double total() const { return inner + outer; }
+};
+
+/// What the drives have to push to keep every gap at rest.
+struct AxisLoad {
+  AxisVector drive;    ///< [N] or [N m], at the drive
+  AxisVector between;  ///< its part that moves the bodies between the plays; the rest reaches the outer play
+};
+
+/// The state of all plays of a machine. Nothing here allocates or throws.
+class BacklashDynamics {
+ public:
+  explicit BacklashDynamics(int axes);
+
+  void set_play(int axis, const SeriesPlay& play);
+  const SeriesPlay& play(int axis) const { return plays_[static_cast<std::size_t>(axis)]; }
+  /// All gaps in the middle and at rest.
+  void centre();
+
+  const AxisVector& gap() const { return gap_; }    ///< [m] or [rad]
+  const AxisVector& rate() const { return rate_; }  ///< [m/s] or [rad/s]
+  void place(int axis, double gap);                 ///< at rest, clamped to the play
+
+  /// The load leaves every gap where it is.
+  bool rests(const AxisLoad& load) const;
+  /// Where one gap comes to rest under a constant load: where it is, at a ledge, or at a stop.
+  double resting_gap(int axis, const AxisLoad& load) const;
+  /// Moves the gaps over `duration` under a constant load; returns the mean force of the drives.
+  AxisVector advance(const AxisMatrix& mass, const AxisLoad& load, double duration);
+
+ private:
+  struct Row;
+  Row row(int axis, double between, double gap) const;
+  void substep(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& drive_force);
+
+  int axes_;
+  std::array<SeriesPlay, kMaxPlays> plays_{};
+  AxisVector gap_, rate_;
+};
+
+}  // namespace understudy::sim

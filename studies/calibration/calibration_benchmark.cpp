@@ -1,0 +1,194 @@
+#include "studies/calibration/calibration_benchmark.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/quantile.h"
+#include "core/units.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+using Progress = std::function<void(double, const std::string&)>;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<Method> entrants_of(const CalibrationBenchmarkRequest& request, bool chain) {
+  std::vector<Method> entrants;
+  std::vector<std::string> names = request.estimators;
+  if (names.empty() && chain) names = {"chain", "robust"};
+  if (names.empty())
+    for (const auto& entry : calibration::estimators()) names.push_back(entry.name);
+  for (const std::string& name : names) entrants.push_back({name, false});
+  for (const std::string& command : request.plugins) entrants.push_back({command, true});
+  for (std::size_t i = 0; i < entrants.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (entrants[i].name == entrants[j].name)
+        throw InputError(fmt::format("'{}' is entered twice", entrants[i].name));
+  return entrants;
+}
+
+std::vector<Disturbance> disturbances_of(const CalibrationBenchmarkRequest& request, bool chain) {
+  std::vector<Disturbance> wanted = request.disturbances;
+  const auto hexapods_only = [](Disturbance d) {
+    return d == Disturbance::deviation || d == Disturbance::drift;
+  };
+  if (wanted.empty()) {
+    wanted = all_disturbances();
+    if (chain) std::erase_if(wanted, hexapods_only);
+  }
+  for (const Disturbance d : wanted)
+    if (chain && hexapods_only(d))
+      throw InputError(fmt::format("--disturbances {}: a chain has no screw struts", to_string(d)));
+  return wanted;
+}
+
+std::vector<Condition> conditions_of(const CalibrationBenchmarkRequest& request, bool chain) {
+  std::vector<Condition> conditions;
+  auto noise = request.noise;
+  if (request.from == MeasuredFrom::pixels) noise = {calibration::MeasurementNoise{}};
+  for (const Disturbance d : disturbances_of(request, chain))
+    for (const auto& level : noise)
+      for (const std::size_t poses : request.poses) conditions.push_back({level, poses, d});
+  return conditions;
+}
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return sum / static_cast<double>(values.size());
+}
+
+/// One entrant's column of a condition. `fallback`: its errors where failures count as no calibration.
+EntrantScore score_of(const std::vector<Trial>& trials, std::size_t entrant, double& fallback) {
+  EntrantScore score;
+  std::vector<double> errors, with_failures, times;
+  double excess = 0;
+  int bounded = 0;
+  for (const Trial& trial : trials) {
+    const Answer& answer = trial.answers[entrant];
+    ++score.runs;
+    times.push_back(answer.seconds);
+    const std::vector<double>& counted = answer.ok() ? answer.errors : trial.uncalibrated;
+    with_failures.insert(with_failures.end(), counted.begin(), counted.end());
+    if (!answer.ok()) {
+      ++score.failures;
+      ++score.reasons[answer.failure];
+      continue;
+    }
+    errors.insert(errors.end(), answer.errors.begin(), answer.errors.end());
+    if (trial.bound <= 0) continue;
+    excess += mean_square(answer.errors) / (trial.bound * trial.bound);
+    ++bounded;
+  }
+  score.median = quantile(errors, 0.5);
+  score.p95 = quantile(errors, 0.95);
+  score.rms = errors.empty() ? kNone : std::sqrt(mean_square(errors));
+  score.efficiency = bounded > 0 ? bounded / excess : kNone;
+  score.seconds = quantile(times, 0.5);
+  fallback = quantile(with_failures, 0.5);
+  return score;
+}
+
+ConditionScore score_condition(const Condition& condition, const std::vector<Trial>& trials,
+                               std::size_t entrants) {
+  ConditionScore result;
+  result.condition = condition;
+  std::vector<double> bounds, uncalibrated, fallback(entrants);
+  for (const Trial& trial : trials) {
+    if (trial.bound > 0) bounds.push_back(trial.bound);
+    uncalibrated.insert(uncalibrated.end(), trial.uncalibrated.begin(), trial.uncalibrated.end());
+    result.lost_poses += trial.lost_poses;
+    result.beyond = std::max(result.beyond, trial.beyond);
+  }
+  result.bound = bounds.empty() ? 0 : quantile(bounds, 0.5);
+  result.uncalibrated = quantile(uncalibrated, 0.5);
+  for (std::size_t e = 0; e < entrants; ++e) result.scores.push_back(score_of(trials, e, fallback[e]));
+  const auto best = std::min_element(fallback.begin(), fallback.end());
+  result.best = static_cast<std::size_t>(best - fallback.begin());
+  for (std::size_t e = 0; e < entrants; ++e) result.scores[e].relative = fallback[e] / *best;
+  for (const Trial& trial : trials)
+    result.machine_medians.push_back(quantile(trial.answers[result.best].errors, 0.5));
+  return result;
+}
+
+std::vector<Standing> rank(const CalibrationBenchmark& benchmark) {
+  std::vector<Standing> ranking;
+  for (std::size_t e = 0; e < benchmark.entrants.size(); ++e) {
+    Standing standing{e, 0, 0, 0};
+    for (const ConditionScore& c : benchmark.conditions) {
+      standing.score += std::log(c.scores[e].relative) / static_cast<double>(benchmark.conditions.size());
+      standing.runs += c.scores[e].runs;
+      standing.failures += c.scores[e].failures;
+    }
+    standing.score = std::exp(standing.score);
+    ranking.push_back(standing);
+  }
+  std::stable_sort(ranking.begin(), ranking.end(),
+                   [](const Standing& a, const Standing& b) { return a.score < b.score; });
+  return ranking;
+}
+
+}  // namespace
+
+CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, const Progress& progress) {
+  const machine::MachineDescription machine = machine::load_machine(request.machine);
+  const bool chain = machine.chain.has_value(), pixels = request.from == MeasuredFrom::pixels;
+  CalibrationBenchmark benchmark{request, machine.name, machine.sha256, entrants_of(request, chain), {}, {}};
+  const std::vector<Condition> conditions = conditions_of(request, chain);
+  TrialSetting setting;
+  setting.machine = &machine;
+  setting.entrants = benchmark.entrants;
+  setting.plugin_limits = request.plugin_limits;
+  setting.choice = request.choice;
+  setting.seed = request.seed;
+
+  std::optional<MeasuringStand> stand, misplaced;
+  const auto photograph = [&](double share) {
+    if (progress) progress(share, "boards before the cameras");
+  };
+  StandOptions options = request.stand;
+  options.seed = request.seed;
+  if (pixels) setting.stand = &stand.emplace(machine, options, request.threads, photograph);
+  if (pixels && std::any_of(conditions.begin(), conditions.end(),
+                            [](const Condition& c) { return c.disturbance == Disturbance::boards; })) {
+    options.boards = {0.2e-3, 2e-3, 0};
+    setting.misplaced_stand = &misplaced.emplace(machine, options, request.threads, photograph);
+  }
+
+  const auto room = chain ? make_chain_trials(setting) : make_hexapod_trials(setting);
+  const auto machines = static_cast<std::size_t>(request.trials);
+  std::vector<std::vector<Trial>> trials(conditions.size(), std::vector<Trial>(machines));
+  const std::size_t count = conditions.size() * machines;
+  const auto calibrator = [&] {
+    const auto view = pixels ? std::make_shared<renderer::CalibrationView>() : nullptr;
+    return IndexedWork([&, view](std::size_t n) {
+      const std::size_t c = n / machines, m = n % machines;
+      trials[c][m] = room->run(conditions[c], static_cast<int>(m), view.get());
+    });
+  };
+  in_parallel_with(count, request.threads, calibrator, [&](std::size_t, std::size_t done) {
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(count), "calibrating");
+  });
+  for (std::size_t c = 0; c < conditions.size(); ++c)
+    benchmark.conditions.push_back(score_condition(conditions[c], trials[c], benchmark.entrants.size()));
+  benchmark.ranking = rank(benchmark);
+  return benchmark;
+}
+
+std::string to_string(const Condition& condition, MeasuredFrom from) {
+  const std::string noise = from == MeasuredFrom::pixels
+                                ? "from pixels"
+                                : fmt::format("{:g} um and {:g} mrad", to_um(condition.noise.position),
+                                              1e3 * condition.noise.rotation);
+  return fmt::format("{} poses, {}, {}", condition.poses, noise, to_string(condition.disturbance));
+}
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,83 @@
+// The calibration benchmark: machines x noise levels x pose counts x disturbances x estimators, on problems
+// whose truth is known (docs/calibration-benchmark.md).
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "studies/calibration/calibration_trial.h"
+
+namespace understudy::rehearsal {
+
+enum class MeasuredFrom { poses, pixels };
+
+struct CalibrationBenchmarkRequest {
+  std::string machine = "hexapod";
+  int trials = 20;                      ///< built machines, of seeds seed, seed + 1 ...
+  std::vector<std::string> estimators;  ///< empty: all that the machine has
+  std::vector<std::string> plugins;     ///< commands
+  PluginLimits plugin_limits;
+  MeasuredFrom from = MeasuredFrom::poses;
+  StandOptions stand;  ///< from pixels; its seed is the benchmark's
+  std::vector<std::size_t> poses{8, 12, 24};
+  std::vector<calibration::MeasurementNoise> noise{calibration::kReferenceNoise};
+  std::vector<Disturbance> disturbances;  ///< empty: all that the machine can have
+  calibration::PoseChoice choice = calibration::PoseChoice::random;
+  std::uint64_t seed = 1;
+  int threads = 1;
+  std::string command;  ///< how it was called, for the record
+};
+
+/// An entrant under one condition, over all machines.
+struct EntrantScore {
+  int runs = 0, failures = 0;
+  std::map<std::string, int> reasons;   ///< of failures
+  double median = 0, p95 = 0, rms = 0;  ///< [m], of solved problems; NaN where there are none
+  double efficiency = 0;                ///< bound^2 / mean squared error; NaN where there is no bound
+  double relative = 0;  ///< median with failures counted as no calibration, over the best entrant's
+  double seconds = 0;   ///< median wall time of a run
+};
+
+struct ConditionScore {
+  Condition condition;
+  double bound = 0;         ///< [m], median over machines of the bound's RMS; 0: none
+  double uncalibrated = 0;  ///< [m], median
+  int lost_poses = 0;
+  double beyond = 0;                    ///< [m]
+  std::vector<EntrantScore> scores;     ///< in the order of entrants
+  std::vector<double> machine_medians;  ///< [m], of the best entrant, one a machine; NaN where it failed
+  std::size_t best = 0;
+};
+
+struct Standing {
+  std::size_t entrant = 0;
+  double score = 0;  ///< geometric mean of `relative` over conditions: 1 is the best everywhere
+  int runs = 0, failures = 0;
+};
+
+struct CalibrationBenchmark {
+  CalibrationBenchmarkRequest request;
+  std::string machine_name, machine_sha256;
+  std::vector<Method> entrants;
+  std::vector<ConditionScore> conditions;
+  std::vector<Standing> ranking;  ///< best first
+};
+
+/// Equal requests give equal results but for wall times, whatever `threads` is. Throws InputError for what
+/// the machine cannot have, Interrupted.
+CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request,
+                                   const std::function<void(double, const std::string&)>& progress = {});
+
+/// benchmark.json. Wall times are under "timing" alone.
+std::string benchmark_json(const CalibrationBenchmark& benchmark);
+/// report.html: one file, without scripts or network.
+std::string benchmark_page(const CalibrationBenchmark& benchmark);
+/// For a terminal.
+std::string benchmark_table(const CalibrationBenchmark& benchmark);
+
+/// "8 poses, 20 um and 0.2 mrad, outliers".
+std::string to_string(const Condition& condition, MeasuredFrom from);
+
+}  // namespace understudy::rehearsal

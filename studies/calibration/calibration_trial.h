@@ -1,0 +1,85 @@
+// One problem of the calibration benchmark: a built machine, measured under a condition, given to every
+// entrant; the truth is kept for the judge.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calibration/plugin/plugin.h"
+#include "machine/description.h"
+#include "studies/calibration/pixel_measurement.h"
+#include "studies/calibration/study.h"
+
+namespace understudy::rehearsal {
+
+/// What is wrong beside the measurement's stated noise. One at a time.
+enum class Disturbance {
+  none,
+  outliers,  ///< an eighth of the poses, at least one, off by 1 mm and 10 mrad more (1 sigma per axis)
+  boards,    ///< the measuring frame off by 50 um and 0.5 mrad, its scale by 0.05 % (1 sigma), the same in
+             ///< all poses; from pixels, boards misplaced by 0.2 mm and 2 mrad, each on its own
+  play,  ///< half to one and a half of the nominal play in every strut or axis, approached from both sides
+  deviation,  ///< dev is 1 mm smaller than the model's
+  drift       ///< screws warm by 20 K during the measurement; the machine is judged warm
+};
+const char* to_string(Disturbance d);
+const std::vector<Disturbance>& all_disturbances();
+/// Throws InputError that names the nearest known one.
+Disturbance disturbance_named(const std::string& word);
+
+struct Condition {
+  calibration::MeasurementNoise noise;  ///< from pixels not used
+  std::size_t poses = 12;
+  Disturbance disturbance = Disturbance::none;
+};
+
+/// Who solves: an estimator of ours, or a command.
+struct Method {
+  std::string name;
+  bool plugin = false;
+};
+
+struct Answer {
+  std::string failure;         ///< one line; empty: solved
+  std::vector<double> errors;  ///< [m], of the tip at the poses held out
+  double seconds = 0;          ///< wall time
+  bool ok() const { return failure.empty(); }
+};
+
+struct Trial {
+  double bound = 0;                  ///< [m], Cramer-Rao bound's RMS of the tip; 0: none
+  std::vector<double> uncalibrated;  ///< [m], as Answer::errors, of the nominal model
+  std::vector<Answer> answers;       ///< one an entrant
+  int lost_poses = 0;                ///< that could not be measured
+  double beyond = 0;                 ///< [m], a target's farthest distance outside of the layers (pixels)
+};
+
+struct TrialSetting {
+  const machine::MachineDescription* machine = nullptr;
+  std::vector<Method> entrants;
+  PluginLimits plugin_limits;
+  calibration::PoseChoice choice = calibration::PoseChoice::random;
+  std::uint64_t seed = 1;
+  std::size_t held_out = 60;
+  /// From pixels where set: the stand, and the one with misplaced boards where that is asked for.
+  const MeasuringStand* stand = nullptr;
+  const MeasuringStand* misplaced_stand = nullptr;
+};
+
+/// A trial is a function of (setting, condition, machine number) but for its wall times.
+class TrialRunner {
+ public:
+  virtual ~TrialRunner() = default;
+  /// `view` is for pixels only; it belongs to the calling thread.
+  virtual Trial run(const Condition& condition, int machine, renderer::CalibrationView* view) const = 0;
+};
+std::unique_ptr<TrialRunner> make_hexapod_trials(const TrialSetting& setting);
+/// Of an open chain: its estimators are "chain", the likelihood, and "robust". Throws InputError for others
+/// of ours and for pixels.
+std::unique_ptr<TrialRunner> make_chain_trials(const TrialSetting& setting);
+
+/// A problem whose answer leaves the machine worse than it was is not solved.
+void judge(const std::vector<double>& uncalibrated, Answer& answer);
+
+}  // namespace understudy::rehearsal

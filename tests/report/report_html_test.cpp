@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "report/report.h"
+#include "tests/report/sample_record.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+std::string data_block(const std::string& page) {
+  const std::string open = "<script type=\"application/json\" id=\"record\">";
+  const std::size_t begin = page.find(open) + open.size();
+  return page.substr(begin, page.find("</script>", begin) - begin);
+}
+
+Json data_of(const Record& record) { return Json::parse(data_block(report_html(record))); }
+
+TEST(ReportHtml, NeedsNothingFromOutside) {
+  const std::string page = report_html(sample_go());
+  for (const char* outside :
+       {"src=\"http", "<link", "@import", "url(http", "fetch(", "{{title}}", "{{script}}"})
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);  // and the browser holds it to that
+}
+
+TEST(ReportHtml, CarriesTheLicenceOfItsCharts) {
+  const std::string page = report_html(sample_go());
+  for (const char* notice :
+       {"Dan Vanderkam", "The above copyright notice and this permission notice shall be included"})
+    EXPECT_NE(page.find(notice), std::string::npos) << notice;
+}
+
+TEST(ReportHtml, SaysTheVerdictWithoutAScriptToo) {
+  const std::string page = report_html(sample_stopped_by_constraints());
+  const std::string noscript = page.substr(page.find("<noscript>"), 400);
+  EXPECT_THAT(noscript, HasSubstr("NO-GO: curved-line.gcode on hexapod"));
+  EXPECT_THAT(noscript, HasSubstr("Strut 3 is 241.7 mm, longer than 240.0 mm"));
+}
+
+TEST(ReportHtml, DataCannotBecomeMarkup) {
+  Record record = sample_no_go();
+  const std::string evil =
+      "</script><script>alert(1)</script><!-- <img src=x onerror=alert(2)> & \"{{style}}\"";
+  record.title = record.findings[0].message = record.picture_captions[0] = record.frames[3].look.why = evil;
+  const std::string page = report_html(record);
+  for (const char* markup : {"<script>alert", "<img src=x"})
+    EXPECT_EQ(page.find(markup), std::string::npos) << markup;
+  const Json data = data_of(record);
+  EXPECT_EQ(data["title"], evil);
+  EXPECT_EQ(data["summary"]["findings"][0]["message"], evil);
+  EXPECT_EQ(data["frames"][3]["why"], evil);
+}
+
+TEST(ReportHtml, HoldsTheSummaryAsItIs) {
+  for (const Record& record : {sample_go(), sample_no_go(), sample_stopped_by_constraints()})
+    EXPECT_EQ(data_of(record)["summary"], Json::parse(summary_json(record)));
+}
+
+TEST(ReportHtml, TraceHasOneValueAPointInEveryColumn) {
+  const Record record = sample_go();
+  const Json data = data_of(record);
+  for (const char* name : {"trace", "trace_without_gap_control"}) {
+    const Json& trace = data[name];
+    EXPECT_EQ(trace["points"], record.trace.size());
+    const std::size_t kept = trace["columns"]["time_s"].size();
+    EXPECT_GT(kept, 1000u);
+    EXPECT_LE(kept, 4100u);
+    EXPECT_EQ(trace["columns"].size(), 27u);
+    for (const auto& [column, values] : trace["columns"].items()) EXPECT_EQ(values.size(), kept) << column;
+  }
+  EXPECT_TRUE(data["trace"]["columns"]["gap_mm"][0].is_null());  // nothing below the tip
+  EXPECT_EQ(data["gap_band"], (Json{{"min_mm", 0.1}, {"max_mm", 0.2}, {"aim_mm", 0.13}}));
+  EXPECT_EQ(data["axes"][5], (Json{{"name", "l6_mm"}, {"min", 170.0}, {"max", 240.0}}));
+}
+
+TEST(ReportHtml, FramesCarryTheMeasuredAndTheTrueDot) {
+  const Record record = sample_go();
+  const Json frames = data_of(record)["frames"];
+  ASSERT_EQ(frames.size(), 10u);
+  const FrameRecord& first = record.frames[0];
+  EXPECT_NEAR(frames[0]["measured_px"][0], first.look.dot.position_px.x(), 5e-4);  // six digits of hundreds
+  EXPECT_NEAR(frames[0]["true_px"][1], first.true_dot_px->y(), 5e-4);
+  EXPECT_NEAR(frames[0]["true_gap_mm"], 2.0, 1e-9);
+  EXPECT_EQ(frames[0]["region"][2], 128);
+  EXPECT_EQ(frames[0]["image"].get<std::string>().rfind("data:image/png;base64,iVBORw0KGgo", 0), 0u);
+  EXPECT_FALSE(frames[3]["used"]);
+  EXPECT_EQ(frames[3]["dot"], "saturated");
+  EXPECT_FALSE(frames[3].contains("reading_mm"));
+}
+
+TEST(ReportHtml, AFrameWithoutADotOrAnImageStaysWithoutThem) {
+  Record record = sample_go();
+  record.frames[0].look.dot.status = vision::DotStatus::no_dot;
+  record.frames[0].look.reading = {};
+  record.frames[0].look.frame.image = {};
+  record.frames[0].true_dot_px.reset();
+  const Json frame = data_of(record)["frames"][0];
+  for (const char* key : {"measured_px", "true_px", "reading_mm", "sigma_um", "image", "region"})
+    EXPECT_FALSE(frame.contains(key)) << key;
+}
+
+TEST(ReportHtml, NothingSimulatedMeansNoTraceFramesOrPictures) {
+  const Json data = data_of(sample_stopped_by_constraints());
+  EXPECT_FALSE(data.contains("trace"));
+  EXPECT_FALSE(data.contains("trace_without_gap_control"));
+  EXPECT_TRUE(data["frames"].empty());
+  EXPECT_TRUE(data["pictures"].empty());
+}
+
+// JavaScript would round a number of 64 bits.
+TEST(ReportHtml, WritesTheSeedAsText) {
+  EXPECT_EQ(data_of(sample_go())["names"]["seed"], "12345678901234567890");
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

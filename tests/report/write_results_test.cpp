@@ -1,0 +1,79 @@
+#include <filesystem>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include "core/error.h"
+#include "core/output_file.h"
+#include "report/report.h"
+#include "tests/report/sample_record.h"
+
+namespace understudy::rehearsal {
+namespace fs = std::filesystem;
+namespace {
+
+class WriteResults : public testing::Test {
+ protected:
+  WriteResults() {
+    folder_ = fs::temp_directory_path() / ("write-results-" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  ~WriteResults() override { fs::remove_all(folder_); }
+
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (entry.is_regular_file())
+        found[entry.path().lexically_relative(folder_).string()] = read_file(entry.path());
+    return found;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(WriteResults, WritesEveryFileOfARun) {
+  write_results(sample_go(), folder_);
+  const auto written = files();
+  for (const char* name :
+       {"summary.json", "report.html", "trace.csv", "frames/approach.csv", "frames/approach-01.png",
+        "frames/approach-10.png", "pictures/picture-01.png", "pictures/picture-02.png"})
+    EXPECT_TRUE(written.contains(name)) << name;
+  EXPECT_EQ(written.size(), 3u + 11u + 2u);
+  EXPECT_EQ(written.at("summary.json"), summary_json(sample_go()));
+}
+
+TEST_F(WriteResults, WritesOnlyWhatThereIs) {
+  write_results(sample_stopped_by_constraints(), folder_);
+  const auto written = files();
+  EXPECT_EQ(written.size(), 2u);
+  EXPECT_TRUE(written.contains("summary.json") && written.contains("report.html"));
+}
+
+TEST_F(WriteResults, EqualRecordsGiveEqualBytes) {
+  write_results(sample_no_go(), folder_);
+  const auto first = files();
+  write_results(sample_no_go(), folder_);
+  EXPECT_EQ(files(), first);
+}
+
+TEST_F(WriteResults, FrameTableHasEmptyCellsWhereNothingWasMeasured) {
+  Record record = sample_go();
+  record.frames.resize(1);
+  record.frames[0].look.dot.status = vision::DotStatus::no_dot;
+  record.frames[0].look.reading = {};
+  record.frames[0].true_dot_px.reset();
+  record.frames[0].look.used = false;
+  write_results(record, folder_);
+  const std::string table = read_file(folder_ / "frames" / "approach.csv");
+  EXPECT_THAT(table, testing::HasSubstr("\napproach-01.png,0.600000,410,400,no dot,,,,,,,2.000000,0\n"));
+}
+
+TEST_F(WriteResults, AFolderThatIsNotThereIsBadInput) {
+  EXPECT_THROW(write_results(sample_go(), folder_ / "missing"), InputError);
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/units.h"
+#include "sim/deposition/true_gap.h"
+
+namespace understudy::sim {
+namespace {
+
+using Triangles = std::vector<std::array<int, 3>>;
+
+// Closed boxes, each from `lower` to `upper`, in one mesh.
+geometry::Mesh boxes(const std::vector<std::pair<Vec3, Vec3>>& corners) {
+  const Triangles one{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  std::vector<Vec3> vertices;
+  Triangles triangles;
+  for (const auto& [lower, upper] : corners) {
+    const int first = static_cast<int>(vertices.size());
+    for (int i = 0; i < 8; ++i) {
+      vertices.emplace_back(i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(),
+                            i & 4 ? upper.z() : lower.z());
+    }
+    for (const auto& t : one) triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return geometry::Mesh(std::move(vertices), std::move(triangles));
+}
+
+Pose over(double x, double height, double tilt = 0) {
+  return make_pose(exp_rotation(Vec3(0, tilt, 0)), Vec3(x, 0.3e-3, height));
+}
+
+// Rounding of coordinates below 0.1 m, twice.
+constexpr double kRounding = 1e-15;
+
+TEST(TrueGap, IsAlongTheToolAxis) {
+  const auto plate = boxes({{Vec3(-0.05, -0.05, 0), Vec3(0.05, 0.05, 0.02)}});
+  for (const double tilt_deg : {0.0, 10.0, 20.0, 30.0}) {
+    const double tilt = from_deg(tilt_deg);
+    for (const double height : {0.15e-3, 2e-3, 1e-6, -0.05e-3, -1e-3}) {
+      EXPECT_NEAR(true_gap(&plate, over(1e-3, 0.02 + height, tilt)), height / std::cos(tilt), kRounding);
+      EXPECT_NEAR(true_gap(nullptr, over(1e-3, height, tilt)), height / std::cos(tilt), kRounding)
+          << "the table";
+    }
+  }
+}
+
+TEST(TrueGap, TouchingIsZero) {
+  const auto plate = boxes({{Vec3(-0.05, -0.05, 0), Vec3(0.05, 0.05, 0.02)}});
+  EXPECT_NEAR(true_gap(&plate, over(1e-3, 0.02)), 0, kRounding);
+}
+
+TEST(TrueGap, DeepInsideIsTheWayOut) {
+  const auto block = boxes({{Vec3(-0.05, -0.05, 0), Vec3(0.05, 0.05, 0.04)}});
+  EXPECT_NEAR(true_gap(&block, over(1e-3, 0.01)), -0.03, kRounding);
+}
+
+TEST(TrueGap, ARoofAboveTheTipDoesNotCount) {
+  // A shelf 1 mm above the floor's tip, and one in which the ray starts.
+  const auto shelf = boxes({{Vec3(-0.05, -0.05, 0), Vec3(0.05, 0.05, 0.01)},
+                            {Vec3(-0.05, -0.05, 0.012), Vec3(0.05, 0.05, 0.013)}});
+  EXPECT_NEAR(true_gap(&shelf, over(1e-3, 0.0101)), 0.1e-3, kRounding);
+  EXPECT_NEAR(true_gap(&shelf, over(1e-3, 0.0099)), -0.1e-3, kRounding);
+  const auto roof = boxes(
+      {{Vec3(-0.05, -0.05, 0), Vec3(0.05, 0.05, 0.01)}, {Vec3(-0.05, -0.05, 0.012), Vec3(0.05, 0.05, 0.03)}});
+  EXPECT_NEAR(true_gap(&roof, over(1e-3, 0.0101)), 0.1e-3, kRounding);
+  EXPECT_NEAR(true_gap(&roof, over(1e-3, 0.0125)), -17.5e-3, kRounding) << "inside the roof";
+}
+
+TEST(TrueGap, UnderARoofWithNothingBelowItIsInfinite) {
+  const auto roof = boxes({{Vec3(-0.05, -0.05, 0.081), Vec3(0.05, 0.05, 0.082)}});
+  EXPECT_TRUE(std::isinf(true_gap(&roof, over(1e-3, 0.08))));
+}
+
+TEST(TrueGap, TheTableIsMetWhereThePartIsNot) {
+  const auto plate = boxes({{Vec3(-0.01, -0.01, 0.001), Vec3(0.01, 0.01, 0.02)}});
+  EXPECT_NEAR(true_gap(&plate, over(0.02, 0.003)), 0.003, kRounding);
+  EXPECT_NEAR(true_gap(&plate, over(0.0, 0.003)), -0.017, kRounding);
+}
+
+TEST(TrueGap, NothingWithinFiftyMillimetresIsInfinite) {
+  EXPECT_TRUE(std::isinf(true_gap(nullptr, over(0, 0.0501))));
+  EXPECT_NEAR(true_gap(nullptr, over(0, 0.0499)), 0.0499, kRounding);
+  EXPECT_TRUE(std::isinf(true_gap(nullptr, over(0, 0.01, std::numbers::pi)))) << "the tool looks up";
+  const auto plate = boxes({{Vec3(-0.05, -0.05, 0.1), Vec3(0.05, 0.05, 0.12)}});
+  EXPECT_NEAR(true_gap(&plate, over(0, 0.1699)), 0.0499, kRounding);
+  EXPECT_TRUE(std::isinf(true_gap(&plate, over(0, 0.1701))));
+}
+
+}  // namespace
+}  // namespace understudy::sim

@@ -1,0 +1,196 @@
+// What slicers and other machines' post-processors write: tool numbers, G28 with axes, filament on G0, words
+// without effect, extruders on A, axes that count the other way.
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "toolpath/gcode/gcode.h"
+
+namespace understudy::toolpath {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using Coordinates = RotaryWords::Coordinates;
+
+constexpr double kRounding = 1e-15;  // [m] or [rad]: decimal text to doubles, lengths of 0.1 m
+
+Mat3 turned(double b, double c) {
+  return (Eigen::AngleAxisd(c, Vec3::UnitZ()) * Eigen::AngleAxisd(b, Vec3::UnitY())).toRotationMatrix();
+}
+
+/// Home at 50 mm; B runs 30 mm below the origin.
+GcodeOptions five_axis() {
+  const Vec3 pivot(0, 0, -0.030);
+  GcodeOptions options;
+  options.X_WT_home = make_pose(Mat3(Mat3::Identity()), Vec3(0, 0, 0.05));
+  RotaryWords rotary;
+  rotary.tip_pose = [](const Vec3& p, double b, double c) -> Pose { return make_pose(turned(b, c), p); };
+  rotary.slides_pose = [pivot](const Vec3& s, double b, double c) -> Pose {
+    return make_pose(turned(b, c), Vec3(pivot + turned(b, c) * (s - pivot)));
+  };
+  rotary.slides = [pivot](const Vec3& p, double b, double c) -> Vec3 {
+    return pivot + turned(b, c).transpose() * (p - pivot);
+  };
+  options.rotary = rotary;
+  return options;
+}
+
+std::vector<Step> parse(const std::string& text, const GcodeOptions& options = {}) {
+  return parse_gcode(text, "p.gcode", options).steps;
+}
+Vec3 tip_mm(const Step& step) { return step.X_WT.translation() * 1e3; }
+
+std::string rejection(const std::string& text, const GcodeOptions& options = {}) {
+  try {
+    parse(text, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(GcodeDialect, TheOnlyExtruderMayBeCalledT0OrT1ButNotBoth) {
+  const auto steps = parse("M104 S205 T1\nT1\nG0 X1\nM109 S205 T1\nM221 S100 T1\n");
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_NEAR(steps[0].temperature, 478.15, 1e-12);
+  EXPECT_TRUE(steps[2].wait);
+  EXPECT_THAT(rejection("T0\nG0 X1\nM104 S200 T1\n"), StartsWith("p.gcode:3:11: 'T1' after T0"));
+  EXPECT_THAT(rejection("M104 S200 T2"), HasSubstr("'T2': the machine has one extruder"));
+  EXPECT_THAT(rejection("G0 X1 T0"), HasSubstr("'T0' belongs to no command"));
+  EXPECT_THAT(rejection("T"), HasSubstr("'T': T needs a finite decimal number"));
+}
+
+TEST(GcodeDialect, G28WithEveryAxisIsHomeWhateverItsValuesAndFeed) {
+  const auto steps = parse("G0 X5 B20 C400\nG28 X0 Y0 Z230 B0 C0 F5250\nG0 X1\n", five_axis());
+  EXPECT_EQ(steps[1].kind, StepKind::home);
+  EXPECT_LT((tip_mm(steps[1]) - Vec3(0, 0, 50)).norm(), 1e-12);
+  EXPECT_EQ(steps[1].rotary->c, 0);
+  EXPECT_LT((tip_mm(steps[2]) - Vec3(1, 0, 50)).norm(), 1e-12);
+  EXPECT_EQ(parse("G0 X5\nG28 X Y Z\n")[1].kind, StepKind::home);
+  // Its feed is no feed of G1.
+  EXPECT_THAT(rejection("G28 X0 F100\nG1 X1"), HasSubstr("G1 without a feed"));
+}
+
+TEST(GcodeDialect, G28WithSomeAxesTakesTheseHomeAndEndsTheirShifts) {
+  const auto steps = parse("G0 X5 Y6 Z7\nG92 X0 Y0\nG28 X\nG0 X1 Y1\n");
+  EXPECT_EQ(steps[1].kind, StepKind::travel);
+  EXPECT_LT((tip_mm(steps[1]) - Vec3(0, 6, 7)).norm(), 1e-12);
+  EXPECT_LT((tip_mm(steps[2]) - Vec3(1, 7, 7)).norm(), 1e-12);
+  // On a machine with turning axes it is slides that go home: at B 90 the tool lies along x, and the slide X
+  // is the tip's distance below the pivot's height, -(z + 30 mm).
+  const auto lying = parse("G0 X40 Z-10 B90\nG28 X\nG28 B\n", five_axis());
+  EXPECT_LT((tip_mm(lying[1]) - Vec3(40, 0, -30)).norm(), 1e-12);
+  EXPECT_LT((tip_mm(lying[2]) - Vec3(0, 0, 10)).norm(), 1e-12);
+  EXPECT_EQ(lying[2].rotary->b, 0);
+  EXPECT_THAT(rejection("G0 I0 J0 K1\nG28 X", five_axis()), HasSubstr("after an orientation by I J K"));
+  EXPECT_THAT(rejection("G0 X1\nG28 B"), HasSubstr("no rotary axes"));
+  EXPECT_THAT(rejection("G0 X1\nG28 E"), HasSubstr("needs a finite decimal number"));
+}
+
+TEST(GcodeDialect, FilamentOnG0RunsAtTheFeed) {
+  const auto steps = parse("G92 E0\nG0 E-6.000 F5250\nG0 X10 E-5 F600\nG0 X0\n");
+  EXPECT_EQ(steps[0].kind, StepKind::move);
+  EXPECT_NEAR(steps[0].filament, -6e-3, kRounding);
+  EXPECT_NEAR(steps[0].duration, 6 / 87.5, 1e-12);
+  EXPECT_EQ(steps[1].kind, StepKind::print);
+  EXPECT_NEAR(steps[1].feed, 10e-3, kRounding);
+  EXPECT_EQ(steps[2].kind, StepKind::travel);
+}
+
+TEST(GcodeDialect, ExtruderOnATakesThePlaceOfE) {
+  GcodeOptions options;
+  options.extruder_letter = 'A';
+  const auto steps = parse("M83\nG92 A0\nG1 X10 A0.5 F600\n", options);
+  EXPECT_EQ(steps[0].kind, StepKind::print);
+  EXPECT_NEAR(steps[0].filament, 0.5e-3, kRounding);
+  EXPECT_THAT(rejection("G1 X10 E1 F600", options),
+              StartsWith("p.gcode:1:8: 'E1': this program's extruder is on A"));
+  options.extruder_letter = 'U';
+  EXPECT_THAT(rejection("G0 X1", options), HasSubstr("extruder on 'U': one of E, A"));
+}
+
+TEST(GcodeDialect, FlowScalesFilamentFromThereOn) {
+  const auto steps = parse("M83\nG1 X1 E1 F60\nM221 S95\nX2 E1\nM221 S100\nX3 E1\n");
+  EXPECT_NEAR(steps[0].filament, 1e-3, kRounding);
+  EXPECT_NEAR(steps[1].filament, 0.95e-3, kRounding);
+  EXPECT_NEAR(steps[2].filament, 1e-3, kRounding);
+  EXPECT_THAT(rejection("M221"), HasSubstr("needs S, the flow in percent"));
+  EXPECT_THAT(rejection("M221 S0"), HasSubstr("outside 1 to 1000 %"));
+}
+
+TEST(GcodeDialect, WhatSlicersWriteForAFirmwareIsReadAndWithoutEffect) {
+  const std::string preamble =
+      "M73 P0 R12\nM201 X9000 Y9000 Z500 E10000\nM203 X500 Y500 Z12 E120\nM204 P2000 R1500 T2000\n"
+      "M205 X10.00 Y10.00 Z0.20 E2.50\nM862.3 P \"MK3S\"\nM862.1 P0.4\nM900 K0.05\nM140 S60\nM190 S60\n"
+      "N7 M84 X Y E\nM17\nM18\n";
+  const auto steps = parse(preamble + "G0 X1\n");
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_EQ(steps[0].line, 14);
+  EXPECT_THAT(rejection("M204 X5\n"), StartsWith("p.gcode:1:6: 'X5' is no parameter of 'M204'"));
+  EXPECT_THAT(rejection("M73 P1 G1 X1\n"), HasSubstr("'G1' is no parameter of 'M73'"));
+  EXPECT_THAT(rejection("M862.3 P \"MK3S\n"), HasSubstr("not closed"));
+  EXPECT_THAT(rejection("G1 X \"1\"\n"), HasSubstr("needs a finite decimal number"));
+  EXPECT_THAT(rejection("M206 X1\n"), HasSubstr("unknown word 'M206'"));
+  EXPECT_THAT(rejection("G0 X1\nM30\nM84\n"), StartsWith("p.gcode:3:1: a word after M30"));
+}
+
+TEST(GcodeDialect, TheProgramsOriginIsShiftedAndG92SetsItsReadings) {
+  GcodeOptions options;
+  options.X_WT_home = make_pose(Quat(1, 0, 0, 0), Vec3(0, 0, 0.05));
+  options.offset_W = Vec3(1e-3, 0, -40e-3);
+  const auto steps = parse("G0 X10\nG0 Z42.75\nG92 Z0\nG0 Z1\nG28\nG0 Z41\nG91 G0 Z1\n", options);
+  EXPECT_LT((tip_mm(steps[0]) - Vec3(11, 0, 50)).norm(), 1e-12);  // Z is home's, in W
+  EXPECT_LT((tip_mm(steps[1]) - Vec3(11, 0, 2.75)).norm(), 1e-12);
+  EXPECT_LT((tip_mm(steps[2]) - Vec3(11, 0, 3.75)).norm(), 1e-12);
+  EXPECT_LT((tip_mm(steps[4]) - Vec3(0, 0, 1)).norm(), 1e-12);
+  EXPECT_LT((tip_mm(steps[5]) - Vec3(0, 0, 2)).norm(), 1e-12);
+}
+
+TEST(GcodeDialect, AxesThatCountTheOtherWayRoundAreTurnedRound) {
+  GcodeOptions options = five_axis();
+  options.b_sign = options.c_sign = -1;
+  const auto steps = parse("G0 B10 C30\nG91 G0 C5\nG92 C0\nG90 G0 C1\n", options);
+  const double b = from_deg(-10);
+  EXPECT_LT((steps[0].X_WT.linear() - turned(b, from_deg(-30))).norm(), kRounding);
+  EXPECT_NEAR(steps[1].rotary->c, from_deg(-35), kRounding);
+  EXPECT_NEAR(steps[2].rotary->c, from_deg(-36), kRounding);
+  options.c_sign = 0;
+  EXPECT_THAT(rejection("G0 X1", options), HasSubstr("sign of a rotary axis is 0"));
+}
+
+TEST(GcodeDialect, SlidesOfAxesThatCrossAtTheOriginAreTurnedAboutIt) {
+  GcodeOptions options = five_axis();
+  options.rotary->coordinates = Coordinates::crossing;
+  options.offset_W = Vec3(0, 0, -40e-3);
+  const auto steps = parse("G0 X10 Y-5 Z60 B30 C100\nG0 X11\nG28\nG0 X1\n", options);
+  // Reference section F: p = Rz(C) Ry(B) (X, Y, Z), 40 mm lower.
+  const Vec3 expected = turned(from_deg(30), from_deg(100)) * Vec3(11, -5, 60) - Vec3(0, 0, 40);
+  EXPECT_LT((tip_mm(steps[1]) - expected).norm(), 1e-12);
+  EXPECT_LT((tip_mm(steps[3]) - Vec3(1, 0, 50)).norm(), 1e-12);
+  EXPECT_THAT(rejection("G0 X1\nG49", options), HasSubstr("axes that cross at its origin"));
+}
+
+TEST(GcodeDialect, StepsKnowTheTurnsThatTheProgramSaid) {
+  const auto steps =
+      parse("G0 X1\nG0 B10 C720\nG0 X2\nG4 S1\nG49\nG0 X3\nG43.4\nG0 I0 J0 K1\nG28\n", five_axis());
+  ASSERT_EQ(steps.size(), 7u);
+  EXPECT_EQ(steps[0].rotary->b, 0);  // home's
+  for (const std::size_t k : {1u, 2u, 4u}) {
+    ASSERT_TRUE(steps[k].rotary) << k;
+    EXPECT_NEAR(steps[k].rotary->b, from_deg(10), kRounding) << k;
+    EXPECT_NEAR(steps[k].rotary->c, 4 * std::numbers::pi, 1e-14) << k;
+  }
+  EXPECT_FALSE(steps[3].rotary);  // does not move
+  EXPECT_FALSE(steps[5].rotary);  // a tool axis leaves them open
+  ASSERT_TRUE(steps[6].rotary);
+  EXPECT_EQ(steps[6].rotary->c, 0);
+  EXPECT_FALSE(parse("G0 X1")[0].rotary);
+}
+
+}  // namespace
+}  // namespace understudy::toolpath

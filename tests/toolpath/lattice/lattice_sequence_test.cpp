@@ -1,0 +1,335 @@
+#include "toolpath/lattice/lattice_planner.h"
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "core/units.h"
+
+namespace understudy::toolpath {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kDiameter = 0.48e-3;
+
+// The arm's tool: nozzle, heater block, extruder.
+std::vector<geometry::Shape> tool_bodies() {
+  const auto above = [](double z) { return make_pose(Quat::Identity(), Vec3(0, 0, z)); };
+  return {{"nozzle", geometry::Frustum{0.5e-3, 3.5e-3, 12e-3}, Pose::Identity()},
+          {"heater block", geometry::Box{Vec3(16e-3, 16e-3, 10e-3)}, above(17e-3)},
+          {"extruder", geometry::Box{Vec3(44e-3, 44e-3, 70e-3)}, above(59e-3)}};
+}
+
+LatticePlan plan() {
+  LatticePlan p;
+  p.limits.tool = tool_bodies();
+  p.limits.strut_diameter = kDiameter;
+  p.limits.ground_gap = 0.13e-3;
+  p.limits.margin = 0.1e-3;
+  p.limits.joint = 0.5e-3 + kDiameter + 0.1e-3;
+  p.limits.lift = 2e-3;
+  p.limits.tilt_max = 60 * kDegree;
+  p.feed = 1e-3;
+  p.approach_feed = 5e-3;
+  p.approach = 2e-3;
+  p.dwell = 3;
+  p.filament_diameter = 1.75e-3;
+  p.temperature = 483.15;
+  p.fan = 1;
+  return p;
+}
+
+Lattice standing(Lattice lattice, double scale = 1) {
+  place_lattice(lattice, scale, Vec3(0, 0, 0.5 * kDiameter));
+  return lattice;
+}
+Lattice cubes(double x, double y, double z, double strut) {
+  return standing(fill_box(Vec3(x, y, z), strut).lattice);
+}
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// Independent of the planner: a point inside the tool's bodies, grown by `margin`, as the machine file tells
+// them, the boxes turned any way about the axis.
+double depth_in_tool(const Vec3& p_T, double margin) {
+  const double rho = p_T.head<2>().norm(), z = p_T.z();
+  double deepest = -1;
+  if (z >= -margin && z <= 12e-3 + margin)
+    deepest = std::max(deepest, 0.5e-3 + 3e-3 * std::clamp(z / 12e-3, 0.0, 1.0) + margin - rho);
+  if (z >= 12e-3 - margin && z <= 22e-3 + margin) deepest = std::max(deepest, 8e-3 + margin - rho);
+  if (z >= 24e-3 - margin && z <= 94e-3 + margin) deepest = std::max(deepest, 22e-3 + margin - rho);
+  return deepest;
+}
+
+// Walks along the whole program and looks whether any point of a strut that is already printed is inside the
+// tool; points that belong to a strut of the node the tip is at are the contact by design.
+void expect_no_interference(const Lattice& lattice, const LatticeProgram& result) {
+  std::set<int> built;
+  std::size_t next = 0;
+  const auto& prints = result.sequence.prints;
+  const auto& steps = result.program.steps;
+  for (std::size_t i = 3; i < steps.size(); ++i) {
+    if (!moves(steps[i])) continue;
+    const bool prints_now = steps[i].kind == StepKind::print;
+    const int printing = prints_now ? prints[next].strut : -1;
+    for (int k = 0; k <= 12; ++k) {
+      const Pose X_TW = interpolate(steps[i - 1].X_WT, steps[i].X_WT, k / 12.0).inverse();
+      for (const int s : built) {
+        const Vec3 a = lattice.nodes[at(lattice.struts[at(s)][0])].position;
+        const Vec3 b = lattice.nodes[at(lattice.struts[at(s)][1])].position;
+        for (int j = 0; j <= 24; ++j) {
+          const Vec3 p_T = X_TW * Vec3(a + (b - a) * j / 24.0);
+          if (p_T.norm() < 1.1e-3) continue;
+          ASSERT_LT(depth_in_tool(p_T, 0.5 * kDiameter), 1e-5)
+              << "step " << i << " strut " << s << " while printing " << printing;
+        }
+      }
+    }
+    if (prints_now) {
+      built.insert(printing);
+      ++next;
+    }
+  }
+  EXPECT_EQ(next, prints.size());
+}
+
+void expect_sequence(const Lattice& lattice, const StrutSequence& sequence) {
+  std::vector<bool> there(lattice.nodes.size());
+  for (std::size_t n = 0; n < there.size(); ++n) there[n] = lattice.nodes[n].grounded;
+  std::set<int> printed;
+  for (const StrutPrint& print : sequence.prints) {
+    EXPECT_TRUE(printed.insert(print.strut).second) << "strut " << print.strut << " twice";
+    EXPECT_EQ(std::minmax(print.from, print.to),
+              std::minmax(lattice.struts[at(print.strut)][0], lattice.struts[at(print.strut)][1]));
+    EXPECT_TRUE(there[at(print.from)]) << "strut " << print.strut << " begins at node " << print.from;
+    there[at(print.to)] = true;
+    EXPECT_NEAR(print.axis.norm(), 1, 1e-12);
+  }
+  EXPECT_EQ(printed.size(), lattice.struts.size());
+}
+
+void expect_volumes(const Lattice& lattice, const LatticeProgram& result) {
+  std::size_t next = 0;
+  for (const Step& s : result.program.steps) {
+    if (s.kind != StepKind::print) {
+      EXPECT_EQ(s.filament, 0);
+      continue;
+    }
+    const double length = lattice.length(at(result.sequence.prints[next++].strut));
+    EXPECT_NEAR(s.filament, length * std::pow(kDiameter / 1.75e-3, 2), 1e-15);  // pi d^2 / 4 of both
+    EXPECT_EQ(s.feed, 1e-3);                                                    // Ishak 2018
+  }
+  EXPECT_EQ(next, lattice.struts.size());
+}
+
+TEST(LatticeSequence, CubesFromFiveToElevenMillimetresArePrintedWithTheToolUpright) {
+  for (const double strut : {5e-3, 8e-3, 11e-3}) {
+    const Lattice lattice = cubes(3 * strut, 2 * strut, 2 * strut, strut);
+    const LatticeProgram result = plan_lattice(lattice, plan());
+    expect_sequence(lattice, result.sequence);
+    expect_volumes(lattice, result);
+    expect_no_interference(lattice, result);
+    for (const StrutPrint& print : result.sequence.prints) EXPECT_NEAR(print.axis.z(), 1, 1e-12);
+  }
+}
+
+TEST(LatticeSequence, PostsHigherThanTheNozzleIsLongAreTooCloseForTheHeater) {
+  // Ishak 2018, figure 9: the clearance between nozzle and printed strut bounds the strut's length. Here the
+  // nozzle is 12 mm long, and four posts of 14 mm stand within the reach of a heater of 11.3 mm.
+  Lattice posts;
+  for (const auto& [x, y] :
+       {std::pair(0.0, 0.0), std::pair(6e-3, 0.0), std::pair(0.0, 6e-3), std::pair(6e-3, 6e-3)}) {
+    posts.nodes.push_back({Vec3(x, y, 0.5 * kDiameter), true});
+    posts.nodes.push_back({Vec3(x, y, 0.5 * kDiameter + 14e-3), false});
+    const int n = static_cast<int>(posts.nodes.size());
+    posts.struts.push_back({n - 2, n - 1});
+  }
+  LatticePlan p = plan();
+  p.limits.tilt_max = 0;
+  try {
+    plan_lattice(posts, p);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("no tool axis within 0 deg of vertical is clear; at best the tool comes to"));
+    EXPECT_THAT(error.what(), HasSubstr("the limit is 0.10 mm"));
+  }
+  p.limits.accept_interference = true;
+  const LatticeProgram forced = plan_lattice(posts, p);
+  EXPECT_FALSE(forced.sequence.warnings.empty());
+  expect_sequence(posts, forced.sequence);
+}
+
+TEST(LatticeSequence, TheToolLeansAwayWhereUprightWouldRunIntoAStrut) {
+  // Half-way up a post a branch rises by 45 degrees: whichever is printed last, the other stands in the cone
+  // of an upright nozzle.
+  Lattice fork;
+  const double z = 0.5 * kDiameter;
+  fork.nodes = {{Vec3(0, 0, z), true},
+                {Vec3(0, 0, z + 4e-3), false},
+                {Vec3(0, 0, z + 12e-3), false},
+                {Vec3(8e-3, 0, z + 12e-3), false}};
+  fork.struts = {{0, 1}, {1, 2}, {1, 3}};
+  const LatticeProgram result = plan_lattice(fork, plan());
+  expect_sequence(fork, result.sequence);
+  expect_no_interference(fork, result);
+  EXPECT_LT(result.sequence.prints.back().axis.z(), 1 - 1e-6);
+}
+
+TEST(LatticeSequence, WhatTheMachineCannotReachIsRefusedByName) {
+  const Lattice lattice = cubes(10e-3, 10e-3, 5e-3, 5e-3);
+  LatticePlan p = plan();
+  p.limits.reachable = [](const Pose&) { return false; };
+  try {
+    plan_lattice(lattice, p);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is above the table and in reach"));
+  }
+}
+
+TEST(LatticeSequence, DwellsAtEveryNodeAndLeavesOnlyWhereItMust) {
+  const Lattice lattice = cubes(15e-3, 5e-3, 5e-3, 5e-3);
+  const LatticeProgram result = plan_lattice(lattice, plan());
+  int dwells = 0, approaches = 0;
+  for (const Step& s : result.program.steps) {
+    dwells += s.kind == StepKind::dwell && s.duration == 3;
+    approaches += s.kind == StepKind::move;
+  }
+  EXPECT_EQ(dwells, static_cast<int>(lattice.struts.size()));
+  EXPECT_LT(approaches, static_cast<int>(lattice.struts.size()));
+}
+
+TEST(LatticeSequence, RandomFramesKeepEveryRule) {
+  Random random(20180801, "frames");
+  int printed = 0;
+  for (int trial = 0; trial < 8; ++trial) {
+    // Part of a cubic lattice with its nodes moved about and some struts taken out.
+    Lattice lattice = cubes(16e-3, 16e-3, 16e-3, 8e-3);
+    for (LatticeNode& n : lattice.nodes) {
+      const double z = n.position.z();
+      n.position += 1e-3 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      if (n.grounded) n.position.z() = z;
+    }
+    for (int k = 0; k < 14; ++k) {
+      Lattice less = lattice;
+      const auto which =
+          static_cast<std::ptrdiff_t>(random.uniform(0, 1) * static_cast<double>(less.struts.size() - 1));
+      less.struts.erase(less.struts.begin() + which);
+      if (hanging_nodes(less).empty()) lattice = less;
+    }
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    try {
+      const LatticeProgram result = plan_lattice(lattice, plan());
+      expect_sequence(lattice, result.sequence);
+      expect_volumes(lattice, result);
+      expect_no_interference(lattice, result);
+      ++printed;
+    } catch (const InputError&) {
+      // Some frames have a strut that no axis is clear for; that is an answer too.
+    }
+  }
+  EXPECT_GE(printed, 5);
+}
+
+TEST(LatticeSequence, FramesOfOthersArePlanned) {
+  const std::filesystem::path folder = UNDERSTUDY_SOURCE_DIR "/../shared/data/lattices";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const Lattice four = standing(read_lattice(folder / "four-frame.json"));
+  const LatticeProgram result = plan_lattice(four, plan());
+  expect_sequence(four, result.sequence);
+  expect_no_interference(four, result);
+}
+
+TEST(LatticeSequence, EveryValueIsChecked) {
+  const Lattice lattice = cubes(5e-3, 5e-3, 5e-3, 5e-3);
+  const auto rejection = [](const Lattice& l, const LatticePlan& p) -> std::string {
+    try {
+      plan_lattice(l, p);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  ASSERT_EQ(rejection(lattice, plan()), "accepted");
+  for (double LatticePlan::*field : {&LatticePlan::feed, &LatticePlan::approach_feed, &LatticePlan::approach,
+                                     &LatticePlan::filament_diameter})
+    for (const double bad : {0.0, -1.0, std::nan("")}) {
+      LatticePlan p = plan();
+      p.*field = bad;
+      EXPECT_THAT(rejection(lattice, p), HasSubstr("must be above 0"));
+    }
+  for (double SequenceLimits::*field :
+       {&SequenceLimits::strut_diameter, &SequenceLimits::ground_gap, &SequenceLimits::margin,
+        &SequenceLimits::joint, &SequenceLimits::lift})
+    for (const double bad : {0.0, -1.0, std::nan("")}) {
+      LatticePlan p = plan();
+      p.limits.*field = bad;
+      EXPECT_THAT(rejection(lattice, p), HasSubstr("must be above 0"));
+    }
+  LatticePlan p = plan();
+  p.limits.tilt_max = 91 * kDegree;
+  EXPECT_THAT(rejection(lattice, p), HasSubstr("largest tilt is 91 deg"));
+  p = plan();
+  p.dwell = -1;
+  EXPECT_THAT(rejection(lattice, p), HasSubstr("dwell is -1 s"));
+  EXPECT_THAT(rejection(Lattice{}, plan()), HasSubstr("the lattice has 0 struts"));
+  Lattice sunk = lattice;
+  sunk.nodes[0].position.z() = 0;
+  EXPECT_THAT(rejection(sunk, plan()), HasSubstr("lower than half a strut above the table, 0.240 mm"));
+  Lattice hanging = lattice;
+  for (LatticeNode& n : hanging.nodes) n.grounded = false;
+  EXPECT_THAT(rejection(hanging, plan()), HasSubstr("not connected to a grounded node"));
+}
+
+TEST(ToolEnvelope, DistancesAreThoseOfTheConeAndTheHeater) {
+  const ToolEnvelope tool(tool_bodies());
+  EXPECT_NEAR(tool.distance(Vec3(0, 0, -2e-3)), 2e-3, 1e-15);       // below the flat
+  EXPECT_NEAR(tool.distance(Vec3(3.5e-3, 0, -4e-3)), 5e-3, 1e-15);  // 3-4-5 from the flat's rim
+  const double slope = std::atan2(3.0, 12.0);                       // of the cone's side
+  EXPECT_NEAR(tool.distance(Vec3(3e-3, 0, 4e-3)), 1.5e-3 * std::cos(slope), 1e-12);  // cone 1.5 mm there
+  EXPECT_NEAR(tool.distance(Vec3(0, 20e-3, 13e-3)), 20e-3 - 8e-3 * std::numbers::sqrt2,
+              1e-12);  // circumscribed
+  EXPECT_LT(tool.distance(Vec3(0, 0, 5e-3)), 0);
+  EXPECT_NEAR(tool.radius(), 22e-3 * std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(tool.lowest(Vec3::UnitZ()), 0, 1e-15);
+  // Leaning by 60 degrees the extruder's lower rim is lowest: 24 cos 60 - 31.1 sin 60.
+  EXPECT_NEAR(tool.lowest(Vec3(std::sin(from_deg(60)), 0, 0.5)), 12e-3 - 22e-3 * std::sqrt(6.0) / 2, 1e-12);
+}
+
+TEST(ToolEnvelope, SweepsAgreeWithSampling) {
+  Random random(7, "struts and motions");
+  const ToolEnvelope tool(tool_bodies());
+  const auto point = [&](double size) {
+    return Vec3(size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    const StrutBody strut{point(0.03), point(0.03), 0.24e-3};
+    const ToolMotion motion{point(0.02), point(0.02), point(1).normalized()};
+    const Mat3 R_TW = shortest_arc_from_z(motion.axis).toRotationMatrix().transpose();
+    double sampled = 1;
+    for (int i = 0; i <= 100; ++i)
+      for (int j = 0; j <= 100; ++j) {
+        const Vec3 p = strut.from + (strut.to - strut.from) * i / 100;
+        const Vec3 tip = motion.from + (motion.to - motion.from) * j / 100;
+        sampled = std::min(sampled, tool.distance(R_TW * (p - tip)) - strut.radius);
+      }
+    // Half a grid step of both: 0.01 of at most 104 mm and 70 mm, halved.
+    const double grid = 0.005 * ((strut.to - strut.from).norm() + (motion.to - motion.from).norm());
+    const double distance = tool.distance(strut, motion, 20e-6);
+    EXPECT_LE(distance, sampled + 1e-12) << trial;
+    EXPECT_GE(distance, sampled - grid - 40e-6) << trial;
+    EXPECT_TRUE(tool.clears(strut, motion, distance - 21e-6)) << trial;
+    EXPECT_FALSE(tool.clears(strut, motion, sampled + 1e-9)) << trial;
+  }
+}
+
+}  // namespace
+}  // namespace understudy::toolpath

@@ -1,0 +1,202 @@
+#include "toolpath/planners/planar_slicer.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "tests/geometry/test_solids.h"
+#include "toolpath/planners/contour_offset.h"
+#include "toolpath/planners/surface_planner.h"
+
+namespace understudy::toolpath {
+namespace {
+
+using geometry::Mesh;
+using ::testing::HasSubstr;
+constexpr double kPi = std::numbers::pi;
+
+PlanarPlan plan() {
+  PlanarPlan p;
+  p.layer_height = 0.2e-3;
+  p.bead_width = 0.5e-3;
+  p.feed = 10e-3;
+  p.approach_feed = 2e-3;
+  p.clearance = 2e-3;
+  p.nozzle_flat = 1e-3;
+  p.filament_diameter = 1.75e-3;
+  p.temperature = 483.15;
+  return p;
+}
+
+Mesh box(double x, double y, double z0, double z1) {
+  const auto t = geometry::box(Vec3(-x / 2, -y / 2, z0), Vec3(x / 2, y / 2, z1));
+  return {t.vertices, t.triangles};
+}
+
+double fed_volume(const Program& program) {
+  double fed = 0;
+  for (const Step& s : program.steps) fed += s.filament;
+  return fed * kPi / 4 * 1.75e-3 * 1.75e-3;
+}
+
+TEST(PlanarSlicer, OneWallRunsHalfABeadInsideTheOutlineAtTheTopOfEachLayer) {
+  PlanarPlan p = plan();
+  p.walls = 1;
+  const Mesh part = box(10e-3, 6e-3, 0, 1e-3);
+  const PlanarProgram result = plan_planar(part, nullptr, p);
+  EXPECT_EQ(result.layers, 5);
+  EXPECT_EQ(result.strokes, 5);
+  const double area = 0.3e-3 * 0.2e-3 + kPi / 4 * 0.04e-6, half = 0.5 * area / 0.2e-3;
+  EXPECT_NEAR(result.printed, 5 * 2 * (16e-3 - 4 * half), 1e-9);
+  EXPECT_NEAR(fed_volume(result.program), area * result.printed, 1e-15);
+  for (const Step& s : result.program.steps) {
+    if (s.kind != StepKind::print) continue;
+    const Vec3 t = s.X_WT.translation();
+    EXPECT_NEAR(std::min(5e-3 - std::abs(t.x()), 3e-3 - std::abs(t.y())), half, 1e-9);
+    EXPECT_NEAR(std::remainder(t.z(), 0.2e-3), 0, 1e-12);
+    EXPECT_NEAR(tool_axis(s.X_WT).z(), 1, 1e-15);
+  }
+}
+
+TEST(PlanarSlicer, AFullLayerHasTheVolumeOfItsSection) {
+  // 16 x 10 pitches: five loops of beads side by side fill it without rest, but for the corners: a loop's
+  // length is that of its middle line, so its area is exact.
+  const double area = 0.3e-3 * 0.2e-3 + kPi / 4 * 0.04e-6, pitch = area / 0.2e-3;
+  const Mesh part = box(16 * pitch, 10 * pitch, 0, 0.2e-3);
+  const PlanarProgram result = plan_planar(part, nullptr, plan());
+  EXPECT_EQ(result.strokes, 5);
+  EXPECT_NEAR(fed_volume(result.program) / part.volume(), 1, 1e-6);
+}
+
+TEST(PlanarSlicer, NothingIsPrintedInsideTheCore) {
+  const Mesh part = box(10e-3, 10e-3, 0, 2e-3), core = box(10e-3, 10e-3, 0, 1e-3);
+  const PlanarProgram result = plan_planar(part, &core, plan());
+  EXPECT_EQ(result.layers, 5);
+  for (const Step& s : result.program.steps)
+    if (s.kind == StepKind::print) {
+      EXPECT_GT(s.X_WT.translation().z(), 1e-3 + 0.19e-3);
+    }
+  const PlanarProgram whole = plan_planar(part, nullptr, plan());
+  EXPECT_NEAR(result.printed, 0.5 * whole.printed, 1e-9);
+}
+
+TEST(PlanarSlicer, ADomeIsAStaircaseOfCircles) {
+  const auto t = geometry::sphere(10e-3, 90, 180);
+  std::vector<Vec3> up = t.vertices;
+  for (Vec3& v : up) v.z() += 10e-3;
+  PlanarPlan p = plan();
+  p.walls = 1;
+  p.layer_height = 0.4e-3;
+  const PlanarProgram result = plan_planar(Mesh(up, t.triangles), nullptr, p);
+  const double half = 0.5 * (0.1e-3 * 0.4e-3 + kPi / 4 * 0.16e-6) / 0.4e-3;
+  EXPECT_EQ(result.layers, 50);
+  for (const Step& s : result.program.steps) {
+    if (s.kind != StepKind::print) continue;
+    const double z = s.X_WT.translation().z() - 0.2e-3 - 10e-3;  // plane through the middle of the layer
+    const double radius = std::sqrt(100e-6 - z * z) - half;
+    // Facets of 2 degrees sag by 1.5 um along a circle and by as much along a meridian, more where it is
+    // flat.
+    EXPECT_NEAR(s.X_WT.translation().head<2>().norm(), radius, 3e-6 + 1.6e-6 / std::sqrt(1 - z * z / 100e-6));
+  }
+}
+
+TEST(PlanarSlicer, InsetsStopWhereTheSectionIsTooNarrow) {
+  const std::vector<Contour> slot = {{Vec2(0, 0), Vec2(10e-3, 0), Vec2(10e-3, 0.8e-3), Vec2(0, 0.8e-3)}};
+  const auto all = [](const Vec2&) { return true; };
+  EXPECT_EQ(inset_paths(slot, 0.3e-3, 0, all).size(), 1u);
+  EXPECT_TRUE(inset_paths(slot, 0.5e-3, 0, all).empty());
+  // A dumb-bell: the offset runs in both ends, not through the neck.
+  const std::vector<Contour> dumbbell = {{Vec2(0, 0), Vec2(4e-3, 0), Vec2(4e-3, 1.5e-3), Vec2(8e-3, 1.5e-3),
+                                          Vec2(8e-3, 0), Vec2(12e-3, 0), Vec2(12e-3, 4e-3), Vec2(8e-3, 4e-3),
+                                          Vec2(8e-3, 2.5e-3), Vec2(4e-3, 2.5e-3), Vec2(4e-3, 4e-3),
+                                          Vec2(0, 4e-3)}};
+  const auto paths = inset_paths(dumbbell, 0.6e-3, 0, all);
+  EXPECT_EQ(paths.size(), 2u);
+  for (const FlatPath& path : paths)
+    for (const Vec2& p : path) EXPECT_GT(distance_to(dumbbell, p), 0.6e-3 - 3e-6);
+}
+
+TEST(PlanarSlicer, WhatCannotBeSlicedIsRefused) {
+  const Mesh part = box(10e-3, 6e-3, 0, 1e-3);
+  const auto rejection = [](const Mesh& mesh, const PlanarPlan& p) -> std::string {
+    try {
+      plan_planar(mesh, nullptr, p);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  ASSERT_EQ(rejection(part, plan()), "accepted");
+  for (double PlanarPlan::*field :
+       {&PlanarPlan::layer_height, &PlanarPlan::bead_width, &PlanarPlan::feed, &PlanarPlan::approach_feed,
+        &PlanarPlan::clearance, &PlanarPlan::nozzle_flat, &PlanarPlan::filament_diameter})
+    for (const double bad : {0.0, -1.0, std::nan("")}) {
+      PlanarPlan p = plan();
+      p.*field = bad;
+      EXPECT_THAT(rejection(part, p), HasSubstr("must be above 0"));
+    }
+  PlanarPlan p = plan();
+  p.layer_height = 0.6e-3;
+  EXPECT_THAT(rejection(part, p), HasSubstr("bead width is 0.5 mm, less than its height of 0.6 mm"));
+  EXPECT_THAT(rejection(box(1e-2, 1e-2, 0, 0.05e-3), plan()),
+              HasSubstr("the part is 0.05 mm high, less than half a layer"));
+  EXPECT_THAT(rejection(box(1e-2, 1e-2, -1e-3, 1e-3), plan()),
+              HasSubstr("the part reaches 1.000 mm under the table"));
+  EXPECT_THAT(rejection(box(0.2e-3, 1e-2, 0, 1e-3), plan()), HasSubstr("has room for a bead of 0.5 mm"));
+  auto t = geometry::box(Vec3(0, 0, 0), Vec3(0.01, 0.01, 0.01));
+  t.triangles.pop_back();
+  EXPECT_THAT(rejection(Mesh(t.vertices, t.triangles), plan()), HasSubstr("the part has 3 open edges"));
+}
+
+TEST(SurfaceRows, RunToAndFroAPitchApartAndLayersGrowAlongTheNormal) {
+  const auto crown = geometry::read_stl(UNDERSTUDY_SOURCE_DIR "/models/parts/crown_core.stl");
+  SectionRows rows;
+  rows.count = 4;
+  rows.pitch = 0.45e-3;
+  rows.tilt_min = -15 * kDegree;
+  rows.tilt_max = 15 * kDegree;
+  const auto curves = section_rows(*crown, rows);
+  ASSERT_EQ(curves.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(curves[i].front().y(), (static_cast<double>(i) - 1.5) * 0.45e-3, 1e-9);
+    EXPECT_EQ(curves[i].front().x() < 0, i % 2 == 0);
+  }
+  SurfacePlan p;
+  p.gap = p.bead_height = 0.13e-3;
+  p.standoff = 2e-3;
+  p.clearance = 5e-3;
+  p.step = 1e-3;
+  p.chord_tolerance = 3e-6;
+  p.feed = 5e-3;
+  p.approach_feed = 1e-3;
+  p.bead_width = 0.48e-3;
+  p.filament_diameter = 1.75e-3;
+  p.tilt_max = 30 * kDegree;
+  const Program program = plan_surface(*crown, curves, 3, p);
+  std::vector<double> heights;
+  for (const Step& s : program.steps) {
+    if (s.kind != StepKind::print) continue;
+    // The core's crown is a cylinder of 40 mm about y through z = 20.41 - 40.39 mm.
+    const double height = std::hypot(s.X_WT.translation().x(), s.X_WT.translation().z() + 19.98e-3) - 40e-3;
+    heights.push_back(height);
+  }
+  ASSERT_EQ(heights.size() % 12, 0u);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const auto layer = static_cast<double>(i / (heights.size() / 3));
+    EXPECT_NEAR(heights[i], (layer + 1) * 0.13e-3, 1e-6);  // 0.3 um of it is the sag of facets
+  }
+  rows.count = 200;
+  try {
+    section_rows(*crown, rows);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("row 1 of 200"));
+  }
+}
+
+}  // namespace
+}  // namespace understudy::toolpath

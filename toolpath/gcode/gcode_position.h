@@ -1,0 +1,58 @@
+// Where a G-code program has taken the tool: what its words X Y Z, B C and W I J K read and what pose they
+// make.
+#pragma once
+
+#include <optional>
+
+#include "toolpath/gcode/gcode.h"
+#include "toolpath/gcode/gcode_block.h"
+
+namespace understudy::toolpath {
+
+/// [m] of a word in units of `unit` [m]. Throws InputError with place for one that no machine can mean.
+double length_of(const Block& block, const Word& word, double unit);
+
+class GcodePosition {
+ public:
+  explicit GcodePosition(const GcodeOptions& options);
+
+  const Pose& X_WT() const { return X_WT_; }
+  /// How the turning axes stand; nothing where the machine has none or the program does not say.
+  const std::optional<RotaryTurns>& turns() const { return turns_; }
+  bool has_rotary_words() const { return options_.rotary.has_value(); }
+
+  // All of these throw InputError with place.
+
+  /// G43.4 and G49: what X Y Z mean from here on; the tool stays where it is.
+  void set_coordinates(const Block& block);
+  /// G28. False: the line names some of the axes, and these alone went there.
+  bool go_home(Block& block);
+  /// G92: the present position is called so from now on.
+  void rename(Block& block, double unit);
+  /// Position and orientation of a G0 or G1.
+  void move(Block& block, double unit, bool relative);
+
+ private:
+  using Coordinates = RotaryWords::Coordinates;
+
+  void go_home();
+  void home_some(const Block& block);
+  Vec3 shift() const;  // origin_ without G92
+  Vec3 programmed_at(const Pose& X_WT) const;
+  Pose pose_at_programmed() const;
+  void refuse_two_orientations(const Block& block) const;
+  void read_lengths(Block& block, double unit, bool relative);
+  bool read_turns(Block& block, bool relative);
+  std::optional<Quat> read_orientation(Block& block) const;
+  void require_turns(const Word& word, const Block& block, bool both_given) const;
+
+  GcodeOptions options_;
+  Pose X_WT_;  // where the tool is
+  Coordinates coordinates_;
+  Vec3 programmed_;                   // [m], what X Y Z are a reading of: p_WT, or slides
+  Vec3 origin_ = Vec3::Zero();        // [m], reading + origin = programmed (G92)
+  std::optional<RotaryTurns> turns_;  // of the axes; nothing after W I J K or I J K
+  RotaryTurns turns_origin_;          // reading + origin = turns (G92)
+};
+
+}  // namespace understudy::toolpath

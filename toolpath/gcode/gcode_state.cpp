@@ -1,0 +1,210 @@
+#include "toolpath/gcode/gcode_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace understudy::toolpath {
+namespace {
+
+constexpr const char* kMotionWords = "XYZBCEWIJK";
+// No spool is longer; keeps sums finite.
+constexpr double kLargestExtruder = 1e6;            // [m]
+constexpr double kLongestDwell = 86400;             // [s]
+constexpr int kLeastFlow = 1, kLargestFlow = 1000;  // [%]
+
+bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
+
+}  // namespace
+
+GcodeState::GcodeState(const GcodeOptions& options) : position_(options) {}
+
+void GcodeState::run(Block& block, std::vector<Step>& steps) {
+  if (block.empty()) return;
+  if (ended_) block.fail("a word after M30, the end of the program");
+  if (block.without_effect()) return;
+  set_modes(block);
+  set_feed(block);
+  set_process(block, steps);
+  run_motion(block, steps);
+  block.check_all_taken();
+  if (block.find(Command::end) != nullptr) {
+    steps.push_back(step(StepKind::end, block.line()));
+    ended_ = true;
+  }
+}
+
+void GcodeState::set_modes(const Block& block) {
+  if (block.find(Command::inches) != nullptr) unit_ = kInch;
+  if (block.find(Command::millimetres) != nullptr) unit_ = kMillimetre;
+  if (block.find(Command::absolute) != nullptr) relative_ = false;
+  if (block.find(Command::relative) != nullptr) relative_ = true;
+  if (block.find(Command::absolute_extrusion) != nullptr) relative_extrusion_ = false;
+  if (block.find(Command::relative_extrusion) != nullptr) relative_extrusion_ = true;
+  if (block.find(Command::rapid) != nullptr) motion_ = Motion::rapid;
+  if (block.find(Command::linear) != nullptr) motion_ = Motion::linear;
+  if (block.find(Command::inverse_time) != nullptr) inverse_time_ = true;
+  // A feed does not survive a change of what it means.
+  if (block.find(Command::inverse_time) != nullptr) feed_.reset();
+  if (block.find(Command::per_minute) != nullptr) inverse_time_ = false;
+  position_.set_coordinates(block);
+}
+
+void GcodeState::set_feed(Block& block) {
+  duration_.reset();
+  const Word* word = block.take('F');
+  if (word == nullptr) return;
+  const bool homing = block.find(Command::home) != nullptr;
+  const double feed = word->value * unit_ / 60;
+  const double duration = 60 / word->value;
+  if (!(word->value > 0 && feed > 0 && std::isfinite(duration)))
+    block.fail(*word, fmt::format("'{}': the feed must be above 0", word->text));
+  if (homing) return;  // of this line alone, and home is reached as fast as the machine may
+  if (!inverse_time_) {
+    feed_ = feed;
+    return;
+  }
+  const bool moves = (motion_ == Motion::linear && block.find_any(kMotionWords) != nullptr) ||
+                     (motion_ == Motion::rapid && block.find('E') != nullptr);
+  if (!moves)
+    block.fail(*word, fmt::format("'{}': under G93 an F belongs to the G1 move of its line", word->text));
+  duration_ = duration;
+}
+
+void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
+  const Word* heat = block.find(Command::heat);
+  const Word* wait = block.find(Command::heat_and_wait);
+  const Word* fan = block.find(Command::fan_on);
+  select_tool(block);
+  if (const Word* command = heat != nullptr ? heat : wait) {
+    const Word* s = block.take('S');
+    if (s == nullptr) block.fail(*command, fmt::format("'{}' needs S, the temperature in C", command->text));
+    if (s->value < 0) block.fail(*s, fmt::format("'{}': the nozzle temperature is below 0 C", s->text));
+    steps.push_back(step(StepKind::temperature, block.line()));
+    steps.back().temperature = s->value + kCelsiusZero;
+    steps.back().wait = wait != nullptr;
+  }
+  if (fan != nullptr) {
+    const Word* s = block.take('S');
+    if (s == nullptr) block.fail(*fan, fmt::format("'{}' needs S, the fan's speed from 0 to 255", fan->text));
+    if (s->value < 0 || s->value > 255)
+      block.fail(*s, fmt::format("'{}': the fan's speed is outside 0 to 255", s->text));
+    steps.push_back(step(StepKind::fan, block.line()));
+    steps.back().fan = s->value / 255;
+  }
+  if (block.find(Command::fan_off) != nullptr) steps.push_back(step(StepKind::fan, block.line()));
+  if (const Word* flow = block.find(Command::flow)) {
+    const Word* s = block.take('S');
+    if (s == nullptr) block.fail(*flow, fmt::format("'{}' needs S, the flow in percent", flow->text));
+    if (s->value < kLeastFlow || s->value > kLargestFlow)
+      block.fail(*s, fmt::format("'{}': the flow is outside {} to {} %", s->text, kLeastFlow, kLargestFlow));
+    flow_ = s->value / 100;
+  }
+}
+
+/// T alone, or with what concerns one tool. Machines here have one extruder; whether a program calls it T0 or
+/// T1 is its own affair, as long as it keeps to one.
+void GcodeState::select_tool(Block& block) {
+  const Word* tool = block.find('T');
+  if (tool == nullptr) return;
+  const bool of_command = block.find(Command::heat) != nullptr ||
+                          block.find(Command::heat_and_wait) != nullptr ||
+                          block.find(Command::flow) != nullptr;
+  if (!of_command && !block.alone(*tool)) return;
+  block.take('T');
+  if (tool->value != 0 && tool->value != 1)
+    block.fail(*tool, fmt::format("'{}': the machine has one extruder, T0 or T1", tool->text));
+  if (tool_ && *tool_ != tool->value)
+    block.fail(*tool, fmt::format("'{}' after T{}: the machine has one extruder", tool->text, *tool_));
+  tool_ = tool->value;
+}
+
+void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
+  if (block.find(Command::dwell) != nullptr) return dwell(block, steps);
+  if (block.find(Command::home) != nullptr) return home(block, steps);
+  if (block.find(Command::set_position) != nullptr) return set_position(block);
+  const Word* word = block.find_any(kMotionWords);
+  if (word != nullptr && motion_ == Motion::none)
+    block.fail(*word, fmt::format("'{}' before any G0 or G1", word->text));
+  if (word != nullptr) return move(block, steps);
+  const Word* code = block.find(motion_ == Motion::rapid ? Command::rapid : Command::linear);
+  // A lone "G1 F1500" is how slicers set the feed; a lone "G1" is a line that lost its words.
+  if (code != nullptr && block.find('F') == nullptr)
+    block.fail(*code, fmt::format("'{}' has neither motion nor extrusion nor feed", code->text));
+}
+
+void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
+  const Word& code = *block.find(Command::dwell);
+  const Word* milliseconds = block.take('P');
+  const Word* seconds = block.take('S');
+  if ((milliseconds == nullptr) == (seconds == nullptr))
+    block.fail(code, "G4 needs either P (milliseconds) or S (seconds)");
+  const Word& word = seconds != nullptr ? *seconds : *milliseconds;
+  const double duration = seconds != nullptr ? seconds->value : milliseconds->value * 1e-3;
+  if (duration < 0 || duration > kLongestDwell)
+    block.fail(word, fmt::format("'{}': the dwell is outside 0 to {} s", word.text, kLongestDwell));
+  steps.push_back(step(StepKind::dwell, block.line()));
+  steps.back().duration = duration;
+}
+
+void GcodeState::home(Block& block, std::vector<Step>& steps) {
+  const bool whole = position_.go_home(block);
+  steps.push_back(step(whole ? StepKind::home : StepKind::travel, block.line()));
+}
+
+void GcodeState::set_position(Block& block) {
+  const Word& code = *block.find(Command::set_position);
+  if (block.find_any("XYZBCE") == nullptr)
+    block.fail(code, fmt::format("G92 names none of X Y Z {}E", position_.has_rotary_words() ? "B C " : ""));
+  position_.rename(block, unit_);
+  if (const Word* word = block.take('E')) extruder_ = length_of(block, *word, unit_);
+}
+
+void GcodeState::move(Block& block, std::vector<Step>& steps) {
+  // Filament is fed at a feed, whichever of the two words the line has.
+  const bool paced = motion_ == Motion::linear || block.find('E') != nullptr;
+  const Pose from = position_.X_WT();
+  position_.move(block, unit_, relative_);
+  Step next = step(paced ? StepKind::move : StepKind::travel, block.line());
+  next.filament = fed_filament(block);
+  if (next.filament > 0) next.kind = StepKind::print;
+  if (paced) set_pace(block, next);
+  if (next.filament != 0 && next.duration == 0 && !tip_moves(from, position_.X_WT())) {
+    next.duration = std::abs(next.filament) / next.feed;
+    next.feed = 0;
+  }
+  steps.push_back(next);
+}
+
+void GcodeState::set_pace(const Block& block, Step& step) const {
+  if (inverse_time_ && !duration_) block.fail("G93 needs F, one over the move's minutes, on every G1 line");
+  if (!inverse_time_ && !feed_)
+    block.fail(fmt::format("{} without a feed: no F on this line or before it",
+                           motion_ == Motion::linear ? "G1" : "G0 with E"));
+  step.duration = duration_.value_or(0);
+  step.feed = inverse_time_ ? 0 : *feed_;
+}
+
+double GcodeState::fed_filament(Block& block) {
+  const Word* word = block.take('E');
+  if (word == nullptr) return 0;
+  const double value = length_of(block, *word, unit_);
+  const double before = extruder_;
+  extruder_ = relative_extrusion_ ? before + value : value;
+  if (std::abs(extruder_) > kLargestExtruder)
+    block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
+                                  to_mm(extruder_), to_mm(kLargestExtruder)));
+  return flow_ * (relative_extrusion_ ? value : value - before);
+}
+
+Step GcodeState::step(StepKind kind, int line) const {
+  Step step;
+  step.kind = kind;
+  step.X_WT = position_.X_WT();
+  if (moves(step)) step.rotary = position_.turns();
+  step.line = line;
+  return step;
+}
+
+}  // namespace understudy::toolpath

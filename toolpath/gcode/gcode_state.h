@@ -1,0 +1,53 @@
+// What earlier lines of a G-code program left behind, and what one more line makes of it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/units.h"
+#include "toolpath/gcode/gcode.h"
+#include "toolpath/gcode/gcode_block.h"
+#include "toolpath/gcode/gcode_position.h"
+
+namespace understudy::toolpath {
+
+class GcodeState {
+ public:
+  explicit GcodeState(const GcodeOptions& options);
+
+  /// Runs a line and appends its steps. In the order of RS-274: units and modes, feed, heater and fan,
+  /// motion, end. Throws InputError with place.
+  void run(Block& block, std::vector<Step>& steps);
+
+ private:
+  enum class Motion { none, rapid, linear };
+
+  void set_modes(const Block& block);
+  void set_feed(Block& block);
+  void set_process(Block& block, std::vector<Step>& steps);
+  void run_motion(Block& block, std::vector<Step>& steps);
+  void dwell(Block& block, std::vector<Step>& steps);
+  void home(Block& block, std::vector<Step>& steps);
+  void select_tool(Block& block);
+  void set_position(Block& block);
+  void move(Block& block, std::vector<Step>& steps);
+  void set_pace(const Block& block, Step& step) const;
+
+  double fed_filament(Block& block);
+  Step step(StepKind kind, int line) const;
+
+  GcodePosition position_;
+  double extruder_ = 0;         // [m], reading of E
+  double flow_ = 1;             // filament fed for one that is programmed (M221)
+  std::optional<double> tool_;  // number of the only extruder, once a line has said it
+  double unit_ = kMillimetre;   // [m]
+  bool relative_ = false;
+  bool relative_extrusion_ = false;
+  bool inverse_time_ = false;
+  Motion motion_ = Motion::none;
+  std::optional<double> feed_;      // [m/s] under G94
+  std::optional<double> duration_;  // [s] of this line's move under G93
+  bool ended_ = false;
+};
+
+}  // namespace understudy::toolpath

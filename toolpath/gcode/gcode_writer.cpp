@@ -1,0 +1,117 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "toolpath/gcode/gcode.h"
+
+namespace understudy::toolpath {
+namespace {
+
+// Fixed point without trailing zeros; never an exponent, which G-code would read as an E word.
+std::string number(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
+std::string millimetres(double metres) { return number(to_mm(metres), 6); }
+
+class Writer {
+ public:
+  std::string run(const Program& program, const std::vector<std::string>& header) {
+    for (std::string line : header) {
+      for (char& c : line)
+        if (c == '\n' || c == '\r') c = ' ';
+      out_ += "; " + line + "\n";
+    }
+    out_ += "G21\nG90\nM82\nG94\n";
+    for (const Step& step : program.steps) write(step);
+    return std::move(out_);
+  }
+
+ private:
+  void write(const Step& step) {
+    switch (step.kind) {
+      case StepKind::travel:
+        return line("G0" + pose(step.X_WT));
+      case StepKind::move:
+      case StepKind::print:
+        return linear(step);
+      case StepKind::home:
+        return line("G28");
+      case StepKind::dwell:
+        return line("G4 P" + number(checked(step.duration) * 1e3, 6));
+      case StepKind::temperature:
+        return line((step.wait ? "M109 S" : "M104 S") + number(checked(step.temperature) - kCelsiusZero, 6));
+      case StepKind::fan:
+        return line(step.fan > 0 ? "M106 S" + number(checked(step.fan) * 255, 6) : "M107");
+      case StepKind::end:
+        return line("M30");
+    }
+  }
+
+  void linear(const Step& step) {
+    const bool timed = step.duration > 0;
+    const double per_minute = timed ? 60 / step.duration : step.feed / kMillimetrePerMinute;
+    const std::string feed = number(checked(per_minute), timed ? 12 : 6);
+    if (feed == "0" || feed[0] == '-')
+      throw InputError(
+          fmt::format("step {}: a feed of {} cannot be written, it must be above 0", steps_ + 1, per_minute));
+    set_timed(timed);
+    std::string text = "G1" + pose(step.X_WT);
+    if (step.filament != 0) {
+      // The reading is what is rounded, so the error does not add up over the program.
+      extruder_ += checked(step.filament);
+      text += " E" + millimetres(extruder_);
+    }
+    if (timed || feed != feed_) text += " F" + feed;
+    feed_ = timed ? "" : feed;
+    line(text);
+  }
+
+  void set_timed(bool timed) {
+    if (timed != timed_) out_ += timed ? "G93\n" : "G94\n";
+    timed_ = timed;
+  }
+
+  std::string pose(const Pose& X_WT) const {
+    if (!X_WT.matrix().allFinite())
+      throw InputError(fmt::format("step {}: a pose that is not finite cannot be written", steps_ + 1));
+    const Vec3 p = X_WT.translation();
+    Quat q(X_WT.linear());
+    if (q.w() < 0) q.coeffs() *= -1;
+    return fmt::format(" X{} Y{} Z{} W{} I{} J{} K{}", millimetres(p.x()), millimetres(p.y()),
+                       millimetres(p.z()), number(q.w(), 9), number(q.x(), 9), number(q.y(), 9),
+                       number(q.z(), 9));
+  }
+
+  double checked(double value) const {
+    if (!std::isfinite(value))
+      throw InputError(fmt::format("step {}: {} cannot be written, it is not finite", steps_ + 1, value));
+    return value;
+  }
+
+  void line(const std::string& text) {
+    out_ += text + "\n";
+    ++steps_;
+  }
+
+  std::string out_;
+  double extruder_ = 0;  // [m]
+  bool timed_ = false;
+  std::string feed_;  // as last written under G94
+  std::size_t steps_ = 0;
+};
+
+}  // namespace
+
+std::string write_gcode(const Program& program, const std::vector<std::string>& header) {
+  return Writer().run(program, header);
+}
+
+}  // namespace understudy::toolpath
