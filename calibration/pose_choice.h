@@ -19,7 +19,8 @@ struct PoseRegion {
   double yaw_max = 0;                ///< [rad], both ways
 };
 
-/// The region of reference B about the machine's home: a 100 mm cube, tilt to 20, yaw to 15 deg.
+/// The region of docs/reference.md#calibration-figures about the machine's home: a 100 mm cube, tilt to 20,
+/// yaw to 15 deg.
 PoseRegion reference_region(const Pose& X_BT_home);
 
 /// `count` poses that break no limit of the mechanism. Throws InputError when hardly any of the region is

@@ -1,5 +1,5 @@
 // A calibration of the hexapod: what was measured, what is unknown, and what comes out (Song 2015, section 4;
-// reference B). Everything is SI.
+// docs/reference.md#identifiable-parameters). Everything is SI.
 //
 // The 42 parameters are, strut by strut, (b_i, a_i, l_i0): the base joint in B, the ball joint in T and the
 // strut's length at displacement 0. Wherever parameters stand in a vector or matrix, number 7 i + k is the

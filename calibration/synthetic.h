@@ -12,7 +12,7 @@ struct MeasurementNoise {
   double rotation = 0;  ///< [rad]
   Mat6 covariance() const;
 };
-/// Reference B: 20 um and 0.2 mrad.
+/// docs/reference.md#calibration-figures: 20 um and 0.2 mrad.
 constexpr MeasurementNoise kReferenceNoise{20e-6, 0.2e-3};
 
 /// Every one of the 42 parameters off by normal numbers of this standard deviation [m].

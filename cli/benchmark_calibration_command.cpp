@@ -91,8 +91,7 @@ rehearsal::CalibrationBenchmarkRequest request_of(const BenchmarkCall& call) {
 int run_tables(const BenchmarkCall& call) {
   const machine::MachineDescription machine = machine::load_machine(call.request.machine);
   if (machine.chain)
-    throw InputError(
-        fmt::format("--tables: reference sections B and C are of the hexapod, not of {}", machine.name));
+    throw InputError(fmt::format("--tables prints figures of the hexapod, not of {}", machine.name));
   const auto mechanism = machine.make_mechanism();
   calibration::StudySetting setting;
   setting.nominal = machine.hexapod.geometry;

@@ -1,4 +1,4 @@
-// The two-camera measuring set-up (Song 2015, appendix B; reference section C): plain data, SI.
+// The two-camera measuring set-up (Song 2015, appendix B; docs/reference.md#two-cameras): plain data, SI.
 //
 // Two cameras look at the working volume at right angles. A printed chessboard stands upright before each of
 // them at `layers` depths; three spheres on the moving platform are what is measured later. Frames: G the
@@ -65,11 +65,11 @@ struct CalibrationRig {
   Pose X_WG(int camera, int layer) const;
 };
 
-/// Reference section C: 1600 x 1200 px, f = 4267 px, so that 150 mm are seen at 400 mm. Camera 0 looks along
-/// +X, camera 1 along +Y, both upright and without distortion. The spheres have 5 mm radius and form an
-/// equilateral triangle of 60 mm side: one in the tool tip, two higher up, symmetric about the plane x = y,
-/// so that no one hides another in either view at tilts to 30 degrees. `home_tip_W`: the tip when the middle
-/// of the triangle is in the middle of the volume.
+/// docs/reference.md#two-cameras: 1600 x 1200 px, f = 4267 px, so that 150 mm are seen at 400 mm. Camera 0
+/// looks along +X, camera 1 along +Y, both upright and without distortion. The spheres have 5 mm radius and
+/// form an equilateral triangle of 60 mm side: one in the tool tip, two higher up, symmetric about the plane
+/// x = y, so that no one hides another in either view at tilts to 30 degrees. `home_tip_W`: the tip when the
+/// middle of the triangle is in the middle of the volume.
 CalibrationRig default_calibration_rig(const Vec3& home_tip_W);
 
 }  // namespace understudy

@@ -144,8 +144,9 @@ def check_pages(root, path, text, pages, report):
                 report(path, number, f"docs/{match[1]} is not there")
             elif match[2] and match[2][1:] not in pages[to]:
                 report(path, number, f"docs/{match[1]} has no heading '{match[2]}'")
-        if HEARSAY.search(line):
-            report(path, number, f"'{HEARSAY.search(line)[0]}' is nowhere to be found: cite {BIBLIOGRAPHY}#section")
+    flowing, line_at = flow(path, text)
+    for match in HEARSAY.finditer(flowing):
+        report(path, line_at[match.start()], f"'{match[0]}' is nowhere to be found: cite {BIBLIOGRAPHY}#section")
 
 
 def check_file_names(root, path, text, names, report):
@@ -153,9 +154,8 @@ def check_file_names(root, path, text, names, report):
     for number, line in enumerate(text.split("\n"), 1):
         for match in names.finditer(line):
             name = match[1].rstrip("/.,")
-            if any(root.glob(name)) or any(root.glob(name + ".*")):
-                continue
-            report(path, number, f"{name} is not there")
+            if not any(any(folder.glob(name)) or any(folder.glob(name + ".*")) for folder in (root, path.parent)):
+                report(path, number, f"{name} is not there")
 
 
 def main():

@@ -199,7 +199,7 @@ void bench_peers(const Cases&, double ours) {
   std::printf(
       "KDL is not installed (liborocos-kdl-dev). Measured 2026-11-21 with KDL 1.5.1 on a 2-core machine: "
       "NR_JL "
-      "48 %%\nsolved, 5.1 ms a pose; LMA 97 %%, 0.73 ms. Reference section H: 28 to 68 %%, 1.7 to 3.7 ms.\n"
+      "48 %%\nsolved, 5.1 ms a pose; LMA 97 %%, 0.73 ms. Reference: 28 to 68 %%, 1.7 to 3.7 ms.\n"
       "ratio to these figures, not measured here: NR_JL %.0f x, LMA %.0f x\n",
       5.1e-3 / ours, 0.73e-3 / ours);
 }

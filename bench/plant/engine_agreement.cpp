@@ -1,4 +1,5 @@
-// The engines against each other on the motions of reference I: the table of docs/engine-agreement.md.
+// The engines against each other on the motions of docs/reference.md#physics-engines: the table of
+// docs/engine-agreement.md.
 #include <fmt/format.h>
 
 #include <cstdio>

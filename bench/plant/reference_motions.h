@@ -1,5 +1,5 @@
-// The motions of reference I on which the engines are compared, as one stream of drive commands for all of
-// them, and what is read from a plant that runs them. Shared by bench and tests.
+// The motions of docs/reference.md#physics-engines on which the engines are compared, as one stream of drive
+// commands for all of them, and what is read from a plant that runs them. Shared by bench and tests.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
 // The strut-length residual with the six of each pose weighed by the inverse of their covariance, J S J^T
-// (reference B): one strut's residual tells of all six pose errors, so they are correlated and unequal.
-// Reaches the efficiency of maximum likelihood without forward kinematics.
+// (docs/reference.md#whitening): one strut's residual tells of all six pose errors, so they are correlated
+// and unequal. Reaches the efficiency of maximum likelihood without forward kinematics.
 #pragma once
 
 #include "calibration/estimators/fit.h"

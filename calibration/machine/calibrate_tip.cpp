@@ -12,7 +12,7 @@ namespace understudy::rehearsal {
 namespace {
 
 constexpr std::size_t kPoses = 400;   // their median is known within 3 %
-constexpr double kSliceHalf = 50e-3;  // [m], of reference B's cube about home
+constexpr double kSliceHalf = 50e-3;  // [m], half the cube of docs/reference.md#calibration-figures
 constexpr double kSliceStep = 5e-3;   // [m]
 constexpr std::uint64_t kSeed = 1;    // the same poses for every calibration of a machine
 

@@ -1,4 +1,4 @@
-// Six-axis arm with a spherical wrist (Ishak 2018; dimensions as in reference section H).
+// Six-axis arm with a spherical wrist (Ishak 2018; dimensions as in docs/reference.md#robot-arm).
 //
 // All axes at 0: the upper arm points up, the forearm along x of B. j1 turns about z of B; j2 and j3 about y
 // (positive leans forwards); j4 and j6 about the forearm's and the flange's own axis, along x; j5 about y.
@@ -74,7 +74,8 @@ struct ArmClearance {
 ArmClearance arm_clearance(const ArmGeometry& geometry, std::span<const double> axes);
 
 /// Nearer than this, check() reports a singularity: there an axis turns 20 times as fast as the tool, or at
-/// more than 50 rad per metre that the wrist centre travels (an arm of the size of reference section H).
+/// more than 50 rad per metre that the wrist centre travels (an arm of the size of
+/// docs/reference.md#robot-arm).
 constexpr ArmClearance kArmClearanceMin{0.05, 1.5e-3, 20e-3};
 
 }  // namespace understudy::kinematics

@@ -1,5 +1,5 @@
 // Redundant finishing stage: a bed that lifts (z) and turns (c), and beside it an end mill on two slides and
-// two turns (x, y, yaw, pitch) (Yu 2023; reference section E).
+// two turns (x, y, yaw, pitch) (Yu 2023; docs/reference.md#finishing-stage).
 //
 // Axes z c x y yaw pitch; the tool seen from the bed is the paper's product of exponentials (eq 2, table 1):
 //   X_Sb = e^[S1 z] e^[S2 c] e^[S3 x] e^[S4 y] e^[S5 yaw] e^[S6 pitch] M,   v = -omega x q,

@@ -11,7 +11,8 @@
 namespace understudy::kinematics {
 namespace {
 
-constexpr double kUpright = 1e-12;  // sine of the tool's tilt below which C is free (reference F)
+// Sine of the tool's tilt below which C is free (docs/reference.md#five-axis-printer).
+constexpr double kUpright = 1e-12;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 enum Axis : std::size_t { kX, kY, kZ, kB, kC };

@@ -1,4 +1,5 @@
-// Three slides that carry the tool, and a table that tilts (B) and turns (C) (Han 2024; reference section F).
+// Three slides that carry the tool, and a table that tilts (B) and turns (C) (Han 2024;
+// docs/reference.md#five-axis-printer).
 //   X_ST = [C axis: turn C] [B axis: turn B] (X, Y, Z);   with both axes through the origin
 //   p_ST = Rz(C) Ry(B) (X, Y, Z), R_ST = Rz(C) Ry(B); the tool's axis is (sin B cos C, sin B sin C, cos B).
 // Axes x y z b c. The frame O of the machine is S, the frame of the work on the table, at B = C = 0. The

@@ -1,8 +1,9 @@
 // Redundant axes: of all rates that give a twist, the smallest (Yu 2023, eqs 3-5).
 //
 // The task has five dimensions: the velocity of the tip, and the turn of the tool's axis. The spin about that
-// axis is left to the machine: a redundant stage need not be able to follow it (reference section E).
-// "Smallest" needs a metric between metres and radians: a radian weighs as much as `metric` metres.
+// axis is left to the machine: a redundant stage need not be able to follow it
+// (docs/reference.md#finishing-stage). "Smallest" needs a metric between metres and radians: a radian weighs
+// as much as `metric` metres.
 #pragma once
 
 #include <span>

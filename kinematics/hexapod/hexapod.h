@@ -1,4 +1,5 @@
-// Stewart platform with a base above and a hanging platform (Song 2015, eqs 1-5; reference A).
+// Stewart platform with a base above and a hanging platform (Song 2015, eqs 1-5;
+// docs/reference.md#hexapod-kinematics).
 //   d_i = b_i - p - R a_i,   length_i = sqrt(|d_i|^2 - dev^2),   displacement_i = length_i - l_i0.
 // Axes are strut lengths [m], not displacements.
 #pragma once
@@ -21,7 +22,7 @@ struct HexapodGeometry {
   double deviation = 0;                      ///< dev: distance of the screw's axis from the base joint
 };
 
-/// What the joints and struts allow. Angles by the definitions of reference A.
+/// What the joints and struts allow. Angles by the definitions of docs/reference.md#joint-angles.
 struct HexapodLimits {
   double strut_min = 0, strut_max = 0;            ///< [m]
   double base_alpha_min = 0, base_alpha_max = 0;  ///< [rad], positive inward
@@ -81,12 +82,13 @@ double condition_number(const HexapodGeometry& geometry, const Pose& X_BT);
 /// Shortest distance between two struts, each the segment from its base joint to its ball joint [m].
 double screw_distance(const HexapodGeometry& geometry, const Pose& X_BT, int strut, int other);
 
-/// Angles of `strut` (from 0) by the definitions of reference A, with u the unit vector from base to ball
-/// joint: alpha = atan2(-u.e_r, -u.e_z), beta = asin(u.e_t), ball = acos(-u.R a).
+/// Angles of `strut` (from 0) by the definitions of docs/reference.md#joint-angles, with u the unit vector
+/// from base to ball joint: alpha = atan2(-u.e_r, -u.e_z), beta = asin(u.e_t), ball = acos(-u.R a).
 StrutAngles strut_angles(const HexapodGeometry& geometry, const HexapodJoints& joints, const Pose& X_BT,
                          int strut);
 
-/// Stud axes of machine G4: the radial direction made perpendicular to the strut at home (reference A).
+/// Stud axes of machine G4: the radial direction made perpendicular to the strut at home
+/// (docs/reference.md#machine-g4).
 HexapodJoints joints_at_home(const HexapodGeometry& geometry, const Pose& X_BT_home);
 
 /// Appends a violation for every limit that the pose breaks. Struts and joints are numbered from 1 in `part`.

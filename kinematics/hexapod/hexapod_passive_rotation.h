@@ -1,12 +1,12 @@
 // Passive rotation of the lead screws: an effect of joints, switched on where nothing keeps a screw from
-// turning in its nut. (Song 2015, section 2.2, has slide bushings on guide rails for that; without them it is
+// turning in its nut. (Song 2015, section 2, has slide bushings on guide rails for that; without them it is
 // there.)
 //
 // At the base a universal joint carries the motor with the nut; its outer axis is fixed to the base, along
-// e_t = e_z x e_r (reference section A, where alpha turns about it). At the platform the screw ends in a
-// joint that turns about its stud, which is fixed to the platform, and tilts about an axis across stud and
-// strut, but does not let the screw spin by itself. As the platform moves, the two joints turn the screw in
-// the nut:
+// e_t = e_z x e_r (docs/reference.md#joint-angles, where alpha turns about it). At the platform the screw
+// ends in a joint that turns about its stud, which is fixed to the platform, and tilts about an axis across
+// stud and strut, but does not let the screw spin by itself. As the platform moves, the two joints turn the
+// screw in the nut:
 //   angle_i = angle about u from e_t x u to (R a_i) x u, less the same at home,
 // with u the direction from base to ball joint and a_i the stud. Positive: the screw turns right-handed about
 // u, seen from the motor. A right-handed thread (lead > 0) then drives the strut longer by lead / 2 pi a

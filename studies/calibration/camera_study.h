@@ -1,5 +1,5 @@
-// The table of reference section C, regenerated: points in space from two cameras whose corners and targets
-// are projected with noise, not drawn.
+// The table of docs/reference.md#two-cameras, regenerated: points in space from two cameras whose corners and
+// targets are projected with noise, not drawn.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Estimators against the bound on one synthetic machine: the set-up of reference B.
+// Estimators against the bound on one synthetic machine: the set-up of docs/reference.md#calibration-figures.
 #pragma once
 
 #include <functional>

@@ -170,7 +170,7 @@ void GapScene::occlude(Image& image) const {
 }
 
 /// A thread that lies in the beam and glows instead of the part, a little beside where the dot lies at the
-/// aim and as wide as that; it flickers as speckle does (reference D: 0.30 to 0.46 px).
+/// aim and as wide as that; it flickers as speckle does (docs/reference.md#dot-and-gap: 0.30 to 0.46 px).
 void GapScene::glow(Image& image) {
   constexpr double kBeside = 40e-6, kFlicker = 0.35;  // [m] of gap, [px]
   const auto at = microscope_.true_dot(along(surface.X_WT_S, 0, kBeside));

@@ -1,5 +1,5 @@
-// What the data cannot tell is said before any fit (reference B: 42 of 42; 8 with dev; 4 of 7 without
-// rotation).
+// What the data cannot tell is said before any fit (docs/reference.md#identifiable-parameters: 42 of 42; 8
+// with dev; 4 of 7 without rotation).
 #include "calibration/identifiability.h"
 
 #include <gmock/gmock.h>

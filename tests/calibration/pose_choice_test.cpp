@@ -93,7 +93,7 @@ TEST(DOptimal, HalvesTheBoundOfRandomPoses) {
   const auto candidates = rig().poses(300, random);
   std::vector<Pose> best;
   for (const std::size_t j : d_optimal(setting(), candidates, 12, random)) best.push_back(candidates[j]);
-  EXPECT_NEAR(bound(best), 22, 0.2 * 22);  // reference B; its own 300 candidates
+  EXPECT_NEAR(bound(best), 22, 0.2 * 22);  // docs/reference.md#calibration-figures; its own 300 candidates
   EXPECT_LT(bound(best), 0.65 * bound({candidates.begin(), candidates.begin() + 12}));
 }
 

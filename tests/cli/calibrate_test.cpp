@@ -33,7 +33,8 @@ TEST(Calibrate, TheSampleGivesAMachineThatOtherCommandsRead) {
   EXPECT_THAT(read_file(folder / "report/report.html"), StartsWith("<!doctype html>"));
   const json s = summary(folder, "report");
   EXPECT_EQ(s["schema"], "understudy.calibration/1");
-  // Reference B at 24 poses: 13 um D-optimal with maximum likelihood to 24 um, the worst random bound; RMS.
+  // docs/reference.md#calibration-figures at 24 poses: 13 um D-optimal with maximum likelihood to 24 um, the
+  // worst random bound; RMS.
   EXPECT_GT(s["tip"]["sigma_rms_um"], 8);
   EXPECT_LT(s["tip"]["sigma_rms_um"], 24);
   EXPECT_EQ(s["warnings"], json::array());

@@ -19,8 +19,8 @@ TEST(Axes, HomeOfTheNominalMachine) {
   const auto poses = folder.write("poses.csv", kPoseHeader + "0,0,50,1,0,0,0\n");
   const Outcome outcome = understudy("axes --machine hexapod <" + poses);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  // Reference A: 189.2924 mm from joint to joint; the screw runs 15 mm beside the base joint:
-  // sqrt(189.29235^2 - 15^2) = 188.69709.
+  // docs/reference.md#machine-g4: 189.2924 mm from joint to joint; the screw runs 15 mm beside the base
+  // joint: sqrt(189.29235^2 - 15^2) = 188.69709.
   EXPECT_THAT(outcome.out, StartsWith("l1_mm,l2_mm,l3_mm,l4_mm,l5_mm,l6_mm,status\n188.697"));
   EXPECT_THAT(outcome.out, HasSubstr(",ok\n"));
 }

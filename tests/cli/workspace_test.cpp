@@ -70,8 +70,9 @@ TEST(SlowWorkspace, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(SlowWorkspace, TiltCostsTheHexapodItsBallJoints) {
-  // Reference section A: .55 of the 100 mm cube upright and .10 at 30 degrees about X, which is azimuth -90.
-  // The shipped machine has a limit more, the distance of the screws, and is told on a coarse grid: 0.03.
+  // docs/reference.md#machine-g4: .55 of the 100 mm cube upright and .10 at 30 degrees about X, which is
+  // azimuth -90. The shipped machine has a limit more, the distance of the screws, and is told on a coarse
+  // grid: 0.03.
   const Folder folder;
   ASSERT_EQ(understudy("workspace --step 5 --out " + (folder / "upright")).status, 0);
   ASSERT_EQ(understudy("workspace --step 5 --tilt 30 --azimuth -90 --out " + (folder / "tilted")).status, 0);

@@ -30,7 +30,7 @@ TEST(ChainDescription, TheArmIsTheOneOfItsFile) {
   EXPECT_DOUBLE_EQ(m.chain->kinematics.condition_max, 200);
   EXPECT_DOUBLE_EQ(m.chain->kinematics.chain.axes[1].lower, from_deg(-45));
   EXPECT_DOUBLE_EQ(m.chain->kinematics.home[4], from_deg(55));
-  // Reference H: 0.36 arcmin in every joint; 3.6 degrees a turn of 8192 counts.
+  // docs/reference.md#robot-arm: 0.36 arcmin in every joint; 3.6 degrees a turn of 8192 counts.
   for (const double play : m.chain->play) EXPECT_NEAR(play, from_deg(0.36 / 60), 1e-15);
   EXPECT_NEAR(m.drives[0].step(), from_deg(3.6) / 8192, 1e-18);
   EXPECT_DOUBLE_EQ(m.drives[5].velocity_max, from_deg(420));
@@ -41,7 +41,8 @@ TEST(ChainDescription, TheArmIsTheOneOfItsFile) {
   EXPECT_NEAR(mass, 26.6, 1e-9);  // "about 27 kg in all"
   EXPECT_FALSE(m.has_microscope);
   EXPECT_TRUE(m.X_WB.translation().isApprox(Vec3(-0.45, 0, -0.2), 1e-12));
-  // Ishak 2018, Motoman SV3X: 677 mm from the second axis to the wrist's flange... straight out, reference H.
+  // Ishak 2018, Motoman SV3X: 677 mm from the second axis to the wrist's flange... straight out,
+  // docs/reference.md#robot-arm.
   EXPECT_NEAR(to_mm(0.15 + 0.26 + std::hypot(0.06, 0.26)), 676.8, 0.05);
 }
 

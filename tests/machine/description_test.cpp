@@ -74,7 +74,8 @@ TEST(MachineDescription, ShippedHexapodIsMachineG4) {
   const auto m = load_machine("hexapod");
   EXPECT_EQ(m.name, "hexapod");
   EXPECT_EQ(m.sha256, sha256_hex(read_file(kShipped)));
-  // Reference A: every strut of G4 is 189.29 mm at home with dev 0; dev 15 makes it sqrt(189.29^2 - 15^2).
+  // docs/reference.md#machine-g4: every strut of G4 is 189.29 mm at home with dev 0; dev 15 makes it
+  // sqrt(189.29^2 - 15^2).
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
     const Vec3 d = m.hexapod.geometry.base_joint[i] - m.X_BT_home * m.hexapod.geometry.platform_joint[i];
     EXPECT_NEAR(to_mm(d.norm()), 189.2924, 1e-4);
@@ -82,7 +83,8 @@ TEST(MachineDescription, ShippedHexapodIsMachineG4) {
   kinematics::StrutLengths lengths;
   ASSERT_EQ(kinematics::inverse(m.hexapod.geometry, m.X_BT_home, lengths), kinematics::SolveStatus::ok);
   EXPECT_NEAR(to_mm(lengths[0]), 188.6972, 1e-4);
-  // Ball joints 16 mm apart or more, base joints 45 mm or more (reference A, to the millimetre).
+  // Ball joints 16 mm apart or more, base joints 45 mm or more (docs/reference.md#machine-g4, to the
+  // millimetre).
   EXPECT_NEAR(to_mm((m.hexapod.geometry.platform_joint[0] - m.hexapod.geometry.platform_joint[1]).norm()),
               2 * 29 * std::sin(from_deg(17)), 1e-9);
   EXPECT_GT(to_mm((m.hexapod.geometry.base_joint[1] - m.hexapod.geometry.base_joint[2]).norm()), 45);

@@ -20,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Material, ShippedOnesAreTheReferences) {
-  // Reference section G.
+  // docs/reference.md#cooling.
   const Material abs = load_material("abs"), pla = load_material("pla");
   EXPECT_EQ(abs.density, 1040);
   EXPECT_EQ(abs.specific_heat, 2080);

@@ -125,7 +125,8 @@ TEST(SlowTolerances, UncalibratedMachinesMissByMillimetres) {
   const auto m = load_machine("hexapod");
   const auto errors = tip_errors(m, m.tolerances.manufactured, 1000, 200);
   RecordProperty("median_um", static_cast<int>(to_um(quantile(errors, 0.5))));
-  // Reference B saw 1.4 mm on one machine of this geometry: an ordinary draw of this set.
+  // docs/reference.md#calibration-figures saw 1.4 mm on one machine of this geometry: an ordinary draw of
+  // this set.
   EXPECT_LT(quantile(errors, 0.05), 1.4e-3);
   EXPECT_GT(quantile(errors, 0.95), 1.4e-3);
   EXPECT_GT(share_below(errors, 5e-3) - share_below(errors, 1e-3), 0.8);

@@ -34,7 +34,7 @@ TEST(ProcessCheck, ExtrusionBeforeAnyTemperatureNamesTheLine) {
   EXPECT_EQ(refusal("G1 X5 F300\n"), "accepted") << "travel needs no heat";
 }
 
-// ABS is solid below 105 C, PLA below 60 C (reference section G).
+// ABS is solid below 105 C, PLA below 60 C (docs/reference.md#cooling).
 TEST(ProcessCheck, ExtrusionOfSolidMaterialNamesTemperatureAndLimit) {
   EXPECT_THAT(
       refusal("M104 S90\nG1 X5 E0.2 F300\n"),

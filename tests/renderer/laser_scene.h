@@ -1,5 +1,5 @@
-// The arrangement of reference section D: camera 45 degrees, laser 40 degrees, azimuths 90 degrees apart, 64
-// px/mm, spot of 0.15 mm; the beam crosses the tip plane 1.1 mm beside the nozzle.
+// The arrangement of docs/reference.md#dot-and-gap: camera 45 degrees, laser 40 degrees, azimuths 90 degrees
+// apart, 64 px/mm, spot of 0.15 mm; the beam crosses the tip plane 1.1 mm beside the nozzle.
 #pragma once
 
 #include "core/units.h"

@@ -211,7 +211,8 @@ TEST(LaserView, TheNozzleTakesTheBeamBeforeThePart) {
 }
 
 TEST(LaserView, ABeamGrazingTheNozzleIsClippedAndAClearOneIsNot) {
-  // Reference D: clean at 0.6 mm from the flat, clipped (error 0.5 to 0.9 px) within 0.25 mm of it.
+  // docs/reference.md#dot-and-gap: clean at 0.6 mm from the flat, clipped (error 0.5 to 0.9 px) within 0.25
+  // mm of it.
   LaserView view;
   const auto error_at = [&](double clearance) {
     LaserScene scene = clean_scene();

@@ -24,8 +24,8 @@ TEST(TrueDot, LiesWhereTheBeamMeetsASphere) {
 }
 
 TEST(TrueDot, MovesWithTheSurfaceByTheShiftOfSong) {
-  // Reference D: shift = S sin(alpha + beta) / cos(alpha) px per mm of gap for devices on opposite sides of
-  // the normal; 45 / 45 degrees at 100 px/mm gives 141 px/mm.
+  // docs/reference.md#dot-and-gap: shift = S sin(alpha + beta) / cos(alpha) px per mm of gap for devices on
+  // opposite sides of the normal; 45 / 45 degrees at 100 px/mm gives 141 px/mm.
   LaserScene scene = clean_scene();
   scene.tool_bodies = {};
   const double a = from_deg(45);

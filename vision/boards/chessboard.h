@@ -1,4 +1,4 @@
-// Sub-pixel corners of the printed chessboard (Song 2015, appendix B.1; reference section C).
+// Sub-pixel corners of the printed chessboard (Song 2015, appendix B.1; docs/reference.md#two-cameras).
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Centres of the spherical targets on the moving platform, dark before a lit backdrop (Song 2015, section 4
-// and appendix B.2; reference section C).
+// and appendix B.2; docs/reference.md#two-cameras).
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Sub-pixel position of the laser dot in a grey image, with covariance (Song 2015, 3.3; reference D).
+// Sub-pixel position of the laser dot in a grey image, with covariance (Song 2015, 3.3;
+// docs/reference.md#dot-and-gap).
 #pragma once
 
 #include "core/image.h"
@@ -43,7 +44,8 @@ double speckle_area_px2(double wavelength, double aperture_sine, double px_per_m
 DotMeasurement measure_dot(const Image& image, const DotOptions& options);
 
 /// The same dot by a least-squares fit of an elliptic Gaussian on a level ground, for comparison: dearer, and
-/// worse under speckle (reference D). Its covariance takes the residuals as independent from grain to grain.
+/// worse under speckle (docs/reference.md#dot-and-gap). Its covariance takes the residuals as independent
+/// from grain to grain.
 DotMeasurement fit_dot(const Image& image, const DotOptions& options);
 
 }  // namespace understudy::vision

@@ -8,7 +8,7 @@
 
 namespace understudy::sim {
 
-/// Share of a position error that one step removes (reference I).
+/// Share of a position error that one step removes (docs/reference.md#bullet).
 constexpr double kErrorReduction = 0.8;
 
 /// Inelastic stops at -travel/2 and +travel/2 of the joint's position against the side, or a rigid coupling

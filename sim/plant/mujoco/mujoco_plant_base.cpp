@@ -131,7 +131,7 @@ void MujocoPlantBase::set_condition(int axis, const AxisCondition& condition) {
 
 void MujocoPlantBase::command_drives(const DriveCommand& command) {
   // A MuJoCo constraint is a spring and damper towards a fixed target: leading the target by damping over
-  // stiffness times the rate removes the lag (reference I).
+  // stiffness times the rate removes the lag (docs/reference.md#mujoco).
   const double lead = 2 * kConstraintSteps * options_.timestep * kImpedance;  // [s]
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     Drive& drive = drives_[i];

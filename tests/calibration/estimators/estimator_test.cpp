@@ -58,7 +58,8 @@ TEST(MaximumLikelihood, SettlesOnMeasurementsThatAreNearlyExact) {
   }
 }
 
-// Reference B: 1.4e-2, 8e-7, 9e-13 mm on its machine. The order of each is held, on five others.
+// docs/reference.md#calibration-figures: 1.4e-2, 8e-7, 9e-13 mm on its machine. The order of each is held, on
+// five others.
 TEST(IkResidual, GaussNewtonSquaresTheErrorWithEveryIteration) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Case c = make_case(seed, 12);
@@ -136,7 +137,7 @@ TEST(Estimators, TipErrorDoesNotDependOnFrameOrOrder) {
   }
 }
 
-// Reference B: 15 for 14 costs 9 um median with the paper's estimator.
+// docs/reference.md#identifiable-parameters: 15 for 14 costs 9 um median with the paper's estimator.
 TEST(WithDeviation, FindsDevWhereAWrongOneCostsMicrometres) {
   double sum = 0;
   constexpr int kMachines = 5;
@@ -149,7 +150,7 @@ TEST(WithDeviation, FindsDevWhereAWrongOneCostsMicrometres) {
     EXPECT_NEAR(found.parameters.geometry.deviation, 0.014, 1e-10);
     EXPECT_LT(c.tip_errors(found.parameters).back(), 1e-11);
   }
-  EXPECT_NEAR(sum, 9, 3);  // reference B; machines and poses differ
+  EXPECT_NEAR(sum, 9, 3);  // docs/reference.md#whitening; machines and poses differ
 }
 
 TEST(WithDeviation, StatesItsOwnUncertainty) {

@@ -120,7 +120,8 @@ TEST_F(MeasurementTable, MayHaveItsColumnsInAnyOrder) {
   EXPECT_NEAR(m.poses[0].axes[0], 0.2001, 1e-12);
   EXPECT_TRUE(m.poses[0].X_WT.translation().isApprox(Vec3(1e-3, 2e-3, 50e-3), 1e-12));
   EXPECT_FALSE(m.noise_given);
-  EXPECT_NEAR(m.poses[0].covariance(0, 0), 400e-12, 1e-18) << "20 um of reference B";
+  EXPECT_NEAR(m.poses[0].covariance(0, 0), 400e-12, 1e-18)
+      << "20 um of docs/reference.md#calibration-figures";
 }
 
 TEST_F(MeasurementTable, ADevicesFrameIsTheSameInEveryRow) {

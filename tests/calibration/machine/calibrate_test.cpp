@@ -248,7 +248,7 @@ TEST_F(Calibrate, ACalibratedMachineCanBeCalibratedAgain) {
   // Commands now come from the first calibration; the twin is the same.
   const CalibrateResult again = calibrated(path.string(), 5, 100);
   const double twice = rms(open_loop_errors(again.machine, 5));
-  // Reference B: about 35 um with 12 random poses, 9 um with 100.
+  // docs/reference.md#calibration-figures: about 35 um with 12 random poses, 9 um with 100.
   EXPECT_LT(twice, once);
   EXPECT_LT(twice, 20e-6);
 }

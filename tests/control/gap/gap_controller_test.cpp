@@ -55,7 +55,7 @@ TEST(GapController, ReportsTheGapThatIsThere) {
     const GapOutcome outcome = stage.run();
     ASSERT_EQ(outcome.stop, GapStop::none) << outcome.why;
     squares += std::pow(outcome.gap - stage.rig().gap_now(), 2);
-    EXPECT_LT(outcome.sigma, 10e-6);  // the goal of reference D for one frame
+    EXPECT_LT(outcome.sigma, 10e-6);  // the goal of docs/reference.md#dot-and-gap for one frame
   }
   // Jitter of 0.35 px at 14.2 um/px is 5.0 um a look and 2.9 um over three; 40 runs know that to 11 %.
   const double expected = 0.35 * 14.2e-6 / std::sqrt(3);

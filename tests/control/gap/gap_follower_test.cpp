@@ -106,7 +106,7 @@ TEST(GapFollower, WithoutASlopeTheErrorIsRateTimesDelay) {
 }
 
 TEST(GapFollower, AveragesSpeckle) {
-  constexpr double kNoise = 6e-6;  // [m], reference D: 3.5 to 6.2 um a frame with speckle
+  constexpr double kNoise = 6e-6;  // [m], docs/reference.md#dot-and-gap: 3.5 to 6.2 um a frame with speckle
   double gap = 0, moved = 0;
   constexpr int kRuns = 20;
   for (int i = 0; i < kRuns; ++i) {

@@ -69,8 +69,8 @@ DotWorld through_focus(double degrees_about_x) {
 }
 
 TEST(GapOptics, ScaleIsThatOfTheReference) {
-  // Reference D: 14.2 um/px on a flat, 21.2 at 30 degrees tilt (to their last digit, and perspective over the
-  // range of gaps from which they were taken).
+  // docs/reference.md#dot-and-gap: 14.2 um/px on a flat, 21.2 at 30 degrees tilt (to their last digit, and
+  // perspective over the range of gaps from which they were taken).
   EXPECT_NEAR(um_per_px(through_focus(0), 0), 14.2, 0.1);
   EXPECT_NEAR(um_per_px(through_focus(-30), 0), 21.2, 0.1);
   // 14.8 on the 31 mm bottle, in a prototype whose dot lay nearer to the axis: ours meets a slope 1 degree
@@ -135,8 +135,9 @@ TEST(GapReading, InvertsExactDotsOverTheWholeRange) {
 }
 
 TEST(GapReading, ADotBesideTheAxisAddsSlopeAndCurvature) {
-  // Reference D: a dot e beside the axis adds e tan(tilt) + e^2 / 2R to what a flat, square surface would
-  // say. Here the surface falls away from the axis towards the dot, so the flat model sees a larger gap.
+  // docs/reference.md#dot-and-gap: a dot e beside the axis adds e tan(tilt) + e^2 / 2R to what a flat, square
+  // surface would say. Here the surface falls away from the axis towards the dot, so the flat model sees a
+  // larger gap.
   const double gap = 0.13e-3;
   const auto flat_reading = [](const DotWorld& world, double g) {
     GapReading reading;

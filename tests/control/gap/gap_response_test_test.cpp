@@ -16,7 +16,7 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kAim = 0.13e-3;    // [m]
-constexpr double kSpeckle = 0.35;   // [px], 1 sigma (reference D: 0.30 to 0.46 px)
+constexpr double kSpeckle = 0.35;   // [px], 1 sigma (docs/reference.md#dot-and-gap: 0.30 to 0.46 px)
 constexpr double kStandoff = 2e-3;  // [m]
 constexpr double kLeft = 0.02e-3;   // [m]: half of the accepted minimum is kept by dead reckoning, less 4
                                     // sigma of the look from which it counts, at 5 um and 2 sigma of scale

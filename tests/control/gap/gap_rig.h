@@ -25,7 +25,7 @@ struct GapRigOptions {
   DotWorld world;
   Vec3 tip_error_W{0, 0, 0};  ///< [m], true tip minus commanded tip
   Vec3 tool_error{0, 0, 0};   ///< [rad], rotation vector in W
-  double jitter_px = 0.35;    ///< 1 sigma of speckle (reference D: 0.30 to 0.46 px)
+  double jitter_px = 0.35;    ///< 1 sigma of speckle (docs/reference.md#dot-and-gap: 0.30 to 0.46 px)
   std::uint64_t seed = 1;
 };
 

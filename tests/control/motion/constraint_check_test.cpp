@@ -56,7 +56,7 @@ TEST(ConstraintCheck, ProgramWithinLimitsHasNoFindingAndItsRangesAreKnown) {
     EXPECT_GE(report.acceleration_max[i], 0.9 * hexapod.limits.tip_acceleration);
   }
   EXPECT_EQ(report.axis_max[7], 0);
-  EXPECT_GE(report.condition_worst, 6.1);  // reference A at home
+  EXPECT_GE(report.condition_worst, 6.1);  // docs/reference.md#machine-g4 at home
   EXPECT_LE(report.condition_worst, 10);
 }
 
@@ -123,7 +123,7 @@ TEST(ConstraintCheck, ScrewsTooNearAreFound) {
 
 TEST(ConstraintCheck, BadConditioningIsFound) {
   HexapodForTest hexapod;
-  hexapod.machine.hexapod.limits.condition_max = 6.0;  // home has 6.1, reference A
+  hexapod.machine.hexapod.limits.condition_max = 6.0;  // home has 6.1, docs/reference.md#machine-g4
   const auto report =
       check_constraints(program_of({hexapod.print_to(hexapod.at({1e-4, 0, 0}), 0.01, 5)}), hexapod.machine);
   const auto found = of_kind(report, LimitKind::singularity);

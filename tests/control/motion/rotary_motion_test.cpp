@@ -24,7 +24,8 @@ const FiveAxisForTest& printer() {
   return five_axis;
 }
 
-// The slides by hand: back through both turns, about their axes (reference section F with pivots).
+// The slides by hand: back through both turns, about their axes (docs/reference.md#five-axis-printer with
+// pivots).
 Vec3 slides(const Vec3& p_WT, double b, double c) {
   const auto& g = printer().machine.chain->kinematics.parameters;
   const Vec3 b_axis(g[0], 0, g[1]), c_axis(g[2], g[3], 0);

@@ -1,4 +1,4 @@
-// The arm of reference section H with a tilted tool, and an arm whose wrist axes do not meet.
+// The arm of docs/reference.md#robot-arm with a tilted tool, and an arm whose wrist axes do not meet.
 #pragma once
 
 #include <numbers>

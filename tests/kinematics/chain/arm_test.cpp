@@ -91,10 +91,10 @@ void expect_round_trips(int cases, std::uint64_t seed) {
     }
     found_again += again;
   }
-  // Reference H: 2e-12 mm for the prototype; here 20 roundings of half a metre.
+  // docs/reference.md#robot-arm: 2e-12 mm for the prototype; here 20 roundings of half a metre.
   EXPECT_LE(worst_m, 5e-15);
   EXPECT_LE(worst_rad, 5e-15);
-  EXPECT_EQ(of_4 + of_8, cases);  // reference H: 4 or 8 solutions
+  EXPECT_EQ(of_4 + of_8, cases);  // docs/reference.md#robot-arm: 4 or 8 solutions
   EXPECT_GT(of_8, cases / 4);
   EXPECT_GT(of_4, cases / 20);
   EXPECT_EQ(found_again, cases);
@@ -124,7 +124,7 @@ TEST(ArmKinematics, BranchCodesSayWhatOneSees) {
   }
 }
 
-// 150 + 260 + sqrt(60^2 + 260^2) = 676.83 mm (reference H: 676.8, published 677).
+// 150 + 260 + sqrt(60^2 + 260^2) = 676.83 mm (docs/reference.md#robot-arm: 676.8, published 677).
 TEST(ArmKinematics, TheWristReachesAsFarAsTheDataSheetSays) {
   const auto tool_for_wrist_at = [](double x) {
     return make_pose(Mat3(Mat3::Identity()), Vec3(x, 0, 0.300)) *
@@ -155,7 +155,7 @@ TEST(ArmKinematics, AStraightWristKeepsTheFourthAxis) {
     kept = kept || same_turn(s.axes, q, 1e-12);
   }
   EXPECT_TRUE(kept);
-  // Without a previous posture it is 0, and j6 does all the turning (reference H).
+  // Without a previous posture it is 0, and j6 does all the turning (docs/reference.md#robot-arm).
   const auto arm = make_chain_mechanism(sv3x());
   ArmAxes found{};
   ASSERT_EQ(arm->inverse(X, {}, found), SolveStatus::ok);

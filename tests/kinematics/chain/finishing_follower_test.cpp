@@ -1,4 +1,5 @@
-// The four test paths of Yu 2023, section 4 (figure 6, table 2), as reference section E tells them.
+// The four test paths of Yu 2023, section 4 (figure 6, table 2), see
+// docs/reference.md#finishing-stage.
 #include "kinematics/chain/finishing_follower.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kStep = from_mm(0.025);
-constexpr FinishingGeometry kStage{0.25, 0.08};  // unpublished; L3 cancels in the errors (reference E)
+// Unpublished; L3 cancels in the errors (docs/reference.md#finishing-stage).
+constexpr FinishingGeometry kStage{0.25, 0.08};
 
 struct Path {
   std::vector<Pose> poses;         // X_ST: the end mill level, along the wall's normal
@@ -51,7 +53,7 @@ Path cross(double width, double radius) {
   }
   double perimeter = 0;
   for (const Piece& piece : pieces) perimeter += piece.length;
-  EXPECT_NEAR(perimeter, 4 * width - 24 * radius + 6 * kPi * radius, 1e-12);  // reference E
+  EXPECT_NEAR(perimeter, 4 * width - 24 * radius + 6 * kPi * radius, 1e-12);
   const int steps = static_cast<int>(std::lround(perimeter / kStep));
   Path path;
   Vec2 p(width / 2, 0);
@@ -146,8 +148,8 @@ Error closed_form(const Path& path) {
 struct Row {
   const char* name;
   std::function<Path()> path;
-  double rms, peak;              // [nrad], reference E's prediction
-  bool reproduced;               // by reference E
+  double rms, peak;              // [nrad], predicted in docs/reference.md#finishing-stage
+  bool reproduced;               // by docs/reference.md#finishing-stage
   double paper_rms, paper_peak;  // [nrad], table 2
   double paper_distance;         // [nm], RMS
 };
@@ -179,11 +181,12 @@ TEST(FinishingFollower, WithoutCorrectionThePapersOrientationRowsComeBack) {
     EXPECT_NEAR(followed.orientation.peak, expected.peak, 0.01 * expected.peak) << row.name;
     EXPECT_NEAR(followed.orientation.rms * 1e9, row.rms, 0.02 * row.rms) << row.name;
     EXPECT_NEAR(followed.orientation.peak * 1e9, row.peak, 0.02 * row.peak) << row.name;
-    // Distance in magnitude only: lengths, units and start are unpublished (reference E).
+    // Distance in magnitude only: lengths, units and start are unpublished
+    // (docs/reference.md#finishing-stage).
     EXPECT_GT(followed.distance.rms * 1e9, row.paper_distance / 30) << row.name;
     EXPECT_LT(followed.distance.rms * 1e9, row.paper_distance * 30) << row.name;
     // The paper's own figures, to the digits it prints; its fourth row is a third of what its scheme gives
-    // (reference E), and must not pass unnoticed should that ever change.
+    // (docs/reference.md#finishing-stage), and must not pass unnoticed should that ever change.
     const bool as_printed = std::abs(followed.orientation.rms * 1e9 - row.paper_rms) <= 0.015 &&
                             std::abs(followed.orientation.peak * 1e9 - row.paper_peak) <= 0.03;
     EXPECT_EQ(as_printed, row.reproduced) << row.name;

@@ -153,7 +153,8 @@ TEST(MinimumNorm, RatesMakeTheTwistAndNoOthersAreShorter) {
   }
 }
 
-// Reference E: six axes, rank 5. The free motion turns bed and wrist against each other and slides along.
+// docs/reference.md#finishing-stage: six axes, rank 5. The free motion turns bed and wrist against each other
+// and slides along.
 TEST(MinimumNorm, TheStageHasOneRedundantMotion) {
   Random random(47, "redundancy");
   const Chain chain = finishing_chain(kStage);

@@ -35,7 +35,7 @@ FiveAxes random_axes(Random& random, double c_max = 3 * kPi) {
           random.uniform(-kPi, kPi), random.uniform(-c_max, c_max)};
 }
 
-// Reference F, written out: no rotation matrix of the code under test.
+// docs/reference.md#five-axis-printer, written out: no rotation matrix of the code under test.
 Vec3 tip_of_reference(const FiveAxes& q) {
   const double cb = std::cos(q[3]), sb = std::sin(q[3]), cc = std::cos(q[4]), sc = std::sin(q[4]);
   const double u = cb * q[0] + sb * q[2];
@@ -102,7 +102,7 @@ void expect_round_trips(int poses, std::uint64_t seed) {
         EXPECT_NEAR(found[i], q[i], 1e-10) << "seed " << seed << " pose " << n << " axis " << i;
       if (::testing::Test::HasFailure()) return;
     }
-    EXPECT_LE(worst_tip, 6e-14);  // reference F: over 20 000 poses
+    EXPECT_LE(worst_tip, 6e-14);  // docs/reference.md#five-axis-printer: over 20 000 poses
     EXPECT_LE(worst_axis, 6e-14);
   }
 }

@@ -1,5 +1,5 @@
-// Machine G4 of reference section A, for tests of the kinematics alone: B and T coincide with the cube's
-// axes, the origin of B is the cube's centre, home is the tip there with the tool upright.
+// Machine G4 (docs/reference.md#machine-g4), for tests of the kinematics alone: B and T coincide with the
+// cube's axes, the origin of B is the cube's centre, home is the tip there with the tool upright.
 #pragma once
 
 #include <cmath>

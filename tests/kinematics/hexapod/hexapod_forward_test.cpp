@@ -41,7 +41,8 @@ void expect_round_trips(int poses, std::uint64_t seed) {
     EXPECT_LE(warm.iterations, 4) << where;
     if (::testing::Test::HasFailure()) return;
   }
-  EXPECT_LE(iterations / near_home, 5.0);  // reference A: mean 5.0 from home within 15 degrees
+  // docs/reference.md#hexapod-kinematics: mean 5.0 from home within 15 degrees.
+  EXPECT_LE(iterations / near_home, 5.0);
 }
 
 TEST(HexapodKinematics, ForwardInvertsInverseInTheWorkspace) { expect_round_trips(10'000, 1); }

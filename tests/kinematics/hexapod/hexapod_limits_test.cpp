@@ -16,8 +16,8 @@ std::vector<LimitViolation> violations_at(const Pose& X, const HexapodLimits& li
   return violations;
 }
 
-// Reference A, table: .55 .51 .32 .10. Cells of 2.5 mm: the reference's two digits and the grid's own error
-// (0.002 between cells of 5 and 1.25 mm) make 0.007.
+// docs/reference.md#machine-g4, table: .55 .51 .32 .10. Cells of 2.5 mm: the reference's two digits and the
+// grid's own error (0.002 between cells of 5 and 1.25 mm) make 0.007.
 TEST(HexapodLimits, ReachableFractionOfTheCubeIsThatOfTheReference) {
   const HexapodGeometry g = nominal_g4();
   const HexapodJoints joints = joints_at_home(g, Pose::Identity());
@@ -34,8 +34,8 @@ TEST(HexapodLimits, ReachableFractionOfTheCubeIsThatOfTheReference) {
   }
 }
 
-// Reference A says 27 deg. That holds to its rounding towards the struts' planes of symmetry (26.5 to 29.1);
-// an independent computation in between finds 25.7 deg at the least (azimuth 15 deg).
+// docs/reference.md#machine-g4 says 27 deg. That holds to its rounding towards the struts' planes of symmetry
+// (26.5 to 29.1); an independent computation in between finds 25.7 deg at the least (azimuth 15 deg).
 TEST(HexapodLimits, HomeTiltsInEveryAzimuth) {
   const HexapodGeometry g = nominal_g4();
   const HexapodJoints joints = joints_at_home(g, Pose::Identity());
@@ -101,8 +101,8 @@ TEST(HexapodLimits, JointsKeepTheDistancesOfTheReference) {
   }
   EXPECT_GE(base, 0.045);
   EXPECT_NEAR(base, 2 * 0.080 * std::sin(from_deg(17)), 1e-12);  // chord over 34 degrees
-  EXPECT_GE(struts, 0.0160);                                     // reference A: 16 mm at the closest
-  EXPECT_LE(struts, 2 * 0.029 * std::sin(from_deg(17)));         // the ball joints of a pair
+  EXPECT_GE(struts, 0.0160);  // docs/reference.md#machine-g4: 16 mm at the closest
+  EXPECT_LE(struts, 2 * 0.029 * std::sin(from_deg(17)));  // the ball joints of a pair
 }
 
 // Slow and obvious: the least over a fine lattice of points of both segments, which is never below the true

@@ -28,8 +28,8 @@ StrutLengths lengths_at(const HexapodGeometry& g, const Pose& X) {
   return lengths;
 }
 
-// Reference A: 189.29 mm at home; the square root by hand is sqrt(181^2 + 80^2 + 29^2 - 2 80 29 cos 26 deg)
-// mm.
+// docs/reference.md#machine-g4: 189.29 mm at home; the square root by hand is sqrt(181^2 + 80^2 + 29^2 - 2 80
+// 29 cos 26 deg) mm.
 TEST(HexapodKinematics, EveryStrutOfG4IsAsLongAtHomeAsTheLawOfCosinesSays) {
   const double expected =
       1e-3 * std::sqrt(181.0 * 181 + 80 * 80 + 29 * 29 - 2 * 80 * 29 * std::cos(from_deg(26)));
@@ -124,7 +124,7 @@ TEST(HexapodKinematics, EqualStrutForcesAtHomePushAlongZOnly) {
 
 TEST(HexapodKinematics, ConditionNumberAtHomeIsThatOfTheReferenceTable) {
   EXPECT_NEAR(condition_number(nominal_g4(), Pose::Identity()), 6.1,
-              0.05);  // reference A, table: one decimal
+              0.05);  // docs/reference.md#machine-g4, table: one decimal
 }
 
 TEST(HexapodKinematics, BadPosesAreNamedAndLeaveTheResultAlone) {

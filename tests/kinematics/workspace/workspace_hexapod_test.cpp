@@ -18,9 +18,9 @@ Workspace g4_workspace(double tilt_deg, double step_mm) {
   return evaluate_workspace(*mechanism, request);
 }
 
-// Reference section A prints two digits, and tells no grid: 0.01 covers its rounding (0.005) and the share of
-// points within half a step of the set's boundary that fall on the other side: from 5 to 2 mm, the fractions
-// move by less than 0.0025.
+// docs/reference.md#machine-g4 prints two digits, and tells no grid: 0.01 covers its rounding (0.005) and the
+// share of points within half a step of the set's boundary that fall on the other side: from 5 to 2 mm, the
+// fractions move by less than 0.0025.
 constexpr std::array<std::pair<double, double>, 4> kFractions{{{0, .55}, {10, .51}, {20, .32}, {30, .10}}};
 
 TEST(HexapodWorkspace, ReachesTheReferencesShareOfTheCube) {
@@ -37,8 +37,8 @@ TEST(SlowHexapodWorkspace, AFinerGridTellsTheSame) {
 }
 
 TEST(HexapodWorkspace, StrutsBindUprightAndBallJointsWhenTilted) {
-  // Reference section A: with and without joints the fractions hardly differ upright, and a tilt of 30 deg
-  // spends the whole range of the ball joints.
+  // docs/reference.md#machine-g4: with and without joints the fractions hardly differ upright, and a tilt of
+  // 30 deg spends the whole range of the ball joints.
   const Workspace upright = g4_workspace(0, 5), inclined = g4_workspace(30, 5);
   ASSERT_FALSE(upright.families.empty());
   EXPECT_EQ(upright.families.front().part, "strut");

@@ -21,7 +21,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // FCL's round bodies are polytopes 0.25 um off (fcl_world.h), a blob's disc as well.
 constexpr double kPolytopes = 0.6e-6;  // [m]
-// Its iterations now and then end early, at too long a distance (reference section J: within 0.003 mm).
+// Its iterations now and then end early, at too long a distance (docs/reference.md#rendering-and-collision:
+// within 0.003 mm).
 constexpr double kEndsEarly = 3e-6;  // [m]
 
 // What a bead is rounded around, as FCL has it.

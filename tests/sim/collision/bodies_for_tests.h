@@ -1,4 +1,4 @@
-// A hexapod filled by hand (reference section A, G4) and closed meshes of simple solids.
+// A hexapod filled by hand (docs/reference.md#machine-g4, G4) and closed meshes of simple solids.
 #pragma once
 
 #include <memory>

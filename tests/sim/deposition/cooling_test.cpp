@@ -36,8 +36,8 @@ TEST(Cooling, ConvectionAloneIsAnExponential) {
   m.emissivity = 0;
   const double d = from_mm(0.4), h = 60, start = m.nozzle_temperature, ambient = 298.15;
   const CoolingCurve curve(m, d, start, fixed(h));
-  // t = rho cp d/(4 h) ln((T0 - Ta)/(T - Ta)), reference section G. The table is in that logarithm: rounding
-  // only.
+  // t = rho cp d/(4 h) ln((T0 - Ta)/(T - Ta)), docs/reference.md#cooling. The table is in that logarithm:
+  // rounding only.
   const double constant = m.density * m.specific_heat * d / (4 * h);
   const double expected = constant * std::log((start - ambient) / (m.glass_transition - ambient));
   EXPECT_NEAR(curve.time_until(m.glass_transition), expected, 1e-9);
@@ -69,7 +69,7 @@ TEST(Cooling, FollowsTheEquationWithRadiationAndAirThatChangesWithTemperature) {
 }
 
 TEST(Cooling, TimesToTheGlassTransitionAreTheReferences) {
-  // Reference section G: h, then seconds at 0.40 and 0.48 mm.
+  // docs/reference.md#cooling: h, then seconds at 0.40 and 0.48 mm.
   const double h[6] = {20, 40, 60, 100, 200, 350};
   const double abs_times[6][2] = {{6.7, 8.1}, {4.1, 4.9}, {2.9, 3.5}, {1.85, 2.2}, {.97, 1.16}, {.57, .68}};
   const double pla_times[6][2] = {{13.1, 15.7}, {7.7, 9.2}, {5.4, 6.5}, {3.4, 4.1}, {1.8, 2.1}, {1.04, 1.24}};
@@ -85,9 +85,10 @@ TEST(Cooling, TimesToTheGlassTransitionAreTheReferences) {
 }
 
 TEST(Cooling, StillAirAndWindHaveTheReferencesCoefficients) {
-  // Reference section G, for a 0.48 mm strand: "about 45" in still air, 165 at 1 m/s, 340 at 5 m/s. Natural
-  // convection changes with the strand's temperature (42 to 56), so the figure is compared at the glass
-  // transition and widely; forced convection hardly does, and 3 % covers another table of air's properties.
+  // docs/reference.md#cooling, for a 0.48 mm strand: "about 45" in still air, 165 at 1 m/s, 340 at 5 m/s.
+  // Natural convection changes with the strand's temperature (42 to 56), so the figure is compared at the
+  // glass transition and widely; forced convection hardly does, and 3 % covers another table of air's
+  // properties.
   const double d = from_mm(0.48);
   for (const machine::Material& m : {abs(), pla()}) {
     EXPECT_NEAR(convection_coefficient(d, m.glass_transition, air(0)), 45, 0.1 * 45) << m.name;

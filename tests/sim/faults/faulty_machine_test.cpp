@@ -67,7 +67,7 @@ Vec3 tip_per_strut(const machine::MachineDescription& machine) {
 }
 
 // The next order of the tip's shift: (strut's change)^2 over a lever of the platform, 30 mm; with the growths
-// of 0.1 mm here 0.3 um, and MuJoCo's constraints add less than 0.1 um (reference I).
+// of 0.1 mm here 0.3 um, and MuJoCo's constraints add less than 0.1 um (docs/reference.md#mujoco).
 constexpr double kSecondOrder = 0.4e-6;  // [m]
 
 class GrowingStrut : public testing::TestWithParam<const char*> {};
@@ -173,7 +173,8 @@ TEST(PowerCut, AnArmFallsAndAMachineOfScrewsStays) {
     const Vec3 before = hexapod.tip();
     EXPECT_EQ(hexapod.port->wait_until(1.0), Status::faulted);
     EXPECT_EQ(hexapod.port->state().fault, Fault::power);
-    EXPECT_LT((hexapod.tip() - before).norm(), 0.1e-6) << engine;  // a closed loop's error (reference I)
+    // A closed loop's error (docs/reference.md#mujoco).
+    EXPECT_LT((hexapod.tip() - before).norm(), 0.1e-6) << engine;
   }
   Rig loose(locked("hexapod", false), "mujoco", {{FaultKind::power_cut, 0, 0.1}});
   const double height = loose.tip().z();

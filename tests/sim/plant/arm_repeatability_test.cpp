@@ -1,4 +1,4 @@
-// Pose repeatability of the arm from the play of its joints (ISO 9283; reference H).
+// Pose repeatability of the arm from the play of its joints (ISO 9283; docs/reference.md#robot-arm).
 //
 // Which side a joint is on: gravity decides where its torque is above friction; elsewhere (the vertical axis,
 // the axes that carry little) the joint is where the approach left it, either side alike.
@@ -96,8 +96,8 @@ TEST(ArmRepeatability, PublishedFigureNeedsAThirdOfAMinute) {
   EXPECT_NEAR(test_arm(0.36 * kArcMinute, true), 0.03e-3, 0.003e-3);
 }
 
-// Reference H states neither poses nor sides: its 83 um per arcmin is at the lower end of what a cube gives
-// that lies elsewhere. Prints what docs/quasistatic.md says.
+// docs/reference.md#robot-arm states neither poses nor sides: its 83 um per arcmin is at the lower end of
+// what a cube gives that lies elsewhere. Prints what docs/quasistatic.md says.
 TEST(SlowArmRepeatability, DependsOnWhereTheCubeLies) {
   std::vector<double> per_minute;
   for (const double x : {0.35, 0.4, 0.45, 0.5})

@@ -52,7 +52,7 @@ TEST(BulletPlant, FollowsTheTiltedCircle) {
     closure = std::max(closure, plant->closure_error());
     tip = std::max(tip, (plant->tool_pose().translation() - X_WT.translation()).norm());
   }
-  // Reference I: 0.036 um at 200 sweeps of Gauss-Seidel, on another geometry.
+  // docs/reference.md#bullet: 0.036 um at 200 sweeps of Gauss-Seidel, on another geometry.
   EXPECT_LE(closure, 0.1e-6);
   EXPECT_LE(tip, 0.3e-6);  // as the MuJoCo plant
 }
@@ -91,7 +91,7 @@ TEST(BulletPlay, TipJumpsByThePlayWhenTheLoadReverses) {
   const double hanging = at_rest();
   machine.X_WB = machine.X_WB * make_pose(exp_rotation(Vec3(std::numbers::pi, 0, 0)), Vec3::Zero());
   const double standing = at_rest();
-  EXPECT_NEAR(standing - hanging, 100e-6 / slope(machine), 0.005 * 100e-6);  // 0.5 %: reference I
+  EXPECT_NEAR(standing - hanging, 100e-6 / slope(machine), 0.005 * 100e-6);  // 0.5 %: docs/reference.md#play
 }
 
 TEST(BulletPlay, LoopWidthWithoutGravityIsThePlayOverTheSlope) {

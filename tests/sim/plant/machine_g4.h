@@ -1,5 +1,5 @@
-// The nominal hexapod of the tests (reference A, machine G4), by hand: a plant's figures must not move when
-// somebody tunes the shipped model.
+// The nominal hexapod of the tests (docs/reference.md#machine-g4), by hand: a plant's figures must not move
+// when somebody tunes the shipped model.
 #pragma once
 
 #include <cmath>

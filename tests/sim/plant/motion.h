@@ -53,7 +53,7 @@ struct Circle {
   }
 };
 
-/// The 20 mm circle at 15 degrees of reference I, about the home of the machine.
+/// The 20 mm circle at 15 degrees of docs/reference.md#mujoco, about the home of the machine.
 inline Circle tilted_circle(const machine::MachineDescription& machine) {
   Circle circle;
   circle.centre_BT = machine.X_BT_home;

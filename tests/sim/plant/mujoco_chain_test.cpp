@@ -75,7 +75,7 @@ TEST_P(ShippedChain, WithoutPlayTheToolRestsWhereKinematicsPutsIt) {
   }
 }
 
-// Reference I, arm: tip error 0.5 um at 0.5 ms.
+// docs/reference.md#mujoco, arm: tip error 0.5 um at 0.5 ms.
 TEST_P(ShippedChain, FollowsAMovingCommandWithinAMicrometre) {
   const auto plant = nominal_plant(machine_, false);
   const AxisArray home = home_of(machine_);
@@ -136,7 +136,8 @@ INSTANTIATE_TEST_SUITE_P(Machines, ShippedChain, testing::Values("arm", "five-ax
                            return name;
                          });
 
-// Reference F: seen from the table the tool is at Rz(C) Ry(B) (X, Y, Z), B about a line 30 mm below its top.
+// docs/reference.md#five-axis-printer: seen from the table the tool is at Rz(C) Ry(B) (X, Y, Z), B about a
+// line 30 mm below its top.
 TEST(MujocoChain, ATurnedTableCarriesTheWork) {
   const auto machine = machine::load_machine("five-axis");
   const auto plant = nominal_plant(machine, false);

@@ -134,7 +134,7 @@ TEST(MujocoPlay, TipJumpsByThePlayWhenTheLoadReverses) {
   const double hanging = at_rest();
   machine.X_WB = machine.X_WB * make_pose(exp_rotation(Vec3(std::numbers::pi, 0, 0)), Vec3::Zero());
   const double standing = at_rest();
-  // 0.5 %: reference I.
+  // 0.5 %: docs/reference.md#play.
   EXPECT_NEAR(standing - hanging, 100e-6 / slope(machine, machine.X_BT_home), 0.005 * 100e-6);
 }
 
@@ -165,7 +165,7 @@ TEST(MujocoPlay, TipCrossesThePlayWhenTheDrivesFallFasterThanGravity) {
       height_in_fall(machine, built, {}, duration) - height_in_fall(machine, built, rigid, duration);
   Pose X_BT = machine.X_BT_home;
   X_BT.translation().z() -= 16 * duration * duration / 2;
-  // The struts push now: half the play above the rigid machine. 0.5 % of the jump: reference I.
+  // The struts push now: half the play above the rigid machine. 0.5 % of the jump: docs/reference.md#play.
   EXPECT_NEAR(lift, tip_at_play_end(built, X_BT, -1) - X_BT.translation().z(), 0.005 * 100e-6);
 }
 

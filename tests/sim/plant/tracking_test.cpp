@@ -9,7 +9,7 @@
 namespace understudy::sim {
 namespace {
 
-// Limits of reference I and of the figures that the project promises.
+// Limits of docs/reference.md#mujoco and of the figures that the project promises.
 constexpr double kClosure = 0.1e-6;   // [m]
 constexpr double kTipError = 0.3e-6;  // [m]
 
@@ -41,7 +41,7 @@ TEST(MujocoPlant, FollowsTheTiltedCircle) {
 }
 
 TEST(MujocoPlant, LagsWithoutVelocityFeedForward) {
-  // Lead time 2 ms at 63 mm/s: some 100 um in the struts (reference I: 120 um at 60 mm/s).
+  // Lead time 2 ms at 63 mm/s: some 100 um in the struts (docs/reference.md#mujoco: 120 um at 60 mm/s).
   const auto machine = machine_g4();
   const AsBuilt built = make_as_built(machine, "nominal", 1);
   const auto plant = make_mujoco_plant(machine, built, without_play());
@@ -58,7 +58,7 @@ TEST(MujocoPlant, LagsWithoutVelocityFeedForward) {
   EXPECT_NEAR(to_um(tip), 120, 20);  // the strut rates of another geometry and speed
 }
 
-/// Inside the strut range of G4 with room for the errors of manufacture (reference A).
+/// Inside the strut range of G4 with room for the errors of manufacture (docs/reference.md#machine-g4).
 Pose random_pose(const machine::MachineDescription& machine, Random& random) {
   for (;;) {
     const double x = random.uniform(-0.02, 0.02), y = random.uniform(-0.02, 0.02),

@@ -15,7 +15,7 @@
 namespace understudy::sim {
 namespace {
 
-/// The arrangement of reference section D, set by hand so that the shipped machine may differ.
+/// The arrangement of docs/reference.md#dot-and-gap, set by hand so that the shipped machine may differ.
 machine::MachineDescription reference_machine() {
   machine::MachineDescription m;
   m.tool.bodies = {{"nozzle", geometry::Frustum{0.5e-3, 3.5e-3, 12e-3}}};
@@ -167,8 +167,9 @@ TEST_P(MicroscopeOver, DotIsMeasuredWithinSixTenthsOfAPixelWithSpeckle) {
 }
 
 TEST(Microscope, ReproducesTheSpeckleErrorOfReferenceD) {
-  // Reference D: 0.30-0.46 px on a flat; it is what an aperture of sin u 0.015 must do. By closed form the
-  // variance is A / (8 pi) times the spot's axis ratio along, over it across: 1/cos 40 against cos 45.
+  // docs/reference.md#dot-and-gap: 0.30-0.46 px on a flat; it is what an aperture of sin u 0.015 must do. By
+  // closed form the variance is A / (8 pi) times the spot's axis ratio along, over it across: 1/cos 40
+  // against cos 45.
   machine::MachineDescription machine = reference_machine();
   machine.microscope.aperture_sine = 0.015;
   machine.laser.peak_level = 50;

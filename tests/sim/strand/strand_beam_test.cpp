@@ -1,4 +1,4 @@
-// The analytic limits of reference section G for a beam, a string and what lies between.
+// The analytic limits of docs/reference.md#limits-of-a-strand for a beam, a string and what lies between.
 #include "sim/strand/strand_beam.h"
 
 #include <cmath>
@@ -62,7 +62,7 @@ TEST(StrandLimits, ElasticBeamsBendByTheClosedForms) {
   const double load = s.load_across * std::pow(length, 4) / (s.modulus * s.second_moment);
   BeamString simple = whole(s, 10, Hold::pinned, Hold::pinned);
   ASSERT_TRUE(step(simple, 0));
-  EXPECT_NEAR(simple.deflection(5) / (5 * load / 384), 1, 1e-8);  // reference section G
+  EXPECT_NEAR(simple.deflection(5) / (5 * load / 384), 1, 1e-8);  // docs/reference.md#limits-of-a-strand
   BeamString cantilever = whole(s, 10, Hold::clamped, Hold::free);
   ASSERT_TRUE(step(cantilever, 0));
   EXPECT_NEAR(cantilever.deflection(10) / (load / 8), 1, 1e-8);
@@ -87,7 +87,7 @@ TEST(StrandLimits, AViscousStringSagsWithTheCubeRootOfTime) {
   const double first = time_of(15 * diameter), second = time_of(20 * diameter), start = 1e-6 * first;
   ASSERT_TRUE(step(strand, start / (3 * viscosity)));
   advance(start, first, 1500);
-  EXPECT_NEAR(strand.deflection(10) / (15 * diameter), 1, 5e-3);  // reference section G
+  EXPECT_NEAR(strand.deflection(10) / (15 * diameter), 1, 5e-3);  // docs/reference.md#limits-of-a-strand
   advance(first, second, 200);
   EXPECT_NEAR(strand.deflection(10) / (20 * diameter), 1, 5e-3);
 }
@@ -105,8 +105,9 @@ TEST(StrandLimits, AnElasticStringHangsByTheClosedForm) {
 }
 
 TEST(StrandLimits, SlackHangsAsAParabola) {
-  // w = L sqrt(3 eps/8) for a string that does not stretch: 306 um at 1 % and 5 mm, reference section G. So
-  // thin that the boundary layers in which it bends are 1e-4 of its length.
+  // w = L sqrt(3 eps/8) for a string that does not stretch: 306 um at 1 % and 5 mm,
+  // docs/reference.md#limits-of-a-strand. So thin that the boundary layers in which it bends are 1e-4 of its
+  // length.
   const double length = from_mm(5);
   auto s = section(length, 20, from_mm(0.4), 1e14);
   s.second_moment *= 1e-17;

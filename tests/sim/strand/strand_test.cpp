@@ -31,7 +31,7 @@ struct Row {
 
 constexpr double kLengths[3] = {5, 11, 20};  // [mm]
 
-// Reference section G, "predicted mid-span sag, clamped at both ends, no overfeed".
+// docs/reference.md#sag: mid-span, clamped at both ends, no overfeed.
 constexpr Row kTable[] = {{"pla", 0.48, 1, 20, {70, 190, 206}},    {"pla", 0.48, 1, 60, {2.9, 3.3, 4.8}},
                           {"pla", 0.48, 5, 20, {228, 1130, 2600}}, {"pla", 0.48, 5, 60, {77, 551, 1275}},
                           {"pla", 0.48, 5, 150, {12.5, 29, 32}},   {"abs", 0.45, 5, 20, {59, 500, 1300}},
@@ -116,7 +116,7 @@ TEST(Strand, MoreAirLessSagHotterMoreWiderMore) {
 }
 
 TEST(Strand, StrutsOfFiveMillimetresAtOneMillimetreASecondNeedForcedAir) {
-  // Ishak 2018: 5 mm struts, 0.48 mm, 1 mm/s, forced air: no sag. Reference section G: h 150 solidifies
+  // Ishak 2018: 5 mm struts, 0.48 mm, 1 mm/s, forced air: no sag. docs/reference.md#sag: h 150 solidifies
   // in 2.8 s, within the 5 s of a strut; still air takes 6.5 s (its h of 60).
   const machine::Material pla = machine::load_material("pla");
   const StrandResult forced = compute_sag(pla, span(5, 0.48, 1, 150));

@@ -51,8 +51,9 @@ TEST(CalibrationBenchmark, IsTheSameForEveryNumberOfThreads) {
   EXPECT_NE(one["conditions"], comparable(run_benchmark(request))["conditions"]);
 }
 
-// Reference B, 12 random poses: 32 um median for the likelihood, bound 43 um, efficiency 1 against 0.47.
-// 30 machines with one draw each know the median to about 10 % and an efficiency to 15 %.
+// docs/reference.md#calibration-figures, 12 random poses: 32 um median for the likelihood, bound 43 um,
+// efficiency 1 against 0.47. 30 machines with one draw each know the median to about 10 % and an efficiency
+// to 15 %.
 TEST(CalibrationBenchmark, UndisturbedMachinesGiveTheFiguresOfTheReference) {
   CalibrationBenchmarkRequest request = small();
   request.trials = 30;
@@ -66,7 +67,8 @@ TEST(CalibrationBenchmark, UndisturbedMachinesGiveTheFiguresOfTheReference) {
   EXPECT_NEAR(to_um(b.conditions[0].bound), 43, 0.3 * 43);
   EXPECT_NEAR(likelihood.efficiency, 1, 0.3);
   EXPECT_LT(plain.efficiency, 0.75);
-  EXPECT_GT(to_mm(b.conditions[0].uncalibrated), 1);  // reference B: 1.4 mm on one machine
+  // docs/reference.md#calibration-figures: 1.4 mm on one machine.
+  EXPECT_GT(to_mm(b.conditions[0].uncalibrated), 1);
   EXPECT_LT(to_mm(b.conditions[0].uncalibrated), 4);
   EXPECT_EQ(b.entrants[b.ranking[0].entrant].name, "maximum_likelihood");
   EXPECT_EQ(b.ranking[0].score, 1);
@@ -87,7 +89,7 @@ TEST(CalibrationBenchmark, EveryDisturbanceHurtsAndItsSpecialistHelps) {
     EXPECT_GT(plain, 1.3 * clean) << to_string(d);
     EXPECT_LT(score(b, d, specialist).median, plain / 1.3) << to_string(d);
   }
-  // dev 1 mm wrong costs 9 um (reference B): seen at 24 poses.
+  // dev 1 mm wrong costs 9 um (docs/reference.md#identifiable-parameters): seen at 24 poses.
   EXPECT_LT(score(b, Disturbance::deviation, "with_deviation").median,
             1.05 * score(b, Disturbance::deviation, "maximum_likelihood").median);
   // What is common to all poses cannot be found by anyone: 50 um a frame axis, 43 um of expansion.

@@ -1,4 +1,4 @@
-// Two cameras against what the arithmetic of their set-up allows, and against reference section C.
+// Two cameras against what the arithmetic of their set-up allows, and against docs/reference.md#two-cameras.
 #include "studies/calibration/camera_study.h"
 
 #include <cmath>
@@ -13,7 +13,8 @@ namespace {
 /// Camera 1 tells Y and Z, camera 2 X and Z: two lateral errors as they are, one halved in variance.
 double in_space(double lateral) { return std::sqrt(2.5) * lateral; }
 
-const double kPixelFloor = in_space(0.1 * 0.4 / 4267);  // [m]: 0.1 px at 400 mm; reference C: 14.8 um
+// docs/reference.md#two-cameras: 14.8 um for 0.1 px at 400 mm.
+const double kPixelFloor = in_space(0.1 * 0.4 / 4267);  // [m]
 
 // 30 draws of 60 points with 2 to 3 free directions each: 1.3 %, and what the fit of the camera adds.
 TEST(CameraStudy, WithExactBoardsOnlyThePixelsAreLeft) {
@@ -36,7 +37,7 @@ TEST(SlowCameraStudy, MisplacedBoardsCostTheirMeanOffsetAndHardlyMore) {
   const double floor = std::hypot(offset, kPixelFloor);
   const double rms = camera_study({.pixel = 0.1, .boards = {0.1e-3, 1e-3, 0}, .draws = 400, .points = 60},
                                   vision::SightMethod::pinhole, 2);
-  EXPECT_NEAR(rms, 45e-6, 0.15 * 45e-6);  // reference C
+  EXPECT_NEAR(rms, 45e-6, 0.15 * 45e-6);  // docs/reference.md#two-cameras
   EXPECT_GT(rms, 0.94 * floor);
   EXPECT_LT(rms, 1.06 * floor);
 }

@@ -1,5 +1,6 @@
-// Reference B's acceptance, and its tables. Efficiency is the bound's variance over the mean squared error; a
-// run's error has about 15 independent parts, so n runs know it to about 0.4 / sqrt(n).
+// The acceptance of docs/reference.md#whitening, and the table of #calibration-figures. Efficiency is the
+// bound's variance over the mean squared error; a run's error has about 15 independent parts, so n runs know
+// it to about 0.4 / sqrt(n).
 #include <gtest/gtest.h>
 
 #include <map>
@@ -68,8 +69,9 @@ TEST(Efficiency, WhitenedAndLikelihoodReachTheBoundAndThePlainResidualDoesNot) {
   EXPECT_GT(found.efficiency["ik_residual"], 0.35);
 }
 
-// Reference B, one machine of its own: 41 (paper's estimator), 32 (likelihood), 21 (D-optimal, likelihood)
-// um. Machines drawn here scatter from 43 to 63 (paper's estimator) and from 31 to 39 um (likelihood).
+// docs/reference.md#calibration-figures, one machine of its own: 41 (paper's estimator), 32 (likelihood), 21
+// (D-optimal, likelihood) um. Machines drawn here scatter from 43 to 63 (paper's estimator) and from 31 to 39
+// um (likelihood).
 TEST(Efficiency, TwelvePosesGiveTheReferenceFigures) {
   Summary random = over_machines(7, {12, PoseChoice::random, 8, 6});
   EXPECT_NEAR(random.median_um["ik_residual"], 41, 0.25 * 41);
@@ -81,7 +83,8 @@ TEST(Efficiency, TwelvePosesGiveTheReferenceFigures) {
 
 struct TableRow {
   std::size_t poses;
-  double bound, bound_chosen, plain, likelihood, chosen_likelihood;  // [um], reference B, G4
+  // [um], docs/reference.md#calibration-figures, G4
+  double bound, bound_chosen, plain, likelihood, chosen_likelihood;
 };
 
 TEST(SlowCalibrationTables, MeetReferenceBOverEightMachines) {

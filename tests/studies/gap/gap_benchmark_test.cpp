@@ -51,7 +51,7 @@ TEST(SlowGapBenchmark, AFrameWithSpeckleIsWithinTenMicrometresAndNothingTouches)
   const GapBenchmark b = run_gap_benchmark(request_for({"detectors", "approach", "following"}, 10));
   for (const DetectorRow& row : b.detectors) {
     if (row.detector != "centroid") continue;
-    // The goal of reference D, and of a dot that is cut what is not refused.
+    // The goal of docs/reference.md#dot-and-gap, and of a dot that is cut what is not refused.
     if (row.missed < row.frames) {
       EXPECT_LE(row.sigma_um, 10) << row.surface << ' ' << row.condition;
       EXPECT_LE(std::abs(row.bias_um), 10) << row.surface << ' ' << row.condition;

@@ -168,7 +168,7 @@ TEST(GcodeDialect, SlidesOfAxesThatCrossAtTheOriginAreTurnedAboutIt) {
   options.rotary->coordinates = Coordinates::crossing;
   options.offset_W = Vec3(0, 0, -40e-3);
   const auto steps = parse("G0 X10 Y-5 Z60 B30 C100\nG0 X11\nG28\nG0 X1\n", options);
-  // Reference section F: p = Rz(C) Ry(B) (X, Y, Z), 40 mm lower.
+  // docs/reference.md#five-axis-printer: p = Rz(C) Ry(B) (X, Y, Z), 40 mm lower.
   const Vec3 expected = turned(from_deg(30), from_deg(100)) * Vec3(11, -5, 60) - Vec3(0, 0, 40);
   EXPECT_LT((tip_mm(steps[1]) - expected).norm(), 1e-12);
   EXPECT_LT((tip_mm(steps[3]) - Vec3(1, 0, 50)).norm(), 1e-12);

@@ -1,5 +1,5 @@
-// B and C of a table that tilts and turns (Han 2024; reference section F): p = Rz(C) Ry(B) (X, Y, Z) without
-// tool-centre-point coordinates, R = Rz(C) Ry(B) with and without.
+// B and C of a table that tilts and turns (Han 2024; docs/reference.md#five-axis-printer): p = Rz(C) Ry(B)
+// (X, Y, Z) without tool-centre-point coordinates, R = Rz(C) Ry(B) with and without.
 #include <cmath>
 #include <cstdio>
 #include <utility>

@@ -38,8 +38,8 @@ Pose random_pose(Random& random) {
   return make_pose(exp_rotation(within(0.25)), Vec3(within(10e-3) + Vec3(0, 0, 0.1)));
 }
 
-// Reference section C: an equilateral triangle of 60 mm turns by sigma / 42.4 mm in its plane's axes and by
-// sigma / 60 mm about its normal.
+// docs/reference.md#two-cameras: an equilateral triangle of 60 mm turns by sigma / 42.4 mm in its plane's
+// axes and by sigma / 60 mm about its normal.
 TEST(RigidFit, RotationOfTheTriangleHasItsClosedFormSpread) {
   const CalibrationRig rig = reference_rig();
   const Pose X_WT = make_pose(exp_rotation(Vec3(0.3, -0.2, 0.7)), Vec3(0.1, 0.2, 0.3));

@@ -80,7 +80,7 @@ struct Row {
   const char* name;
   double pixel;  // [px], of corners and targets
   BoardTolerance boards;
-  double expected_um[3];  // reference section C, in the order of kMethods; 0: not told
+  double expected_um[3];  // docs/reference.md#two-cameras, in the order of kMethods; 0: not told
 };
 
 const Row kTable[] = {

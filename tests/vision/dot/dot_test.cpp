@@ -35,7 +35,7 @@ TEST(LaserDot, FollowsASpotThroughThePixelGridWithoutBias) {
 }
 
 TEST(LaserDot, StaysUnderAHundredthOfAPixelOrTwoWithCameraNoise) {
-  // Reference D: 0.013 px RMS with 8 bits and noise.
+  // docs/reference.md#dot-and-gap: 0.013 px RMS with 8 bits and noise.
   double sum = 0;
   constexpr int kFrames = 200;
   for (int k = 0; k < kFrames; ++k) {
