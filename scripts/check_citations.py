@@ -158,6 +158,18 @@ def check_file_names(root, path, text, names, report):
                 report(path, number, f"{name} is not there")
 
 
+def check_folders(root, path, text, report):
+    """Folders that a README names (`plant/`) stand in its own folder or in the root; those of a table row, in the row's first folder."""
+    for number, line in enumerate(without_code(text).split("\n"), 1):
+        row = re.match(r"\| `([a-z_]+)/`", line)
+        if path.name != "README.md" and not row:
+            continue
+        room = root / row[1] if row else path.parent
+        for name in re.findall(r"(?<![\w/.-])([a-z_]+)/(?![\w/])", line):
+            if not (root / name).is_dir() and not any(room.rglob(name)):
+                report(path, number, f"there is no folder {name}/")
+
+
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
     files = list(text_files(root))
@@ -175,6 +187,7 @@ def main():
         check_pages(root, path, text, pages, report)
         if path.suffix == ".md":
             check_links(root, path, text, pages, report)
+            check_folders(root, path, text, report)
             check_file_names(root, path, text, names, report)
     print("\n".join(broken) if broken else f"{len(files)} files: every citation resolves", file=sys.stderr if broken else sys.stdout)
     return 1 if broken else 0
