@@ -38,7 +38,7 @@ void check_first_word(const CLI::App& app, int argc, char** argv) {
 int run(int argc, char** argv) {
   CLI::App app("Rehearses prints of machines that print in many directions, and says go or no-go.",
                "understudy");
-  app.set_version_flag("--version", std::string("understudy ") + rehearsal::kVersion);
+  app.set_version_flag("--version", std::string("understudy ") + kVersion);
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed.\n"

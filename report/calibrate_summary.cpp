@@ -99,8 +99,8 @@ std::string calibration_json(const CalibrateResult& result) {
                      {"mechanism", result.machine.mechanism},
                      {"estimator", result.estimator}};
   value["poses"] = {{"measured", result.poses.size()}, {"used", used_poses(result)}};
-  value["noise"] = {{"told", result.noise_told}};
-  if (!result.noise_told) {
+  value["noise"] = {{"told", result.noise_given}};
+  if (!result.noise_given) {
     value["noise"]["position_um"] = number(to_um(result.noise.position));
     value["noise"]["rotation_mrad"] = number(1e3 * result.noise.rotation);
   }
