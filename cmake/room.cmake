@@ -11,6 +11,7 @@ function(understudy_room name)
     target_link_libraries(understudy_${name} PUBLIC understudy::${used})
   endforeach()
   target_link_libraries(understudy_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+  understudy_precompiled(understudy_${name})
 endfunction()
 
 # The sources of the folder that calls, without those that match EXCLUDE.
@@ -36,6 +37,7 @@ function(understudy_test name)
     target_link_libraries(${name}_test PRIVATE understudy::${used})
   endforeach()
   target_link_libraries(${name}_test PRIVATE ${TEST_PRIVATE} GTest::gmock_main)
+  understudy_precompiled(${name}_test)
   target_compile_definitions(${name}_test PRIVATE
     UNDERSTUDY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   if(NOT TEST_TIMEOUT)

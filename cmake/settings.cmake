@@ -7,6 +7,7 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 option(UNDERSTUDY_WERROR "Warnings are errors" OFF)
+option(UNDERSTUDY_PRECOMPILE "Precompile the headers that most sources include, which hides missing includes" OFF)
 set(UNDERSTUDY_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
 # Paths below the source folder are hashed relative to it, so clones in other folders share objects.
@@ -27,3 +28,33 @@ if(UNDERSTUDY_SANITIZE)
   target_link_options(understudy_settings INTERFACE -fsanitize=${UNDERSTUDY_SANITIZE})
 endif()
 target_include_directories(understudy_settings INTERFACE ${PROJECT_SOURCE_DIR})
+
+# understudy_precompiled(TARGET): one precompiled header for every room and test.
+function(understudy_precompiled target)
+  if(NOT UNDERSTUDY_PRECOMPILE)
+    return()
+  endif()
+  if(NOT TARGET understudy_precompiled)
+    find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+    find_package(GTest REQUIRED)
+    file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "")
+    add_library(understudy_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+    target_link_libraries(understudy_precompiled PRIVATE understudy_settings Eigen3::Eigen GTest::gmock)
+    target_precompile_headers(understudy_precompiled PRIVATE
+      <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
+      <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM understudy_precompiled)
+  cmake_language(EVAL CODE "cmake_language(DEFER CALL understudy_skip_precompiled ${target})")
+endfunction()
+
+# A source with options of its own cannot use a header that was compiled without them.
+function(understudy_skip_precompiled target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_source_file_property(options ${source} COMPILE_OPTIONS)
+    if(options)
+      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  endforeach()
+endfunction()

@@ -1,4 +1,4 @@
-// The machine description: one typed, checked source of every number (models/<machine>/machine.yaml).
+// The machine description: one typed, checked source of every number (models/NAME/machine.yaml).
 // Everything here is SI; the file uses mm, degrees, mm/s and says so in its keys.
 #pragma once
 

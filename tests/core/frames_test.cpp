@@ -29,7 +29,7 @@ TEST(Frames, ShortestArcTurnsZOntoTheAxisWithoutSpin) {
   for (int i = 0; i < 10000; ++i) {
     const Vec3 axis = random_vector(random).normalized();
     const Quat q = shortest_arc_from_z(axis);
-    EXPECT_LT((q * Vec3::UnitZ() - axis).norm(), 1e-14);
+    EXPECT_LT((q * Vec3::UnitZ() - axis).norm(), 1e-13);  // near -z, 1 + z loses two digits
     EXPECT_NEAR(q.vec().dot(Vec3::UnitZ()), 0, 1e-14);
   }
   EXPECT_LT((shortest_arc_from_z(-Vec3::UnitZ()) * Vec3::UnitZ() + Vec3::UnitZ()).norm(), 1e-14);

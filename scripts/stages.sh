@@ -1,0 +1,98 @@
+# The stages of ./check. Sourced by it: uses $all, $base and $stages, and say, configure and build of prepare.sh.
+known_stages="format rooms warnings controller sanitize threads clang tidy doxygen"
+
+# Tests that share data between threads: work pool, strands, ports, the observers' thread.
+thread_programs=(core_test machine_test strand_test deposition_test twin_test)
+thread_tests='^(core\.InParallel|machine\.LoopbackPort|strand\.|deposition\.|twin\.)'
+
+# How many sources clang-tidy looks at without --all, some 15 s each.
+tidy_limit=60
+
+every_source() { git ls-files -co --exclude-standard '*.h' '*.cpp'; }
+
+# With --all, every source; else what changed since the merge base with main, on main itself since the commit before.
+changed_sources() {
+  if [ "$all" = 1 ]; then every_source; return; fi
+  local since=$base main
+  for main in origin/main main; do
+    [ -n "$since" ] || since=$(git merge-base HEAD $main 2>/dev/null || true)
+  done
+  if [ -z "$base" ] && [ "$since" = "$(git rev-parse HEAD)" ]; then
+    since=$(git rev-parse -q --verify HEAD^ || git hash-object -t tree /dev/null)
+  fi
+  { git diff --name-only --diff-filter=d "$since" -- '*.h' '*.cpp'; git ls-files -o --exclude-standard '*.h' '*.cpp'; } | sort -u
+}
+
+# run_tests PRESET CTEST-OPTIONS...: the count of tests, or what failed and where to read more.
+run_tests() {
+  local preset=$1; shift
+  local log=build/$preset/tests.log
+  if ctest --test-dir "build/$preset" --output-on-failure -LE slow -j "$(nproc)" --no-tests=error "$@" >"$log" 2>&1; then
+    grep 'tests passed' "$log"
+    return
+  fi
+  { grep -E 'SUMMARY: |runtime error: |: Failure$' "$log" | sort -u
+    sed -n '/tests passed/p; /The following tests FAILED/,/Errors while/p' "$log"
+    echo "$stage: all of it: $log"; } >&2
+  return 1
+}
+
+stage_format() {
+  local wrong
+  wrong=$(every_source | xargs -P "$(nproc)" -n 40 clang-format --dry-run -Werror 2>&1 | grep -o '^[^:]*:.*error:' | cut -d: -f1 | sort -u || true)
+  [ -z "$wrong" ] || { sed 's/.*/format: & is not formatted: clang-format -i &/' <<<"$wrong" >&2; return 1; }
+}
+
+stage_rooms() {
+  cmake -DROOT="$PWD" -P cmake/check_includes.cmake
+  python3 scripts/check_citations.py "$PWD"
+}
+
+# What ./test --werror has built serves; else a folder of its own.
+stage_warnings() {
+  if grep -qs 'UNDERSTUDY_WERROR:BOOL=ON' build/release/CMakeCache.txt; then build release; else build dev; fi
+}
+
+stage_controller() {
+  if grep -qs 'UNDERSTUDY_WERROR:BOOL=ON' build/release/CMakeCache.txt; then configure controller -DUNDERSTUDY_WERROR=ON; fi
+  build controller
+  run_tests controller
+}
+
+stage_sanitize() {
+  build asan-controller
+  run_tests asan-controller
+}
+
+stage_threads() {
+  build tsan "${thread_programs[@]}"
+  run_tests tsan -R "$thread_tests"
+}
+
+# What the sanitizer stages of the same run have compiled needs no second look.
+stage_clang() {
+  configure release
+  local seen=()
+  [[ " ${stages[*]} " != *" sanitize "*" threads "* ]] || seen=(--but-for build/asan-controller build/tsan)
+  changed_sources | scripts/affected_sources.py | scripts/clang_syntax.py build/release "${seen[@]}"
+}
+
+stage_tidy() {
+  configure release
+  local sources found
+  mapfile -t sources < <(changed_sources | scripts/affected_sources.py --one-for-each-header)
+  if [ "$all" = 0 ] && [ ${#sources[@]} -gt $tidy_limit ]; then
+    say "tidy: looks at $tidy_limit of ${#sources[@]} sources; ./check --all tidy looks at every one"
+    sources=("${sources[@]:0:tidy_limit}")
+  fi
+  found=$(printf '%s\n' "${sources[@]}" |
+          xargs -r -P "$(nproc)" -n 1 clang-tidy -p build/release --quiet --warnings-as-errors='*' 2>/dev/null |
+          grep -E ' (error|warning): ' | sort -u || true)
+  [ -z "$found" ] || { sed "s|^$PWD/|tidy: |" <<<"$found" >&2; return 1; }
+  say "tidy: ${#sources[@]} sources, nothing found"
+}
+
+stage_doxygen() {
+  mkdir -p build/doxygen
+  doxygen docs/Doxyfile
+}
