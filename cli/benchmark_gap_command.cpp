@@ -11,34 +11,35 @@
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "machine/description.h"
+#include "report/page/gap_benchmark_page.h"
 #include "studies/gap/gap_benchmark.h"
 
 namespace understudy::cli {
 namespace {
 
 struct GapCall {
-  rehearsal::GapBenchmarkRequest request;
+  studies::GapBenchmarkRequest request;
   std::string folder = "out/gap-benchmark";
 };
 
 int run_gap(const GapCall& call) {
-  rehearsal::GapBenchmarkRequest request = call.request;
+  studies::GapBenchmarkRequest request = call.request;
   request.command = command_line();
   if (request.program.empty())
     request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
   OutputFolder out(call.folder, "gap.json");
-  rehearsal::GapBenchmark benchmark;
+  studies::GapBenchmark benchmark;
   {
     ProgressLine line;
-    benchmark = rehearsal::run_gap_benchmark(
+    benchmark = studies::run_gap_benchmark(
         request, [&](double share, const std::string& what) { line.show(share, what); });
   }
-  write_file(out.path() / "gap.json", rehearsal::gap_benchmark_json(benchmark));
-  write_file(out.path() / "gap.html", rehearsal::gap_benchmark_html(benchmark));
+  write_file(out.path() / "gap.json", report::gap_benchmark_json(benchmark));
+  write_file(out.path() / "gap.html", report::gap_benchmark_html(benchmark));
   stop_if_interrupted();
   out.commit();
   const std::filesystem::path written(call.folder);
-  fmt::print("{}\n{}\n{}\n", rehearsal::gap_benchmark_table(benchmark), (written / "gap.json").string(),
+  fmt::print("{}\n{}\n{}\n", report::gap_benchmark_table(benchmark), (written / "gap.json").string(),
              (written / "gap.html").string());
   return kGood;
 }

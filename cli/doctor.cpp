@@ -12,7 +12,7 @@
 #include "sim/as_built/as_built.h"
 #include "sim/plant/plant.h"
 
-namespace understudy::rehearsal {
+namespace understudy::cli {
 namespace {
 
 HealthCheck attempt(const std::string& name, const std::function<std::string()>& what) {
@@ -64,4 +64,4 @@ std::vector<HealthCheck> self_test() {
           attempt("renderer", try_renderer)};
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::cli

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace understudy::rehearsal {
+namespace understudy::cli {
 
 struct HealthCheck {
   std::string name;
@@ -15,4 +15,4 @@ struct HealthCheck {
 /// Loads the models, steps the plant, renders a frame. Never throws: a failure is an entry.
 std::vector<HealthCheck> self_test();
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::cli

@@ -52,7 +52,7 @@ int list_machines() {
 
 int doctor() {
   bool healthy = true;
-  for (const auto& check : rehearsal::self_test()) {
+  for (const auto& check : self_test()) {
     fmt::print("{} {:<10} {}\n", check.ok ? "ok  " : "FAIL", check.name, check.detail);
     healthy = healthy && check.ok;
   }

@@ -10,7 +10,7 @@
 #include "cli/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/rehearse.h"
+#include "rehearsal/fixture.h"
 #include "toolpath/lattice/lattice_planner.h"
 
 namespace understudy::cli {

@@ -5,7 +5,7 @@
 #include "cli/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/rehearse.h"
+#include "rehearsal/fixture.h"
 #include "toolpath/planners/surface_planner.h"
 
 namespace understudy::cli {

@@ -9,7 +9,7 @@
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "rehearsal/rehearse.h"
-#include "report/report.h"
+#include "report/page/write_results.h"
 
 namespace understudy::cli {
 namespace {
@@ -68,12 +68,15 @@ int rehearse(const rehearsal::RehearsalRequest& asked, const std::string& folder
   request.command = command_line();
   OutputFolder out(folder, "summary.json");
   rehearsal::Record record;
+  std::vector<report::Illustration> pictures;
   {
     ProgressLine line;
     record =
         rehearsal::rehearse(request, [&](double share, const std::string& what) { line.show(share, what); });
+    line.show(1, "drawing");
+    if (record.scene) pictures = report::draw_scene(*record.scene);
   }
-  rehearsal::write_results(record, out.path());
+  report::write_results(record, pictures, out.path());
   stop_if_interrupted();
   out.commit();
   print_answer(record, folder);
@@ -161,7 +164,7 @@ void add_rehearse(CLI::App& app, Action& action) {
       "it along the path; start where the machine has them");
   add_dialect(*command, request->dialect);
   add_surface(*command, request->surface);
-  command->add_flag("!--no-pictures", request->pictures,
+  command->add_flag("!--no-pictures", request->keep_scene,
                     "leave the drawings of machine and part out of the report");
   command->add_option("--out", *folder, "folder of results")->capture_default_str();
   command->callback([=, &action] { action = [=] { return rehearse(*request, *folder); }; });

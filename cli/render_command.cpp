@@ -19,7 +19,7 @@ namespace {
 constexpr double kUnitTolerance = 1e-4;  // as in G-code
 
 struct RenderCall {
-  rehearsal::RenderRequest request;
+  report::RenderRequest request;
   std::vector<double> pose;
   std::string output;
 };
@@ -35,14 +35,14 @@ Pose pose_of(const std::vector<double>& v) {
 }
 
 int run_render(const RenderCall& call) {
-  rehearsal::RenderRequest request = call.request;
+  report::RenderRequest request = call.request;
   if (!call.pose.empty()) request.X_WT = pose_of(call.pose);
   request.command = command_line();
   const std::filesystem::path path(call.output);
   if (path.extension() != ".png") throw InputError(fmt::format("{}: a picture ends in .png", call.output));
   std::filesystem::path truth = path;
   truth.replace_extension(".json");
-  const rehearsal::RenderedImage image = rehearsal::render_image(request);
+  const report::RenderedImage image = report::render_image(request);
   write_file(truth, image.truth);
   write_file(path, image.png);
   fmt::print("{}\n{}\n", path.string(), truth.string());

@@ -10,7 +10,10 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "regression/junit.h"
 #include "regression/run_scenario.h"
+#include "regression/scenario_file.h"
+#include "report/page/write_results.h"
 
 namespace understudy::cli {
 namespace {
@@ -28,47 +31,56 @@ std::vector<fs::path> scenario_files(const std::vector<std::string>& named) {
   if (paths.empty())
     paths.push_back(fs::is_directory("scenarios") ? fs::path("scenarios")
                                                   : machine::models_folder().parent_path() / "scenarios");
-  return rehearsal::find_scenarios(paths);
+  return regression::find_scenarios(paths);
 }
 
-void print_result(const rehearsal::ScenarioResult& result) {
+void print_result(const regression::ScenarioResult& result) {
   fmt::print("{} {}\n", result.passed() ? "pass" : "FAIL", result.name);
   if (!result.error.empty()) fmt::print("     error: {}\n", result.error);
   for (const auto& check : result.checks)
     fmt::print("     {} {}\n", check.ok ? "ok  " : "FAIL", check.ok ? check.name : check.message);
 }
 
+regression::RecordSink results_in(const fs::path& folder) {
+  return [folder](const rehearsal::Record& record) {
+    OutputFolder out(folder, "summary.json");
+    report::write_results(record, report::draw_scene(*record.scene), out.path());
+    out.commit();
+  };
+}
+
 int run(const ScenarioRequest& request) {
   if (request.threads < 1 || request.threads > 1024)
     throw InputError(fmt::format("-j {} is outside 1..1024", request.threads));
-  std::vector<rehearsal::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
-  for (const auto& file : scenario_files(request.paths)) scenarios.push_back(rehearsal::load_scenario(file));
-  std::vector<rehearsal::ScenarioResult> results;
+  std::vector<regression::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
+  for (const auto& file : scenario_files(request.paths)) scenarios.push_back(regression::load_scenario(file));
+  std::vector<regression::ScenarioResult> results;
   int failed = 0;
   for (const auto& scenario : scenarios) {
     const auto begin = std::chrono::steady_clock::now();
-    rehearsal::ScenarioResult result;
+    regression::ScenarioResult result;
     {
       ProgressLine line;
-      const fs::path out =
-          request.folder.empty() ? fs::path() : fs::path(request.folder) / scenario.file.stem();
-      result = rehearsal::run_scenario(
-          scenario, request.threads, out,
-          [&](double share, const std::string& what) { line.show(share, scenario.name + ": " + what); });
+      regression::ScenarioRun how{request.threads, {}, {}};
+      how.progress = [&](double share, const std::string& what) {
+        line.show(share, scenario.name + ": " + what);
+      };
+      if (!request.folder.empty()) how.sink = results_in(fs::path(request.folder) / scenario.file.stem());
+      result = regression::run_scenario(scenario, how);
     }
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     print_result(result);
     failed += !result.passed();
     results.push_back(std::move(result));
   }
-  if (!request.junit.empty()) write_file(request.junit, rehearsal::junit_xml(results));
+  if (!request.junit.empty()) write_file(request.junit, regression::junit_xml(results));
   fmt::print("{} passed, {} failed\n", results.size() - static_cast<std::size_t>(failed), failed);
   return failed == 0 ? kGood : kNo;
 }
 
 int list(const ScenarioRequest& request) {
   for (const auto& file : scenario_files(request.paths)) {
-    const auto scenario = rehearsal::load_scenario(file);
+    const auto scenario = regression::load_scenario(file);
     fmt::print("{:<32} {} [{}, {} expectations]\n", file.string(), scenario.name, scenario.machine,
                scenario.expect.size() + (scenario.machines ? scenario.machines->expect.size() : 0));
   }

@@ -12,6 +12,7 @@
 #include "core/units.h"
 #include "machine/description.h"
 #include "regression/run_scenario.h"
+#include "regression/scenario_file.h"
 #include "regression/sweep.h"
 
 namespace understudy::cli {
@@ -28,19 +29,19 @@ int run_sweep(const SweepRequest& r) {
   if (r.samples < 1 || r.samples > 1000000)
     throw InputError(fmt::format("--samples {} is outside 1..1000000", r.samples));
   if (r.threads < 1 || r.threads > 1024) throw InputError(fmt::format("-j {} is outside 1..1024", r.threads));
-  auto request = rehearsal::request_of(rehearsal::load_scenario(r.scenario));
+  auto request = regression::request_of(regression::load_scenario(r.scenario));
   request.command = command_line();
   const auto machine = machine::load_machine(request.machine);
   OutputFolder out(r.folder, "sweep.csv");
-  std::vector<rehearsal::SweepRow> rows;
+  std::vector<regression::SweepRow> rows;
   {
     ProgressLine line;
-    rows = rehearsal::sweep(request, r.first_seed, r.samples, r.threads,
-                            [&](double share, const std::string& what) { line.show(share, what); });
+    rows = regression::sweep(request, r.first_seed, r.samples, r.threads,
+                             [&](double share, const std::string& what) { line.show(share, what); });
   }
   const auto table =
-      rehearsal::sweep_table(rows, to_mm(machine.gap.accepted_min), to_mm(machine.gap.accepted_max));
-  write_file(out.path() / "sweep.csv", rehearsal::sweep_csv(rows));
+      regression::sweep_table(rows, to_mm(machine.gap.accepted_min), to_mm(machine.gap.accepted_max));
+  write_file(out.path() / "sweep.csv", regression::sweep_csv(rows));
   write_file(out.path() / "table.txt", table);
   stop_if_interrupted();
   out.commit();

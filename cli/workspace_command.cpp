@@ -17,6 +17,8 @@
 #include "core/units.h"
 #include "machine/description.h"
 #include "report/picture/png.h"
+#include "report/picture/workspace_picture.h"
+#include "report/workspace_report.h"
 #include "studies/workspace/workspace_study.h"
 
 namespace understudy::cli {
@@ -30,10 +32,10 @@ struct WorkspaceCall {
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 };
 
-rehearsal::WorkspaceOptions options_of(const WorkspaceCall& call) {
+studies::WorkspaceOptions options_of(const WorkspaceCall& call) {
   if (call.threads < 1 || call.threads > 1024)
     throw InputError(fmt::format("-j {} is outside 1..1024", call.threads));
-  rehearsal::WorkspaceOptions options;
+  studies::WorkspaceOptions options;
   if (call.tilt_deg) options.tilt = from_deg(*call.tilt_deg);
   if (call.azimuth_deg) options.azimuth = from_deg(*call.azimuth_deg);
   options.all_azimuths = call.all_azimuths;
@@ -49,20 +51,20 @@ rehearsal::WorkspaceOptions options_of(const WorkspaceCall& call) {
 
 int run_workspace(const WorkspaceCall& call) {
   const auto machine = machine::load_machine(call.machine);
-  auto study = rehearsal::plan_workspace(machine, options_of(call));
+  auto study = studies::plan_workspace(machine, options_of(call));
   const std::string folder = call.folder.empty() ? "out/workspace-" + machine.name : call.folder;
   OutputFolder out(folder, "workspace.json");
   {
     ProgressLine line;
-    rehearsal::evaluate(study, [&](double share) { line.show(share, "workspace of " + machine.name); });
+    studies::evaluate(study, [&](double share) { line.show(share, "workspace of " + machine.name); });
     line.show(1, "drawing");
-    write_file(out.path() / "workspace.json", rehearsal::workspace_json(study));
-    write_file(out.path() / "workspace.png", rehearsal::encode_png(rehearsal::workspace_picture(study)));
+    write_file(out.path() / "workspace.json", report::workspace_json(study));
+    write_file(out.path() / "workspace.png", report::encode_png(report::workspace_picture(study)));
   }
   stop_if_interrupted();
   out.commit();
   const std::filesystem::path written(folder);
-  fmt::print("{}\n{}\n{}\n", rehearsal::workspace_table(study), (written / "workspace.json").string(),
+  fmt::print("{}\n{}\n{}\n", report::workspace_table(study), (written / "workspace.json").string(),
              (written / "workspace.png").string());
   return kGood;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace understudy::rehearsal {
+namespace understudy {
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
@@ -14,4 +14,4 @@ double quantile(std::vector<double> values, double share) {
   return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-namespace understudy::rehearsal {
+namespace understudy {
 
 /// Linear interpolation between order statistics; `share` in [0, 1]; `values` need not be sorted. NaN when
 /// there are none.
 double quantile(std::vector<double> values, double share);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy

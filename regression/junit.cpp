@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
@@ -86,11 +86,6 @@ std::string suite(const ScenarioResult& result) {
 
 }  // namespace
 
-bool ScenarioResult::passed() const {
-  return error.empty() && !checks.empty() &&
-         std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
-}
-
 std::string junit_xml(std::span<const ScenarioResult> results) {
   std::string suites;
   std::size_t tests = 0, failures = 0, errors = 0;
@@ -108,4 +103,4 @@ std::string junit_xml(std::span<const ScenarioResult> results) {
       tests, failures, errors, suites);
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

@@ -1,16 +1,14 @@
 #include "regression/metrics.h"
 
 #include <algorithm>
-#include <array>
-#include <stdexcept>
+#include <set>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
+#include "core/stable_number.h"
+#include "rehearsal/figures.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
-
-using Json = nlohmann::json;
 
 // A kind of finding and the section of the summary that shows it was looked for; none: checked before any
 // motion.
@@ -65,42 +63,39 @@ constexpr const char* kTexts[] = {"verdict",
                                   "provenance.machine_sha256",
                                   "provenance.program_sha256"};
 
-void count_findings(const Json& summary, Metrics& metrics) {
+void count_findings(const rehearsal::Record& record, const std::set<std::string>& sections,
+                    Metrics& metrics) {
   std::map<std::string, double> counts{{"findings.error.count", 0}, {"findings.warning.count", 0}};
   for (const Kind& kind : kKinds)
-    if (*kind.section == 0 || summary.contains(kind.section))
+    if (*kind.section == 0 || sections.contains(kind.section))
       counts[std::string("findings.") + kind.word + ".count"] = 0;
-  for (const Json& finding : summary.at("findings")) {
-    ++counts["findings." + finding.at("kind").get<std::string>() + ".count"];
-    ++counts["findings." + finding.at("severity").get<std::string>() + ".count"];
+  for (const rehearsal::Finding& finding : record.findings) {
+    const bool error = finding.severity == rehearsal::Severity::error;
+    ++counts["findings." + finding.kind + ".count"];
+    ++counts[error ? "findings.error.count" : "findings.warning.count"];
   }
-  metrics["findings.count"] = static_cast<double>(summary.at("findings").size());
+  metrics["findings.count"] = static_cast<double>(record.findings.size());
   for (const auto& [name, count] : counts) metrics[name] = count;
-}
-
-void flatten_section(const std::string& section, const Json& values, Metrics& metrics) {
-  for (const auto& [key, value] : values.items()) {
-    if (value.is_number()) metrics[section + "." + key] = value.get<double>();
-    if (value.is_string()) metrics[section + "." + key] = value.get<std::string>();
-  }
 }
 
 }  // namespace
 
-Metrics flatten(const std::string& summary_json) {
-  try {
-    const Json summary = Json::parse(summary_json);
-    Metrics metrics;
-    const auto verdict = summary.at("verdict").get<std::string>();
-    metrics["verdict"] = verdict;
-    metrics["exit_status"] = verdict == "go" ? 0.0 : 1.0;
-    count_findings(summary, metrics);
-    for (const auto& [section, values] : summary.items())
-      if (values.is_object()) flatten_section(section, values, metrics);
-    return metrics;
-  } catch (const Json::exception& error) {
-    throw std::logic_error(std::string("this is not a summary of a rehearsal: ") + error.what());
+Metrics metrics_of(const rehearsal::Record& record) {
+  Metrics metrics;
+  metrics["verdict"] = record.go ? "go" : "no-go";
+  metrics["exit_status"] = record.go ? 0.0 : 1.0;
+  std::set<std::string> sections;
+  for (const rehearsal::Figure& figure : rehearsal::figures(record)) {
+    sections.insert(figure.section);
+    const std::string name = figure.section + "." + figure.name;
+    if (const auto* number = std::get_if<double>(&figure.value))
+      metrics[name] = stable_number(*number, name.c_str());
+    if (const auto* count = std::get_if<std::uint64_t>(&figure.value))
+      metrics[name] = static_cast<double>(*count);
+    if (const auto* text = std::get_if<std::string>(&figure.value)) metrics[name] = *text;
   }
+  count_findings(record, sections, metrics);
+  return metrics;
 }
 
 Metrics failed_run(int exit_status) { return {{"exit_status", static_cast<double>(exit_status)}}; }
@@ -133,4 +128,4 @@ std::string metric_unit(const std::string& metric) {
   return "1";
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

@@ -6,16 +6,18 @@
 #include <variant>
 #include <vector>
 
-namespace understudy::rehearsal {
+#include "rehearsal/record.h"
+
+namespace understudy::regression {
 
 using MetricValue = std::variant<double, std::string>;
 using Metrics = std::map<std::string, MetricValue>;
 
-/// Metrics of a summary.json's text. Besides its own keys: `exit_status` (0 go, 1 no-go), `findings.count`,
-/// `findings.error.count`, `findings.warning.count` and `findings.<kind>.count`. A kind that this run did not
-/// look for (no collision section: no collision check) has no count; zero means looked for and not found.
-/// Throws std::logic_error for text that is not a summary.
-Metrics flatten(const std::string& summary_json);
+/// The figures of a record as its summary.json tells them, to six significant digits. Besides: `verdict`,
+/// `exit_status` (0 go, 1 no-go), `findings.count`, `findings.error.count`, `findings.warning.count` and
+/// `findings.<kind>.count`. A kind that this run did not look for (no collision section: no collision check)
+/// has no count; zero means looked for and not found.
+Metrics metrics_of(const rehearsal::Record& record);
 
 /// A run that ended without a summary: bad input (2) or a failed engine (3).
 Metrics failed_run(int exit_status);
@@ -32,4 +34,4 @@ bool metric_is_of_series(const std::string& metric);
 /// The unit that the name ends in: "mm", "um", "mrad", "s"; "1" for counts and fractions; empty for text.
 std::string metric_unit(const std::string& metric);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

@@ -1,27 +1,21 @@
 #include "regression/run_scenario.h"
 
 #include "core/error.h"
-#include "core/output_file.h"
-#include "report/report.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
 
 constexpr double kShareOfOneRun = 0.1;  // of the progress shown when a series follows
 
 /// `error` says why there is no summary, when there is none.
-Metrics run_once(const Scenario& scenario, const std::filesystem::path& results, const Progress& progress,
+Metrics run_once(const Scenario& scenario, const RecordSink& sink, const Progress& progress,
                  std::string& error) {
   try {
-    RehearsalRequest request = request_of(scenario);
-    request.pictures = !results.empty();
-    const Record record = rehearse(request, progress);
-    if (!results.empty()) {
-      OutputFolder out(results, "summary.json");
-      write_results(record, out.path());
-      out.commit();
-    }
-    return flatten(summary_json(record));
+    rehearsal::RehearsalRequest request = request_of(scenario);
+    request.keep_scene = static_cast<bool>(sink);
+    const rehearsal::Record record = rehearsal::rehearse(request, progress);
+    if (sink) sink(record);
+    return metrics_of(record);
   } catch (const InputError& e) {
     error = e.what();
     return failed_run(2);
@@ -42,8 +36,8 @@ bool expects_refusal(const Scenario& scenario) {
 
 }  // namespace
 
-RehearsalRequest request_of(const Scenario& scenario) {
-  RehearsalRequest request;
+rehearsal::RehearsalRequest request_of(const Scenario& scenario) {
+  rehearsal::RehearsalRequest request;
   request.program = scenario.program.string();
   request.machine = scenario.machine;
   request.engine = scenario.engine;
@@ -60,23 +54,22 @@ RehearsalRequest request_of(const Scenario& scenario) {
 }
 
 Metrics metrics_of(const SweepRow& row) {
-  Metrics metrics = flatten(row.summary);
+  Metrics metrics = row.metrics;
   if (row.printed) metrics["approach.min_gap_mm"] = row.approach_min_mm;
   return metrics;
 }
 
-ScenarioResult run_scenario(const Scenario& scenario, int threads, const std::filesystem::path& results,
-                            const Progress& progress) {
+ScenarioResult run_scenario(const Scenario& scenario, const ScenarioRun& run) {
   ScenarioResult result;
   result.name = scenario.name;
   result.file = scenario.file.string();
   const double one = scenario.machines ? kShareOfOneRun : 1.0;
   const auto report = [&](double share, const std::string& what) {
-    if (progress) progress(share, what);
+    if (run.progress) run.progress(share, what);
   };
   std::string error;
-  const Metrics run = run_once(
-      scenario, results, [&](double s, const std::string& what) { report(one * s, what); }, error);
+  const Metrics own = run_once(
+      scenario, run.sink, [&](double s, const std::string& what) { report(one * s, what); }, error);
   if (!error.empty() && !expects_refusal(scenario)) {
     result.error = error;
     return result;
@@ -85,12 +78,12 @@ ScenarioResult run_scenario(const Scenario& scenario, int threads, const std::fi
   if (scenario.machines) {
     const auto& series = *scenario.machines;
     const auto rows =
-        sweep(request_of(scenario), series.seed_first, static_cast<int>(series.count()), threads,
+        sweep(request_of(scenario), series.seed_first, static_cast<int>(series.count()), run.threads,
               [&](double s, const std::string& what) { report(one + (1 - one) * s, what); });
     for (const auto& row : rows) machines.push_back(metrics_of(row));
   }
-  result.checks = evaluate(scenario, run, machines);
+  result.checks = evaluate(scenario, own, machines);
   return result;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

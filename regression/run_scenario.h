@@ -1,24 +1,31 @@
 // Runs a scenario and judges it.
 #pragma once
 
-#include <filesystem>
+#include <functional>
 
-#include "regression/junit.h"
-#include "regression/scenario.h"
+#include "core/progress.h"
+#include "regression/scenario_checks.h"
 #include "regression/sweep.h"
 #include "rehearsal/rehearse.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 
-RehearsalRequest request_of(const Scenario& scenario);
+rehearsal::RehearsalRequest request_of(const Scenario& scenario);
 
-/// Metrics of one machine of a series: those of its summary, and `approach.min_gap_mm`.
+/// Metrics of one machine of a series: those of its record, and `approach.min_gap_mm`.
 Metrics metrics_of(const SweepRow& row);
 
-/// One rehearsal, and one for each machine of the series on `threads` threads. A rehearsal that throws is
-/// judged by its exit status (2 bad input, 3 engine), so that a scenario can expect a refusal. With
-/// `results` set, the run's files go to that folder. Interrupted passes through.
-ScenarioResult run_scenario(const Scenario& scenario, int threads, const std::filesystem::path& results,
-                            const Progress& progress = {});
+/// Takes the record of the scenario's own run, to write it as files. What it throws is told of the run.
+using RecordSink = std::function<void(const rehearsal::Record&)>;
 
-}  // namespace understudy::rehearsal
+struct ScenarioRun {
+  int threads = 1;  ///< of the series; the result does not depend on it
+  RecordSink sink;  ///< may be empty; then no scene is kept
+  Progress progress;
+};
+
+/// One rehearsal, and one for each machine of the series. A rehearsal that throws is judged by its exit
+/// status (2 bad input, 3 engine), so that a scenario can expect a refusal. Interrupted passes through.
+ScenarioResult run_scenario(const Scenario& scenario, const ScenarioRun& run);
+
+}  // namespace understudy::regression

@@ -1,3 +1,5 @@
+#include "regression/scenario_checks.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -6,9 +8,8 @@
 #include <fmt/format.h>
 
 #include "core/quantile.h"
-#include "regression/scenario.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
 
 constexpr std::size_t kSeedsNamed = 10;
@@ -206,4 +207,9 @@ std::vector<Check> evaluate(const Scenario& scenario, const Metrics& run, std::s
   return checks;
 }
 
-}  // namespace understudy::rehearsal
+bool ScenarioResult::passed() const {
+  return error.empty() && !checks.empty() &&
+         std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
+}
+
+}  // namespace understudy::regression

@@ -1,16 +1,14 @@
 #include "regression/scenario_faults.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/strict_yaml.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
 
+using namespace rehearsal;
 using sim::FaultKind;
 
 constexpr FaultKind kKinds[] = {FaultKind::lost_steps,  FaultKind::stall,          FaultKind::disconnected,
@@ -82,33 +80,4 @@ std::vector<FaultRequest> read_faults(StrictMap& scenario) {
   return requests;
 }
 
-std::vector<sim::FaultEvent> resolve_faults(const std::vector<FaultRequest>& requests,
-                                            const machine::MachineDescription& machine) {
-  const auto mechanism = machine.make_mechanism();
-  std::vector<std::string> names;
-  for (int i = 0; i < mechanism->axis_count(); ++i) names.push_back(mechanism->axis_name(i));
-  std::vector<sim::FaultEvent> events;
-  for (const FaultRequest& request : requests) {
-    sim::FaultEvent event = request.event;
-    if (!request.axis.empty()) {
-      const auto found = std::find(names.begin(), names.end(), request.axis);
-      if (found == names.end())
-        throw InputError(request.place, fmt::format("axis '{}' is not one of {}'s: {}", request.axis,
-                                                    machine.name, fmt::join(names, ", ")));
-      event.axis = static_cast<int>(found - names.begin());
-      if (event.amount != 0 && request.angle != mechanism->axis_is_angle(event.axis))
-        throw InputError(request.place,
-                         fmt::format("axis '{}' {}: its amount is in {}", request.axis,
-                                     request.angle ? "slides" : "turns", request.angle ? "um" : "arcmin"));
-    }
-    try {
-      sim::check_faults({event}, machine);
-    } catch (const InputError& error) {
-      throw InputError(request.place, error.what());
-    }
-    events.push_back(event);
-  }
-  return events;
-}
-
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

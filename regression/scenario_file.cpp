@@ -1,3 +1,5 @@
+#include "regression/scenario_file.h"
+
 #include <algorithm>
 #include <charconv>
 #include <system_error>
@@ -6,12 +8,14 @@
 
 #include "core/output_file.h"
 #include "core/strict_yaml.h"
-#include "regression/scenario.h"
+#include "regression/scenario_faults.h"
 #include "rehearsal/run_twin.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace fs = std::filesystem;
 namespace {
+
+using namespace rehearsal;
 
 const std::vector<std::string> kAsBuilt{"nominal", "sampled", "manufactured"};
 const std::vector<std::string> kGapControls{"off", "start", "continuous"};
@@ -221,4 +225,4 @@ std::vector<fs::path> find_scenarios(std::span<const fs::path> paths) {
   return found;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

@@ -8,10 +8,14 @@
 #include "core/parallel.h"
 #include "core/quantile.h"
 #include "core/units.h"
-#include "report/report.h"
+#include "rehearsal/rehearse.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
+
+using rehearsal::Finding;
+using rehearsal::Record;
+using rehearsal::TracePoint;
 
 bool touches(const std::vector<TracePoint>& trace) {
   return std::any_of(trace.begin(), trace.end(), [](const TracePoint& p) { return p.gap <= 0; });
@@ -31,7 +35,7 @@ SweepRow row_of(const Record& record, std::uint64_t seed) {
   SweepRow row;
   row.seed = seed;
   row.go = record.go;
-  row.summary = summary_json(record);
+  row.metrics = metrics_of(record);
   const auto collides = [](const Finding& f) { return f.kind == "collision"; };
   row.touched =
       touches(record.trace) || std::any_of(record.findings.begin(), record.findings.end(), collides);
@@ -72,14 +76,14 @@ std::string line_of(const std::string& name, const Distribution& d, double low, 
 
 }  // namespace
 
-std::vector<SweepRow> sweep(const RehearsalRequest& request, std::uint64_t first, int count, int threads,
-                            const Progress& progress) {
+std::vector<SweepRow> sweep(const rehearsal::RehearsalRequest& request, std::uint64_t first, int count,
+                            int threads, const Progress& progress) {
   std::vector<SweepRow> rows(static_cast<std::size_t>(count));
   const auto run = [&](std::size_t i) {
-    RehearsalRequest one = request;
+    rehearsal::RehearsalRequest one = request;
     one.seed = first + i;
-    one.pictures = false;
-    rows[i] = row_of(rehearse(one), one.seed);
+    one.keep_scene = false;
+    rows[i] = row_of(rehearsal::rehearse(one), one.seed);
   };
   in_parallel(rows.size(), threads, run, [&](std::size_t, std::size_t done) {
     if (progress) progress(static_cast<double>(done) / count, fmt::format("machine {} of {}", done, count));
@@ -132,4 +136,4 @@ std::string sweep_csv(const std::vector<SweepRow>& rows) {
   return csv;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

@@ -5,15 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "rehearsal/rehearse.h"
+#include "core/progress.h"
+#include "regression/metrics.h"
+#include "rehearsal/request.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 
 /// One machine's answer, without the bulk of its record.
 struct SweepRow {
   std::uint64_t seed = 0;
   bool go = false;
-  std::string summary;            ///< summary.json of this rehearsal
+  Metrics metrics;                ///< of this rehearsal
   double open_loop_start_mm = 0;  ///< true gap at the start without gap control
   double start_mm = 0;            ///< with the request's gap control; 0 when nothing was printed
   bool printed = false;
@@ -26,12 +28,12 @@ struct SweepRow {
 
 /// Rehearses with seeds first..first+count-1 on `threads` threads. Rows are ordered by seed and do not depend
 /// on the number of threads. Throws what rehearse() throws, for the smallest seed that failed.
-std::vector<SweepRow> sweep(const RehearsalRequest& request, std::uint64_t first, int count, int threads,
-                            const Progress& progress = {});
+std::vector<SweepRow> sweep(const rehearsal::RehearsalRequest& request, std::uint64_t first, int count,
+                            int threads, const Progress& progress = {});
 
 /// The table of a sweep, for people: distribution of the start gap with and without gap control, touches.
 std::string sweep_table(const std::vector<SweepRow>& rows, double band_min_mm, double band_max_mm);
 /// One line a machine.
 std::string sweep_csv(const std::vector<SweepRow>& rows);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/file_unit.h"
 #include "core/units.h"
 
 namespace understudy::rehearsal {
@@ -21,21 +22,6 @@ std::string kind_of(LimitKind kind) {
 
 /// A condition number beyond the resolution of double is told as this, not as infinity.
 constexpr double kSingular = 1e15;
-
-struct ReportUnit {
-  double factor;
-  const char* name;
-};
-
-ReportUnit report_unit(const std::string& si) {
-  if (si == "m") return {1e3, "mm"};
-  if (si == "rad") return {1 / kDegree, "deg"};
-  if (si == "m/s") return {1e3, "mm/s"};
-  if (si == "m/s^2") return {1e3, "mm/s2"};
-  if (si == "rad/s") return {1 / kDegree, "deg/s"};
-  if (si == "rad/s^2") return {1 / kDegree, "deg/s2"};
-  return {1, "1"};
-}
 
 std::string place_text(const Vec3& p_W) {
   return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", to_mm(p_W.x()), to_mm(p_W.y()), to_mm(p_W.z()));
@@ -213,7 +199,7 @@ std::vector<Finding> findings_of(const control::ConstraintReport& report) {
   std::vector<Finding> findings;
   for (const auto& entry : report.findings) {
     const auto& violation = entry.violation;
-    const ReportUnit unit = report_unit(violation.unit);
+    const FileUnit unit = file_unit(violation.unit);
     Finding f;
     f.kind = kind_of(violation.kind);
     // The planner slows down where an axis is too fast: the print takes longer but is safe.

@@ -1,5 +1,5 @@
 // Everything a rehearsal found out: the data behind summary.json, trace.csv, the report and scenarios.
-// Drawing is elsewhere (report.h); absent values stay absent.
+// Drawing is elsewhere (report/); absent values stay absent.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 #include "control/gap/gap_controller.h"
 #include "core/frames.h"
 #include "machine/port.h"
-#include "renderer/scene_view.h"
+#include "rehearsal/scene.h"
 
 namespace understudy::rehearsal {
 
@@ -142,8 +142,7 @@ struct Record {
   std::vector<std::array<double, 2>> profile;  ///< position [mm], height [um] along the chosen line
   std::string profile_note, deviation_note;    ///< in words
   std::vector<StrandRow> strands;              ///< those that sag most first
-  std::vector<renderer::Picture> pictures;     ///< overview, close-up
-  std::vector<std::string> picture_captions;
+  std::optional<Scene> scene;                  ///< what pictures are drawn from; where it was asked for
 };
 
 }  // namespace understudy::rehearsal

@@ -21,7 +21,6 @@
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/surface.h"
-#include "report/picture/pictures.h"
 #include "sim/as_built/as_built_file.h"
 #include "toolpath/gcode/gcode.h"
 
@@ -197,6 +196,34 @@ void fill_comparison(const BeforeCalibration& before, const Runs& runs, Record& 
   if (before_run) record.trace_before_calibration = before_run->trace;
 }
 
+/// The middle of what is printed; nothing when nothing was simulated.
+const TracePoint* middle_of_print(const std::vector<TracePoint>& trace) {
+  const auto extruding = [](const TracePoint& p) { return p.extruding; };
+  const auto first = std::find_if(trace.begin(), trace.end(), extruding);
+  if (first == trace.end()) return trace.empty() ? nullptr : &trace.back();
+  const auto last = std::find_if(trace.rbegin(), trace.rend(), extruding).base();
+  return &*(first + (last - first) / 2);
+}
+
+sim::Configuration home_of(const machine::MachineDescription& machine) {
+  sim::Configuration home{machine.X_WB * machine.X_BT_home, {}};
+  (void)machine.make_mechanism()->inverse(machine.X_BT_home, {}, home.axes);
+  return home;
+}
+
+Scene scene_of(const TwinSetup& setup, const std::vector<TracePoint>& trace,
+               std::shared_ptr<const sim::Workpiece> printed) {
+  const TracePoint* point = middle_of_print(trace);
+  Scene scene = machine_scene(setup.machine, setup.as_built,
+                              point ? sim::Configuration{point->X_WT, point->axes} : home_of(setup.machine));
+  scene.simulated = point != nullptr;
+  scene.time = point ? point->time : 0;
+  scene.part = setup.part;
+  scene.path = printed_path(setup.program);
+  scene.printed = std::move(printed);
+  return scene;
+}
+
 bool any_error(const std::vector<Finding>& findings) {
   return std::any_of(findings.begin(), findings.end(),
                      [](const Finding& f) { return f.severity == Severity::error; });
@@ -240,10 +267,7 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   }
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
-  if (request.pictures) {
-    report(0.92, "drawing");
-    add_pictures(setup, printed.get(), record);
-  }
+  if (request.keep_scene) record.scene = scene_of(setup, record.trace, printed);
   report(1, "done");
   return record;
 }

@@ -1,55 +1,11 @@
 // One rehearsal: program + simulated port + observers -> record with a verdict.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "regression/scenario_faults.h"
-#include "rehearsal/fixture.h"
+#include "core/progress.h"
 #include "rehearsal/record.h"
+#include "rehearsal/request.h"
 
 namespace understudy::rehearsal {
-
-/// How a program of another machine is read (docs/gcode.md).
-struct DialectRequest {
-  std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
-  std::string extruder_letter = "E";        ///< E or A
-  int b_sign = 1, c_sign = 1;               ///< -1: the program counts that axis the other way round
-  std::string coordinates;                  ///< of rotary programs: tip, machine, crossing; empty: tip
-};
-
-/// What is asked about the surface as printed (docs/surface.md).
-struct SurfaceRequest {
-  std::string as_printed;               ///< .stl or .ply to write; empty: none
-  std::string intended;                 ///< STL that the print was to become, or a name under models/parts
-  std::vector<double> profile_mm;       ///< line from, to: six numbers in W; empty: none
-  std::vector<double> probe{0, 0, -1};  ///< direction in which the line looks for the surface
-};
-
-struct RehearsalRequest {
-  std::string program;              ///< path of a G-code file
-  std::string machine = "hexapod";  ///< name or path
-  std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
-  std::string engine = "mujoco";
-  std::string fixture;               ///< STL path, a name under models/parts, or empty: only the table
-  std::string material;              ///< name or path; empty: the machine's
-  std::string as_built = "sampled";  ///< nominal, sampled, manufactured
-  std::uint64_t seed = 1;
-  std::string gap_control;  ///< off, start, continuous; empty: start on a machine that sees, else off
-  std::vector<FaultRequest> faults;  ///< what goes wrong on the way
-  DialectRequest dialect;
-  SurfaceRequest surface;
-  std::string command;   ///< for the record: how a user repeats this
-  bool pictures = true;  ///< draw the scene; sweeps leave it out
-  bool compare_without_gap_control =
-      true;  ///< run the print again with gap control off, for open-loop figures
-};
-
-/// Share done of the whole rehearsal, 0..1, and what is being done.
-using Progress = std::function<void(double share, const std::string& what)>;
 
 /// Throws InputError for bad input, MachineError when the engine fails, Interrupted. A no-go is a result, not
 /// an exception. A program that fails the constraint check is a no-go without simulation (Song 2015, 3.5).

@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "control/print.h"
+#include "core/progress.h"
 #include "geometry/mesh.h"
 #include "machine/description.h"
 #include "machine/material.h"
 #include "rehearsal/flow_watch.h"
-#include "rehearsal/rehearse.h"
+#include "rehearsal/record.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
 #include "sim/deposition/deposition.h"
+#include "sim/faults/faults.h"
 #include "sim/strand/air_strands.h"
 #include "toolpath/program.h"
 

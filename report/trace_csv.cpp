@@ -1,13 +1,14 @@
+#include "report/trace_csv.h"
+
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "report/report.h"
 #include "report/trace_values.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 
-std::string trace_csv(const Record& record) {
+std::string trace_csv(const rehearsal::Record& record) {
   const std::vector<std::string> columns = trace_columns(record);
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -16,7 +17,7 @@ std::string trace_csv(const Record& record) {
   for (const std::string& column : columns) decimals.push_back(column_decimals(column));
 
   std::vector<double> row;
-  for (const TracePoint& point : record.trace) {
+  for (const rehearsal::TracePoint& point : record.trace) {
     trace_row(point, record, columns, row);
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (i > 0) text.push_back(',');
@@ -28,4 +29,4 @@ std::string trace_csv(const Record& record) {
   return fmt::to_string(text);
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -6,7 +6,7 @@
 
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -28,7 +28,7 @@ void append_pose(const Pose& X_WT, std::vector<double>& row) {
 
 }  // namespace
 
-std::vector<std::string> trace_columns(const Record& record) {
+std::vector<std::string> trace_columns(const rehearsal::Record& record) {
   std::vector<std::string> columns{"time_s", "line", "extruding"};
   for (const char* prefix : {"", "programmed_"})
     for (const char* name : {"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"})
@@ -37,12 +37,12 @@ std::vector<std::string> trace_columns(const Record& record) {
     columns.push_back(name);
   if (record.axes.size() > std::size_t{machine::kMaxAxes})
     throw std::logic_error("a record names more axes than a trace point has");
-  for (const AxisColumn& axis : record.axes) columns.push_back(axis.name);
+  for (const rehearsal::AxisColumn& axis : record.axes) columns.push_back(axis.name);
   return columns;
 }
 
-void trace_row(const TracePoint& point, const Record& record, const std::vector<std::string>& columns,
-               std::vector<double>& row) {
+void trace_row(const rehearsal::TracePoint& point, const rehearsal::Record& record,
+               const std::vector<std::string>& columns, std::vector<double>& row) {
   row.assign({point.time, static_cast<double>(point.line), point.extruding ? 1.0 : 0.0});
   append_pose(point.X_WT, row);
   append_pose(point.X_WT_programmed, row);
@@ -76,7 +76,7 @@ int column_decimals(const std::string& name) {
   return 9;  // quaternions: 1e-9 of a turn moves the tip by less than a nanometre
 }
 
-std::vector<std::size_t> thin_out(const std::vector<TracePoint>& trace, std::size_t points_max) {
+std::vector<std::size_t> thin_out(const std::vector<rehearsal::TracePoint>& trace, std::size_t points_max) {
   std::vector<std::size_t> kept;
   if (trace.size() <= points_max) {
     for (std::size_t i = 0; i < trace.size(); ++i) kept.push_back(i);
@@ -103,4 +103,4 @@ std::vector<std::size_t> thin_out(const std::vector<TracePoint>& trace, std::siz
   return kept;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 
 extern const std::string_view kPageTemplate;
 extern const std::string_view kPageStyle;
@@ -18,4 +18,9 @@ extern const std::string_view kDygraphScript;
 extern const std::string_view kDygraphStyle;
 extern const std::string_view kDygraphLicence;
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report
+
+// Until the calibration pages are of this namespace.
+namespace understudy::rehearsal {
+using report::kPageStyle;
+}

@@ -1,3 +1,6 @@
+#include "report/page/report_html.h"
+
+#include <algorithm>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -5,30 +8,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "rehearsal/verdict.h"
+#include "report/json_text.h"
+#include "report/markup.h"
 #include "report/page/page_parts.h"
-#include "report/report.h"
-#include "report/report_value.h"
-#include "report/summary_value.h"
+#include "report/page/report_data.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
-
-std::string escape_html(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else
-      escaped += c;
-  }
-  return escaped;
-}
 
 // Inside <script> only "</" and "<!--" can end or bend the block, and in JSON '<' stands in strings only.
 std::string escape_json_for_script(const std::string& json) {
@@ -71,12 +58,12 @@ std::string drawing() {
 
 }  // namespace
 
-std::string report_html(const Record& record) {
-  const nlohmann::ordered_json report = report_value(record);
+std::string report_html(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
+  const nlohmann::ordered_json report = report_data(record, pictures);
   const std::string verdict = record.go ? "GO" : "NO-GO";
-  return fill(kPageTemplate, {{"title", escape_html(verdict + ": " + record.title)},
+  return fill(kPageTemplate, {{"title", html_text(verdict + ": " + record.title)},
                               {"verdict", verdict},
-                              {"reason", escape_html(verdict_sentence(record))},
+                              {"reason", html_text(rehearsal::verdict_sentence(record))},
                               {"dygraph-licence", std::string(kDygraphLicence)},
                               {"dygraph-style", std::string(kDygraphStyle)},
                               {"style", std::string(kPageStyle)},
@@ -85,4 +72,4 @@ std::string report_html(const Record& record) {
                               {"script", drawing()}});
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

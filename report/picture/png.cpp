@@ -6,7 +6,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 std::string encode(const cv::Mat& pixels) {
@@ -59,4 +59,4 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -6,7 +6,7 @@
 #include "core/image.h"
 #include "renderer/scene_view.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 
 /// Throws std::logic_error when the pixels do not fill the size.
 std::string encode_png(const Image& grey);
@@ -15,4 +15,4 @@ std::string encode_png(const renderer::Picture& picture);
 /// Base64 of RFC 4648, with padding.
 std::string base64(const std::string& bytes);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

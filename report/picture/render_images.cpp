@@ -8,12 +8,14 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "rehearsal/scene.h"
 #include "renderer/calibration_view.h"
-#include "report/picture/pictures.h"
 #include "report/picture/png.h"
+#include "report/picture/scene_pictures.h"
+#include "sim/as_built/as_built.h"
 #include "sim/sensors/microscope.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 using machine::MachineDescription;
@@ -104,10 +106,8 @@ std::string targets(const RenderRequest& request, const MachineDescription& mach
 /// The overview of a rehearsal that stands still at the pose.
 std::string scene(const MachineDescription& machine, const Pose& X_WT, ordered_json& truth) {
   const auto mechanism = machine.make_mechanism();
-  TracePoint point;
-  point.X_WT = X_WT;
-  point.extruding = true;
-  const auto axes = std::span(point.axes).first(static_cast<std::size_t>(mechanism->axis_count()));
+  sim::Configuration posture{X_WT, {}};
+  const auto axes = std::span(posture.axes).first(static_cast<std::size_t>(mechanism->axis_count()));
   if (const auto solved = mechanism->inverse(machine.X_WB.inverse() * X_WT, {}, axes);
       solved != kinematics::SolveStatus::ok)
     throw InputError(fmt::format("{} cannot take this pose: {}", machine.name, to_string(solved)));
@@ -122,13 +122,8 @@ std::string scene(const MachineDescription& machine, const Pose& X_WT, ordered_j
     truth["axes"][mechanism->axis_name(i) + (angle ? "_deg" : "_mm")] =
         list({angle ? to_deg(value) : to_mm(value)})[0];
   }
-  TwinSetup setup;
-  setup.machine = machine;
-  setup.as_built = sim::make_as_built(machine, "nominal", 1);
-  Record record;
-  record.trace.push_back(point);
-  add_pictures(setup, nullptr, record);
-  return encode_png(record.pictures.front());
+  return encode_png(
+      draw_overview(rehearsal::machine_scene(machine, sim::make_as_built(machine, "nominal", 1), posture)));
 }
 
 Pose default_pose(const RenderRequest& request, const MachineDescription& machine) {
@@ -164,4 +159,4 @@ RenderedImage render_image(const RenderRequest& request) {
   return image;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -7,7 +7,7 @@
 
 #include "core/frames.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 
 struct RenderRequest {
   std::string kind = "scene";       ///< laser, chessboard, targets, scene
@@ -29,4 +29,4 @@ struct RenderedImage {
 /// it cannot take, MachineError where nothing can be rendered.
 RenderedImage render_image(const RenderRequest& request);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

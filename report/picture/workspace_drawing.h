@@ -8,7 +8,7 @@
 #include "geometry/mesh.h"
 #include "studies/workspace/workspace_study.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -32,6 +32,6 @@ struct WorkspaceView {
   renderer::Picture picture;
   std::array<Vec2, 3> axis_label_px;  ///< beside the three edges of the box, x y z
 };
-WorkspaceView view_workspace(const WorkspaceStudy& study, int width, int height);
+WorkspaceView view_workspace(const studies::WorkspaceStudy& study, int width, int height);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

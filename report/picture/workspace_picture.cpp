@@ -1,4 +1,6 @@
-// workspace.png: a view in space, what the colours mean, and four slices.
+// A view in space, what the colours mean, and four slices.
+#include "report/picture/workspace_picture.h"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -9,7 +11,7 @@
 #include "core/units.h"
 #include "report/picture/workspace_drawing.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 using kinematics::Workspace;
@@ -136,7 +138,7 @@ void draw_limits(cv::Mat& canvas, const Workspace& w, cv::Point at) {
     write(canvas, "every point of the grid is reachable", {at.x, at.y + 60}, 0.62, kFaint);
 }
 
-void draw_view(cv::Mat& canvas, const WorkspaceStudy& study) {
+void draw_view(cv::Mat& canvas, const studies::WorkspaceStudy& study) {
   const WorkspaceView view = view_workspace(study, kViewWidth, kViewHeight);
   cv::Mat rgb(kViewHeight, kViewWidth, CV_8UC3, const_cast<std::uint8_t*>(view.picture.rgb.data()));
   cv::Mat part = canvas(cv::Rect(0, kViewTop, kViewWidth, kViewHeight));
@@ -151,7 +153,7 @@ void draw_view(cv::Mat& canvas, const WorkspaceStudy& study) {
   }
 }
 
-std::string headline(const WorkspaceStudy& study) {
+std::string headline(const studies::WorkspaceStudy& study) {
   const Workspace& w = study.workspace;
   std::string text = fmt::format("{:.1f} % of {} points reachable, one every {:.4g} mm", 100 * w.fraction(),
                                  w.binding.size(), to_mm(w.grid.step));
@@ -183,7 +185,7 @@ Rgb margin_colour(double margin) {
   return colour;
 }
 
-renderer::Picture workspace_picture(const WorkspaceStudy& study) {
+renderer::Picture workspace_picture(const studies::WorkspaceStudy& study) {
   const Workspace& w = study.workspace;
   cv::Mat canvas(kHeight, kWidth, CV_8UC3, kPaper);
   draw_view(canvas, study);
@@ -199,4 +201,4 @@ renderer::Picture workspace_picture(const WorkspaceStudy& study) {
   return {kWidth, kHeight, {canvas.datastart, canvas.dataend}};
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -4,7 +4,7 @@
 
 #include "report/picture/workspace_drawing.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 using Cell = std::array<int, 3>;
@@ -210,4 +210,4 @@ std::vector<WorkspaceSurface> workspace_surface(const kinematics::Workspace& wor
   return net.meshes();
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -4,7 +4,7 @@
 #include "core/units.h"
 #include "report/picture/workspace_drawing.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 using Colour = std::array<float, 3>;
@@ -40,7 +40,7 @@ Vec2 pixel_of(const renderer::PictureScene& scene, const Vec3& p_W) {
 
 }  // namespace
 
-WorkspaceView view_workspace(const WorkspaceStudy& study, int width, int height) {
+WorkspaceView view_workspace(const studies::WorkspaceStudy& study, int width, int height) {
   const auto& grid = study.workspace.grid;
   const Vec3 middle = 0.5 * (grid.lower + grid.upper), size = grid.upper - grid.lower;
   const double radius = std::max(0.5 * size.norm(), kMillimetre);
@@ -68,4 +68,4 @@ WorkspaceView view_workspace(const WorkspaceStudy& study, int width, int height)
   return view;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

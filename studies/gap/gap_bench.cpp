@@ -11,7 +11,7 @@
 #include "rehearsal/rotary_words.h"
 #include "toolpath/gcode/gcode.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 using toolpath::Step;
 using toolpath::StepKind;
@@ -293,4 +293,4 @@ GapTrial run_gap_trial(const machine::MachineDescription& machine, GapScene& sce
   return trial;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

@@ -12,9 +12,8 @@
 #include "core/random.h"
 #include "machine/loopback_port.h"
 #include "sim/sensors/microscope.h"
-#include "studies/gap/gap_benchmark.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 struct GapSurface {
   std::string name;
@@ -78,4 +77,4 @@ struct GapTrial {
 GapTrial run_gap_trial(const machine::MachineDescription& machine, GapScene& scene, control::GapControl mode,
                        std::uint64_t seed);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

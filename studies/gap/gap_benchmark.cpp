@@ -13,13 +13,18 @@
 #include "core/quantile.h"
 #include "core/units.h"
 #include "machine/model_files.h"
+#include "rehearsal/rehearse.h"
 #include "studies/gap/gap_bench.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 namespace {
 
 using control::GapControl;
 using control::GapStop;
+using rehearsal::Finding;
+using rehearsal::Record;
+using rehearsal::RehearsalRequest;
+using rehearsal::TracePoint;
 
 constexpr int kFramesPerTrial = 10;    // of detectors
 constexpr std::size_t kStations = 45;  // along the bottle's line: one in 0.25 mm
@@ -186,7 +191,7 @@ struct BottleRun {
 };
 
 BottleRun print_bottle(const RehearsalRequest& request) {
-  const Record record = rehearse(request);
+  const Record record = rehearsal::rehearse(request);
   BottleRun run;
   run.touched =
       std::any_of(record.trace.begin(), record.trace.end(), [](const TracePoint& p) { return p.gap <= 0; }) ||
@@ -311,7 +316,7 @@ GapBenchmark run_gap_benchmark(const GapBenchmarkRequest& request, const Progres
           one.engine = "quasistatic";
           one.gap_control = modes[m];
           one.seed = request.seed + k;
-          one.pictures = one.compare_without_gap_control = false;
+          one.keep_scene = one.compare_without_gap_control = false;
           bottle[m][k] = print_bottle(one);
         });
   jobs.run(request.threads, progress);
@@ -326,4 +331,4 @@ GapBenchmark run_gap_benchmark(const GapBenchmarkRequest& request, const Progres
   return benchmark;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

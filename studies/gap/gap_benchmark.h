@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "rehearsal/rehearse.h"
+#include "core/progress.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 struct GapBenchmarkRequest {
   std::string machine = "hexapod";
@@ -86,8 +86,4 @@ struct GapBenchmark {
 /// The result does not depend on the number of threads. Throws InputError, MachineError, Interrupted.
 GapBenchmark run_gap_benchmark(const GapBenchmarkRequest& request, const Progress& progress = {});
 
-std::string gap_benchmark_json(const GapBenchmark& benchmark);
-std::string gap_benchmark_html(const GapBenchmark& benchmark);
-std::string gap_benchmark_table(const GapBenchmark& benchmark);  ///< for a terminal
-
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

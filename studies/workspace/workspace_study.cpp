@@ -9,9 +9,10 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/file_unit.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 namespace {
 
 constexpr int kAzimuths = 12;
@@ -144,6 +145,27 @@ void evaluate(WorkspaceStudy& study, std::function<void(double)> progress) {
   study.request.progress = nullptr;
 }
 
+std::string limit_text(const kinematics::WorkspaceLimit& limit) {
+  if (limit.unit.empty()) return limit.part + " out of reach";
+  const FileUnit unit = file_unit(limit.unit);
+  const bool number = limit.unit == "1";
+  const std::string value =
+      fmt::format("{:.4g}{}", unit.factor * limit.limit, number ? "" : std::string(" ") + unit.name);
+  using kinematics::LimitKind;
+  switch (limit.kind) {
+    case LimitKind::strut_length:
+      return limit.part + (limit.above ? " longer than " : " shorter than ") + value;
+    case LimitKind::screw_distance:
+      return limit.part + " nearer than " + value;
+    case LimitKind::singularity:
+      return limit.part + (number ? " condition above " + value : " within " + value + " of singular");
+    case LimitKind::unreachable:
+      return limit.part + (limit.above ? " spans above " : " spans below ") + value;
+    default:
+      return limit.part + (limit.above ? " above " : " below ") + value;
+  }
+}
+
 std::string orientation_text(const WorkspaceStudy& study) {
   const double tilt = to_deg(study.tilt);
   if (tilt < 1e-6) return "tool upright";
@@ -151,4 +173,4 @@ std::string orientation_text(const WorkspaceStudy& study) {
   return fmt::format("tool tilted {:.4g} deg towards azimuth {:.4g} deg", tilt, to_deg(study.azimuths[0]));
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

@@ -9,9 +9,8 @@
 
 #include "kinematics/workspace/workspace.h"
 #include "machine/description.h"
-#include "renderer/scene_view.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 constexpr double kWorkspacePointsMax = 50e6;
 
@@ -49,11 +48,4 @@ std::string limit_text(const kinematics::WorkspaceLimit& limit);
 /// "tool upright", "tool tilted 20 deg towards azimuth 90 deg"
 std::string orientation_text(const WorkspaceStudy& study);
 
-/// workspace.json (docs/workspace.md).
-std::string workspace_json(const WorkspaceStudy& study);
-/// A few lines for a terminal.
-std::string workspace_table(const WorkspaceStudy& study);
-/// The set in space, and slices of it. Throws MachineError when no OSMesa context can be made.
-renderer::Picture workspace_picture(const WorkspaceStudy& study);
-
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

@@ -10,7 +10,7 @@
 
 #include "core/output_file.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
 
 using testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(ScenarioResult, PassesOnlyWhenSomethingWasCheckedAndAllHeld) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

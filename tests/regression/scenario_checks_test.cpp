@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "regression/scenario.h"
+#include "regression/scenario_checks.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace {
 
 using testing::HasSubstr;
@@ -160,4 +160,4 @@ TEST(ScenarioChecks, TooFewMachinesAreOurOwnMistake) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
-#include "regression/scenario.h"
+#include "regression/scenario_file.h"
 
-namespace understudy::rehearsal {
+namespace understudy::regression {
 namespace fs = std::filesystem;
 namespace {
 
@@ -245,4 +245,4 @@ TEST_F(ScenarioFile, FoldersGiveTheirScenariosSorted) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::regression

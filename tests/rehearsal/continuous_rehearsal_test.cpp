@@ -18,7 +18,7 @@ RehearsalRequest bottle(const std::string& mode) {
   request.engine = "quasistatic";
   request.seed = 7;  // a machine on which the offset of the start does not hold
   request.gap_control = mode;
-  request.pictures = false;
+  request.keep_scene = false;
   request.compare_without_gap_control = false;
   return request;
 }

@@ -49,7 +49,7 @@ class RotaryRehearsal : public testing::Test {
     request.machine = machine;
     request.engine = "quasistatic";
     request.as_built = "nominal";
-    request.pictures = false;
+    request.keep_scene = false;
     request.compare_without_gap_control = false;
     return rehearse(request);
   }

@@ -8,8 +8,10 @@
 #include "core/random.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
+
+using namespace rehearsal;
 
 constexpr double kPrintSpeed = 5e-3;    // [m/s]
 constexpr double kPrintLength = 60e-3;  // [m]
@@ -126,12 +128,15 @@ void add_run(Record& record) {
   record.gap = GapFigures{0.13, 0.412345678, 0.1312345, 0.101, 0.1288, 0.1611, 0.9925, 10};
   record.collision = CollisionFigures{1.8412, 184211, 31};
   record.engine = EngineFigures{"mujoco", "2.2.2", 0.0005, 36004, 17.25, 0.071};
-  record.pictures = {sample_picture(0), sample_picture(60)};
-  record.picture_captions = {"The machine at the end of the program", "The nozzle above the part"};
   record.frames = sample_frames();
 }
 
 }  // namespace
+
+std::vector<Illustration> sample_pictures() {
+  return {{sample_picture(0), "The machine at the end of the program"},
+          {sample_picture(60), "The nozzle above the part"}};
+}
 
 Record sample_go() {
   Record record = base_record();
@@ -186,4 +191,4 @@ Record sample_stopped_by_constraints() {
   return record;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

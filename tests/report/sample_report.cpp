@@ -2,11 +2,12 @@
 #include <filesystem>
 #include <iostream>
 
-#include "report/report.h"
+#include "report/page/write_results.h"
 #include "tests/report/sample_record.h"
 
 int main(int argc, char** argv) {
-  using namespace understudy::rehearsal;
+  using namespace understudy::report;
+  using understudy::rehearsal::Record;
   if (argc != 2) {
     std::cerr << "usage: sample_report FOLDER\n";
     return 2;
@@ -18,7 +19,8 @@ int main(int argc, char** argv) {
   for (const auto& [name, record] : samples) {
     const std::filesystem::path folder = std::filesystem::path(argv[1]) / name;
     std::filesystem::create_directories(folder);
-    write_results(record, folder);
+    const bool ran = !record.trace.empty();
+    write_results(record, ran ? sample_pictures() : std::vector<Illustration>(), folder);
     std::cout << (folder / "report.html").string() << "\n";
   }
 }

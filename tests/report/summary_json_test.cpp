@@ -5,12 +5,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "report/report.h"
+#include "report/summary_json.h"
 #include "tests/report/sample_record.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
+using rehearsal::AccuracyFigures;
+using rehearsal::CalibrationFigures;
+using rehearsal::Record;
 using Json = nlohmann::ordered_json;
 
 std::vector<std::string> keys(const Json& object) {
@@ -113,29 +116,5 @@ TEST(SummaryJson, MessagesThatAreNotUtf8AreRepairedNotRefused) {
             "line with \xEF\xBF\xBD from another century");
 }
 
-TEST(VerdictSentence, NamesTheFirstErrorAndCountsTheRest) {
-  EXPECT_EQ(
-      verdict_sentence(sample_stopped_by_constraints()),
-      "Strut 3 is 241.7 mm, longer than 240.0 mm (line 1187), and 1 more error; the program was not run.");
-  EXPECT_EQ(verdict_sentence(sample_without_gap_control()),
-            "The bead is laid at a gap of 0.412 mm, above 0.200 mm: it does not stick (line 14).");
-}
-
-TEST(VerdictSentence, AWarningIsNeverTheReasonOfANoGo) {
-  Record record = sample_stopped_by_constraints();
-  record.findings.insert(record.findings.begin(),
-                         {"near_collision", Severity::warning, 3, 1, 1, 2, "mm", "close"});
-  EXPECT_EQ(verdict_sentence(record).rfind("Strut 3", 0), 0u);
-}
-
-// 0.9999 of the path is not all of it.
-TEST(VerdictSentence, RoundsTheInBandFractionDown) {
-  Record record = sample_go();
-  record.gap->in_band_fraction = 0.9999;
-  EXPECT_NE(verdict_sentence(record).find("99.9 %"), std::string::npos);
-  record.gap->in_band_fraction = 1;
-  EXPECT_NE(verdict_sentence(record).find("100.0 %"), std::string::npos);
-}
-
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -8,12 +8,15 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
-#include "report/report.h"
+#include "report/trace_csv.h"
 #include "report/trace_values.h"
 #include "tests/report/sample_record.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
+
+using rehearsal::Record;
+using rehearsal::TracePoint;
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -119,4 +122,4 @@ TEST(ThinOut, LeavesAShortTraceAlone) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 cv::Mat decode(const std::string& png) {
@@ -53,4 +53,4 @@ TEST(Png, PixelsThatDoNotFillTheSizeAreOurOwnMistake) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -10,12 +10,14 @@
 #include <unistd.h>
 
 #include "core/output_file.h"
-#include "report/report.h"
+#include "report/page/report_html.h"
 #include "tests/report/sample_record.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace fs = std::filesystem;
 namespace {
+
+using namespace rehearsal;
 
 class SlowReportPage : public testing::Test {
  protected:
@@ -30,7 +32,8 @@ class SlowReportPage : public testing::Test {
 
   /// What stands in <main> after the scripts have run, without the pictures' bytes.
   std::string drawn(const Record& record) {
-    write_file(folder_ / "report.html", report_html(record));
+    write_file(folder_ / "report.html",
+               report_html(record, record.trace.empty() ? std::vector<Illustration>() : sample_pictures()));
     const std::string command =
         "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
         "--disable-background-networking --disable-component-update --disable-sync "
@@ -122,4 +125,4 @@ TEST_F(SlowReportPage, MarkupInMessagesIsShownAsText) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

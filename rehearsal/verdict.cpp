@@ -1,11 +1,11 @@
+#include "rehearsal/verdict.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "report/report.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -1,4 +1,5 @@
-// gap.json, the lines for a terminal and the page of the gap benchmark.
+#include "report/page/gap_benchmark_page.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,16 +7,23 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/stable_number.h"
 #include "core/version.h"
 #include "report/chart/gap_benchmark_charts.h"
-#include "report/page/html_text.h"
+#include "report/json_text.h"
+#include "report/markup.h"
 #include "report/page/page_parts.h"
-#include "report/summary_value.h"
-#include "studies/gap/gap_benchmark.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
+using studies::ApproachRow;
+using studies::BottleRow;
+using studies::DetectorRow;
+using studies::FollowingRow;
+using studies::GapBenchmark;
+using studies::GapStation;
+using studies::Spread;
 using Json = nlohmann::ordered_json;
 
 Json number(double value) { return stable_number(value, "gap benchmark"); }
@@ -272,4 +280,4 @@ std::string gap_benchmark_html(const GapBenchmark& b) {
   return html + "</main></body></html>\n";
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -1,4 +1,5 @@
-// workspace.json, and the lines for a terminal.
+#include "report/workspace_report.h"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -8,30 +9,20 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/file_unit.h"
+#include "core/stable_number.h"
 #include "core/units.h"
 #include "core/version.h"
-#include "report/summary_value.h"
-#include "studies/workspace/workspace_study.h"
+#include "report/json_text.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using kinematics::LimitKind;
 using kinematics::PointBox;
 using kinematics::Workspace;
 using kinematics::WorkspaceLimit;
-
-struct FileUnit {
-  double factor;
-  const char* name;
-};
-
-FileUnit file_unit(const std::string& unit) {
-  if (unit == "m") return {1e3, "mm"};
-  if (unit == "rad") return {1 / kDegree, "deg"};
-  return {1, "1"};
-}
+using studies::WorkspaceStudy;
 
 Json numbers(std::initializer_list<double> values) {
   Json list = Json::array();
@@ -143,26 +134,6 @@ std::string box_line(const char* name, const Workspace& w, const std::optional<P
 
 }  // namespace
 
-std::string limit_text(const WorkspaceLimit& limit) {
-  if (limit.unit.empty()) return limit.part + " out of reach";
-  const FileUnit unit = file_unit(limit.unit);
-  const bool number = limit.unit == "1";
-  const std::string value =
-      fmt::format("{:.4g}{}", unit.factor * limit.limit, number ? "" : std::string(" ") + unit.name);
-  switch (limit.kind) {
-    case LimitKind::strut_length:
-      return limit.part + (limit.above ? " longer than " : " shorter than ") + value;
-    case LimitKind::screw_distance:
-      return limit.part + " nearer than " + value;
-    case LimitKind::singularity:
-      return limit.part + (number ? " condition above " + value : " within " + value + " of singular");
-    case LimitKind::unreachable:
-      return limit.part + (limit.above ? " spans above " : " spans below ") + value;
-    default:
-      return limit.part + (limit.above ? " above " : " below ") + value;
-  }
-}
-
 std::string workspace_json(const WorkspaceStudy& study) {
   const Workspace& w = study.workspace;
   Json json;
@@ -213,4 +184,4 @@ std::string workspace_table(const WorkspaceStudy& study) {
   return text;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

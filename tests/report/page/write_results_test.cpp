@@ -1,3 +1,5 @@
+#include "report/page/write_results.h"
+
 #include <filesystem>
 #include <map>
 
@@ -8,10 +10,10 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
-#include "report/report.h"
+#include "report/summary_json.h"
 #include "tests/report/sample_record.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace fs = std::filesystem;
 namespace {
 
@@ -35,7 +37,7 @@ class WriteResults : public testing::Test {
 };
 
 TEST_F(WriteResults, WritesEveryFileOfARun) {
-  write_results(sample_go(), folder_);
+  write_results(sample_go(), sample_pictures(), folder_);
   const auto written = files();
   for (const char* name :
        {"summary.json", "report.html", "trace.csv", "frames/approach.csv", "frames/approach-01.png",
@@ -46,34 +48,34 @@ TEST_F(WriteResults, WritesEveryFileOfARun) {
 }
 
 TEST_F(WriteResults, WritesOnlyWhatThereIs) {
-  write_results(sample_stopped_by_constraints(), folder_);
+  write_results(sample_stopped_by_constraints(), {}, folder_);
   const auto written = files();
   EXPECT_EQ(written.size(), 2u);
   EXPECT_TRUE(written.contains("summary.json") && written.contains("report.html"));
 }
 
 TEST_F(WriteResults, EqualRecordsGiveEqualBytes) {
-  write_results(sample_no_go(), folder_);
+  write_results(sample_no_go(), sample_pictures(), folder_);
   const auto first = files();
-  write_results(sample_no_go(), folder_);
+  write_results(sample_no_go(), sample_pictures(), folder_);
   EXPECT_EQ(files(), first);
 }
 
 TEST_F(WriteResults, FrameTableHasEmptyCellsWhereNothingWasMeasured) {
-  Record record = sample_go();
+  rehearsal::Record record = sample_go();
   record.frames.resize(1);
   record.frames[0].look.dot.status = vision::DotStatus::no_dot;
   record.frames[0].look.reading = {};
   record.frames[0].true_dot_px.reset();
   record.frames[0].look.used = false;
-  write_results(record, folder_);
+  write_results(record, {}, folder_);
   const std::string table = read_file(folder_ / "frames" / "approach.csv");
   EXPECT_THAT(table, testing::HasSubstr("\napproach-01.png,0.600000,410,400,no dot,,,,,,,2.000000,0\n"));
 }
 
 TEST_F(WriteResults, AFolderThatIsNotThereIsBadInput) {
-  EXPECT_THROW(write_results(sample_go(), folder_ / "missing"), InputError);
+  EXPECT_THROW(write_results(sample_go(), sample_pictures(), folder_ / "missing"), InputError);
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

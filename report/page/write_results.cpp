@@ -1,13 +1,17 @@
+#include "report/page/write_results.h"
+
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/output_file.h"
 #include "core/units.h"
+#include "report/page/report_html.h"
 #include "report/picture/png.h"
-#include "report/report.h"
+#include "report/summary_json.h"
+#include "report/trace_csv.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace fs = std::filesystem;
 namespace {
 
@@ -16,12 +20,12 @@ std::string pixel_cells(bool present, const Vec2& p) {
 }
 
 // What was seen beside what was there. The dot's pixels are on the sensor; the picture starts at x_px, y_px.
-std::string frames_csv(const std::vector<FrameRecord>& frames) {
+std::string frames_csv(const std::vector<rehearsal::FrameRecord>& frames) {
   std::string text =
       "picture,time_s,x_px,y_px,dot,measured_x_px,measured_y_px,true_x_px,true_y_px,reading_mm,sigma_um,"
       "true_gap_mm,used\n";
   int number = 0;
-  for (const FrameRecord& frame : frames) {
+  for (const rehearsal::FrameRecord& frame : frames) {
     const control::GapSample& look = frame.look;
     const Region& region = look.frame.image.region;
     const bool read = look.reading.sigma > 0;
@@ -37,11 +41,11 @@ std::string frames_csv(const std::vector<FrameRecord>& frames) {
   return text;
 }
 
-void write_frames(const std::vector<FrameRecord>& frames, const fs::path& folder) {
+void write_frames(const std::vector<rehearsal::FrameRecord>& frames, const fs::path& folder) {
   fs::create_directory(folder);
   write_file(folder / "approach.csv", frames_csv(frames));
   int number = 0;
-  for (const FrameRecord& frame : frames) {
+  for (const rehearsal::FrameRecord& frame : frames) {
     ++number;
     if (frame.look.frame.image.pixels.empty()) continue;  // the camera delivered nothing
     write_file(folder / fmt::format("approach-{:02}.png", number), encode_png(frame.look.frame.image));
@@ -50,16 +54,19 @@ void write_frames(const std::vector<FrameRecord>& frames, const fs::path& folder
 
 }  // namespace
 
-void write_results(const Record& record, const fs::path& folder) {
+void write_results(const rehearsal::Record& record, const std::vector<Illustration>& pictures,
+                   const fs::path& folder) {
   write_file(folder / "summary.json", summary_json(record));
-  write_file(folder / "report.html", report_html(record));
+  write_file(folder / "report.html", report_html(record, pictures));
   if (!record.as_built.empty()) write_file(folder / "as-built.yaml", record.as_built);
   if (!record.trace.empty()) write_file(folder / "trace.csv", trace_csv(record));
   if (!record.frames.empty()) write_frames(record.frames, folder / "frames");
-  if (record.pictures.empty()) return;
+  if (pictures.empty()) return;
   fs::create_directory(folder / "pictures");
-  for (std::size_t i = 0; i < record.pictures.size(); ++i)
-    write_file(folder / "pictures" / fmt::format("picture-{:02}.png", i + 1), encode_png(record.pictures[i]));
+  int number = 0;
+  for (const Illustration& illustration : pictures)
+    write_file(folder / "pictures" / fmt::format("picture-{:02}.png", ++number),
+               encode_png(illustration.picture));
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "report/report.h"
+#include "report/page/report_html.h"
+#include "report/summary_json.h"
 #include "tests/report/sample_record.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
+using rehearsal::FrameRecord;
+using rehearsal::Record;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
@@ -17,10 +20,12 @@ std::string data_block(const std::string& page) {
   return page.substr(begin, page.find("</script>", begin) - begin);
 }
 
-Json data_of(const Record& record) { return Json::parse(data_block(report_html(record))); }
+Json data_of(const Record& record, const std::vector<Illustration>& pictures = sample_pictures()) {
+  return Json::parse(data_block(report_html(record, pictures)));
+}
 
 TEST(ReportHtml, NeedsNothingFromOutside) {
-  const std::string page = report_html(sample_go());
+  const std::string page = report_html(sample_go(), sample_pictures());
   for (const char* outside :
        {"src=\"http", "<link", "@import", "url(http", "fetch(", "{{title}}", "{{script}}"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
@@ -28,14 +33,14 @@ TEST(ReportHtml, NeedsNothingFromOutside) {
 }
 
 TEST(ReportHtml, CarriesTheLicenceOfItsCharts) {
-  const std::string page = report_html(sample_go());
+  const std::string page = report_html(sample_go(), sample_pictures());
   for (const char* notice :
        {"Dan Vanderkam", "The above copyright notice and this permission notice shall be included"})
     EXPECT_NE(page.find(notice), std::string::npos) << notice;
 }
 
 TEST(ReportHtml, SaysTheVerdictWithoutAScriptToo) {
-  const std::string page = report_html(sample_stopped_by_constraints());
+  const std::string page = report_html(sample_stopped_by_constraints(), {});
   const std::string noscript = page.substr(page.find("<noscript>"), 400);
   EXPECT_THAT(noscript, HasSubstr("NO-GO: curved-line.gcode on hexapod"));
   EXPECT_THAT(noscript, HasSubstr("Strut 3 is 241.7 mm, longer than 240.0 mm"));
@@ -45,11 +50,14 @@ TEST(ReportHtml, DataCannotBecomeMarkup) {
   Record record = sample_no_go();
   const std::string evil =
       "</script><script>alert(1)</script><!-- <img src=x onerror=alert(2)> & \"{{style}}\"";
-  record.title = record.findings[0].message = record.picture_captions[0] = record.frames[3].look.why = evil;
-  const std::string page = report_html(record);
+  record.title = record.findings[0].message = record.frames[3].look.why = evil;
+  auto pictures = sample_pictures();
+  pictures[0].caption = evil;
+  const std::string page = report_html(record, pictures);
   for (const char* markup : {"<script>alert", "<img src=x"})
     EXPECT_EQ(page.find(markup), std::string::npos) << markup;
-  const Json data = data_of(record);
+  const Json data = data_of(record, pictures);
+  EXPECT_EQ(data["pictures"][0]["caption"], evil);
   EXPECT_EQ(data["title"], evil);
   EXPECT_EQ(data["summary"]["findings"][0]["message"], evil);
   EXPECT_EQ(data["frames"][3]["why"], evil);
@@ -104,7 +112,7 @@ TEST(ReportHtml, AFrameWithoutADotOrAnImageStaysWithoutThem) {
 }
 
 TEST(ReportHtml, NothingSimulatedMeansNoTraceFramesOrPictures) {
-  const Json data = data_of(sample_stopped_by_constraints());
+  const Json data = data_of(sample_stopped_by_constraints(), {});
   EXPECT_FALSE(data.contains("trace"));
   EXPECT_FALSE(data.contains("trace_without_gap_control"));
   EXPECT_TRUE(data["frames"].empty());
@@ -117,4 +125,4 @@ TEST(ReportHtml, WritesTheSeedAsText) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

@@ -1,18 +1,24 @@
-#include "report/report_value.h"
+#include "report/page/report_data.h"
 
 #include <cmath>
 
 #include <nlohmann/json.hpp>
 
+#include "core/stable_number.h"
 #include "core/units.h"
+#include "rehearsal/verdict.h"
 #include "report/picture/png.h"
-#include "report/report.h"
-#include "report/summary_value.h"
+#include "report/summary_json.h"
 #include "report/trace_values.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
+using rehearsal::AxisColumn;
+using rehearsal::FrameRecord;
+using rehearsal::Record;
+using rehearsal::StrandRow;
+using rehearsal::TracePoint;
 using Json = nlohmann::ordered_json;
 
 // A chart is about a thousand pixels wide: four points a pixel hide nothing and keep the page near a
@@ -96,12 +102,12 @@ Json frame_value(const FrameRecord& frame) {
   return object;
 }
 
-Json picture_value(const renderer::Picture& picture, const std::string& caption) {
+Json picture_value(const Illustration& illustration) {
   Json object;
-  if (!caption.empty()) object["caption"] = caption;
-  object["width"] = picture.width;
-  object["height"] = picture.height;
-  object["image"] = data_uri(encode_png(picture));
+  if (!illustration.caption.empty()) object["caption"] = illustration.caption;
+  object["width"] = illustration.picture.width;
+  object["height"] = illustration.picture.height;
+  object["image"] = data_uri(encode_png(illustration.picture));
   return object;
 }
 
@@ -143,11 +149,11 @@ Json profile_value(const Record& record) {
 
 }  // namespace
 
-Json report_value(const Record& record) {
+Json report_data(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
   Json report;
   report["schema"] = "understudy.report/1";
   report["title"] = record.title;
-  report["reason"] = verdict_sentence(record);
+  report["reason"] = rehearsal::verdict_sentence(record);
   report["names"] = names_value(record);
   report["summary"] = summary_value(record);
   if (record.gap_accepted_max_mm > 0)
@@ -169,10 +175,8 @@ Json report_value(const Record& record) {
   for (const FrameRecord& frame : record.frames)
     if (all_frames || !frame.look.frame.image.pixels.empty()) report["frames"].push_back(frame_value(frame));
   report["pictures"] = Json::array();
-  for (std::size_t i = 0; i < record.pictures.size(); ++i)
-    report["pictures"].push_back(picture_value(
-        record.pictures[i], i < record.picture_captions.size() ? record.picture_captions[i] : std::string()));
+  for (const Illustration& picture : pictures) report["pictures"].push_back(picture_value(picture));
   return report;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

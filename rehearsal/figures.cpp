@@ -1,0 +1,128 @@
+#include "rehearsal/figures.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+class Figures {
+ public:
+  void section(const char* name) { section_ = name; }
+  void put(const std::string& name, double value) { all_.push_back({section_, name, value}); }
+  void count(const std::string& name, std::uint64_t value) { all_.push_back({section_, name, value}); }
+  void count(const std::string& name, int value) { count(name, static_cast<std::uint64_t>(value)); }
+  void text(const std::string& name, const std::string& value) { all_.push_back({section_, name, value}); }
+  void texts(const std::string& name, const std::vector<std::string>& value) {
+    if (!value.empty()) all_.push_back({section_, name, value});
+  }
+  std::vector<Figure> take() { return std::move(all_); }
+
+ private:
+  std::string section_;
+  std::vector<Figure> all_;
+};
+
+void add(const PrintFigures& print, Figures& to) {
+  to.section("print");
+  to.put("duration_s", print.duration_s);
+  to.count("moves", print.moves);
+  to.put("extruded_mm", print.extruded_mm);
+  to.put("deposited_mm", print.deposited_mm);
+  to.put("travel_mm", print.travel_mm);
+}
+
+void add(const AccuracyFigures& accuracy, Figures& to) {
+  to.section("accuracy");
+  to.put("tip_rms_um", accuracy.tip_rms_um);
+  to.put("tip_p95_um", accuracy.tip_p95_um);
+  to.put("tip_max_um", accuracy.tip_max_um);
+  to.put("orientation_max_mrad", accuracy.orientation_max_mrad);
+  to.put("open_loop_tip_max_um", accuracy.open_loop_tip_max_um);
+}
+
+void add(const CalibrationFigures& calibration, Figures& to) {
+  to.section("calibration");
+  to.text("machine_before", calibration.machine_before);
+  to.text("machine_after", calibration.machine_after);
+  if (!calibration.not_run_before.empty()) to.text("not_run_before", calibration.not_run_before);
+  const auto pair = [&](const std::string& name, const std::string& unit, double AccuracyFigures::*figure) {
+    if (calibration.before) to.put(name + "_before_" + unit, *calibration.before.*figure);
+    to.put(name + "_after_" + unit, calibration.after.*figure);
+  };
+  pair("tip_rms", "um", &AccuracyFigures::tip_rms_um);
+  pair("tip_p95", "um", &AccuracyFigures::tip_p95_um);
+  pair("tip_max", "um", &AccuracyFigures::tip_max_um);
+  pair("orientation_max", "mrad", &AccuracyFigures::orientation_max_mrad);
+}
+
+void add(const GapFigures& gap, Figures& to) {
+  to.section("gap");
+  to.put("commanded_mm", gap.commanded_mm);
+  if (gap.open_loop_start_mm) to.put("open_loop_start_mm", *gap.open_loop_start_mm);
+  to.put("start_mm", gap.start_mm);
+  to.put("path_min_mm", gap.path_min_mm);
+  to.put("path_mean_mm", gap.path_mean_mm);
+  to.put("path_max_mm", gap.path_max_mm);
+  to.put("in_band_fraction", gap.in_band_fraction);
+  to.count("frames", gap.frames);
+}
+
+void add(const SagFigures& sag, Figures& to) {
+  to.section("sag");
+  to.put("max_um", sag.max_um);
+  to.count("strands", sag.strands);
+  to.put("unsupported_mm", sag.unsupported_mm);
+}
+
+void add(const CollisionFigures& collision, Figures& to) {
+  to.section("collision");
+  to.put("min_clearance_mm", collision.min_clearance_mm);
+  to.count("checks", collision.checks);
+  to.count("pairs", collision.pairs);
+}
+
+void add(const SurfaceFigures& surface, Figures& to) {
+  to.section("surface");
+  if (surface.ra_um) to.put("ra_um", *surface.ra_um);
+  if (surface.rz_um) to.put("rz_um", *surface.rz_um);
+  if (surface.deviation_p95_um) to.put("deviation_p95_um", *surface.deviation_p95_um);
+}
+
+void add(const EngineFigures& engine, Figures& to) {
+  to.section("engine");
+  to.text("name", engine.name);
+  to.text("version", engine.version);
+  to.put("timestep_s", engine.timestep_s);
+  to.count("steps", engine.steps);
+  to.put("real_time_factor", engine.real_time_factor);
+  to.put("closure_max_um", engine.closure_max_um);
+}
+
+void add(const Provenance& provenance, Figures& to) {
+  to.section("provenance");
+  to.text("version", provenance.version);
+  to.text("machine_sha256", provenance.machine_sha256);
+  if (!provenance.machine_before_sha256.empty())
+    to.text("machine_before_sha256", provenance.machine_before_sha256);
+  to.text("program_sha256", provenance.program_sha256);
+  to.count("seed", provenance.seed);
+  to.text("as_built", provenance.as_built);
+  to.texts("faults", provenance.faults);
+  to.text("command", provenance.command);
+}
+
+}  // namespace
+
+std::vector<Figure> figures(const Record& record) {
+  Figures all;
+  if (record.print) add(*record.print, all);
+  if (record.accuracy) add(*record.accuracy, all);
+  if (record.calibration) add(*record.calibration, all);
+  if (record.gap) add(*record.gap, all);
+  if (record.sag) add(*record.sag, all);
+  if (record.collision) add(*record.collision, all);
+  if (record.surface) add(*record.surface, all);
+  if (record.engine) add(*record.engine, all);
+  add(record.provenance, all);
+  return all.take();
+}
+
+}  // namespace understudy::rehearsal

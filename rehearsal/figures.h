@@ -1,0 +1,26 @@
+// The figures of a record under their names in summary.json, so that files and expectations speak of the
+// same.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "rehearsal/record.h"
+
+namespace understudy::rehearsal {
+
+/// Counts keep every digit.
+using FigureValue = std::variant<double, std::uint64_t, std::string, std::vector<std::string>>;
+
+struct Figure {
+  std::string section;  ///< "gap"
+  std::string name;     ///< "start_mm": its unit is its ending
+  FigureValue value;
+};
+
+/// Section by section in the order of the contract; what is absent is left out.
+std::vector<Figure> figures(const Record& record);
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,35 @@
+// What stood where at one instant of a run: what pictures of it are drawn from.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "geometry/shape.h"
+#include "machine/description.h"
+#include "sim/as_built/as_built.h"
+#include "sim/collision/configuration.h"
+#include "sim/deposition/workpiece.h"
+#include "toolpath/program.h"
+
+namespace understudy::rehearsal {
+
+struct Scene {
+  bool simulated = false;               ///< false: the machine stands still
+  double time = 0;                      ///< [s]
+  Pose X_WT = Pose::Identity();         ///< true
+  std::vector<geometry::Shape> bodies;  ///< of the machine, their poses in W
+  geometry::Shape table;
+  std::shared_ptr<const geometry::Mesh> part;     ///< may be null
+  std::vector<std::vector<Vec3>> path;            ///< [m], programmed; print move after print move
+  std::shared_ptr<const sim::Workpiece> printed;  ///< null: nothing was simulated
+};
+
+/// The machine in a posture, on its table; no part, no program.
+Scene machine_scene(const machine::MachineDescription& machine, const sim::AsBuilt& as_built,
+                    const sim::Configuration& posture);
+
+/// Where the tip goes while it prints, one polyline [m] for each stretch between two travels.
+std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program);
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,56 @@
+#include "rehearsal/figures.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace understudy::rehearsal {
+namespace {
+
+std::vector<std::string> sections_of(const Record& record) {
+  std::vector<std::string> sections;
+  for (const Figure& figure : figures(record))
+    if (sections.empty() || sections.back() != figure.section) sections.push_back(figure.section);
+  return sections;
+}
+
+TEST(Figures, ComeSectionBySectionInTheContractsOrder) {
+  Record record;
+  record.print.emplace();
+  record.accuracy.emplace();
+  record.calibration.emplace();
+  record.gap.emplace();
+  record.sag.emplace();
+  record.collision.emplace();
+  record.surface = SurfaceFigures{1.0, {}, {}};
+  record.engine.emplace();
+  EXPECT_THAT(sections_of(record), testing::ElementsAre("print", "accuracy", "calibration", "gap", "sag",
+                                                        "collision", "surface", "engine", "provenance"));
+  std::set<std::string> names;
+  for (const Figure& figure : figures(record)) names.insert(figure.section + "." + figure.name);
+  EXPECT_EQ(names.size(), figures(record).size());
+}
+
+TEST(Figures, WhatIsAbsentIsLeftOut) {
+  Record record;
+  EXPECT_THAT(sections_of(record), testing::ElementsAre("provenance"));
+  record.gap.emplace();
+  const auto names = figures(record);
+  EXPECT_TRUE(std::none_of(names.begin(), names.end(), [](const Figure& f) {
+    return f.name == "open_loop_start_mm" || f.name == "faults";
+  }));
+}
+
+TEST(Figures, CountsKeepEveryDigit) {
+  Record record;
+  record.provenance.seed = 18446744073709551615u;
+  for (const Figure& figure : figures(record))
+    if (figure.name == "seed") {
+      EXPECT_EQ(std::get<std::uint64_t>(figure.value), 18446744073709551615u);
+    }
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

@@ -1,0 +1,53 @@
+#include "rehearsal/verdict.h"
+
+#include <gtest/gtest.h>
+
+namespace understudy::rehearsal {
+namespace {
+
+Record stopped_by_constraints() {
+  Record record;
+  record.findings = {{"strut_length", Severity::error, 1187, 41.2, 241.7, 240.0, "mm",
+                      "strut 3 is 241.7 mm, longer than 240.0 mm"},
+                     {"joint_angle", Severity::error, 1192, 41.9, 63.1, 60.0, "deg",
+                      "ball joint 2 is at 63.1 deg, above 60.0 deg"}};
+  return record;
+}
+
+Record printed(bool go) {
+  Record record;
+  record.go = go;
+  record.print.emplace();
+  record.gap.emplace().start_mm = 0.131;
+  return record;
+}
+
+TEST(VerdictSentence, NamesTheFirstErrorAndCountsTheRest) {
+  EXPECT_EQ(
+      verdict_sentence(stopped_by_constraints()),
+      "Strut 3 is 241.7 mm, longer than 240.0 mm (line 1187), and 1 more error; the program was not run.");
+  Record loose = printed(false);
+  loose.findings = {{"adhesion", Severity::error, 14, 6.0, 0.4123, 0.2, "mm",
+                     "the bead is laid at a gap of 0.412 mm, above 0.200 mm: it does not stick"}};
+  EXPECT_EQ(verdict_sentence(loose),
+            "The bead is laid at a gap of 0.412 mm, above 0.200 mm: it does not stick (line 14).");
+}
+
+TEST(VerdictSentence, AWarningIsNeverTheReasonOfANoGo) {
+  Record record = stopped_by_constraints();
+  record.findings.insert(record.findings.begin(),
+                         {"near_collision", Severity::warning, 3, 1, 1, 2, "mm", "close"});
+  EXPECT_EQ(verdict_sentence(record).rfind("Strut 3", 0), 0u);
+}
+
+// 0.9999 of the path is not all of it.
+TEST(VerdictSentence, RoundsTheInBandFractionDown) {
+  Record record = printed(true);
+  record.gap->in_band_fraction = 0.9999;
+  EXPECT_NE(verdict_sentence(record).find("99.9 %"), std::string::npos);
+  record.gap->in_band_fraction = 1;
+  EXPECT_NE(verdict_sentence(record).find("100.0 %"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal
