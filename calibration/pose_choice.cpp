@@ -116,7 +116,7 @@ std::vector<Pose> random_reachable_poses(const kinematics::Mechanism& mechanism,
                                          std::size_t count, Random& random) {
   constexpr std::size_t kTriesPerPose = 10'000;
   std::vector<Pose> poses;
-  std::array<double, kinematics::kMaxAxes> axes{};
+  kinematics::AxisVector axes{};
   const auto n = static_cast<std::size_t>(mechanism.axis_count());
   const std::span<double> used(axes.data(), n);
   std::vector<kinematics::LimitViolation> violations;

@@ -90,11 +90,11 @@ rehearsal::CalibrationBenchmarkRequest request_of(const BenchmarkCall& call) {
 
 int run_tables(const BenchmarkCall& call) {
   const machine::MachineDescription machine = machine::load_machine(call.request.machine);
-  if (machine.chain)
+  if (machine.is_chain())
     throw InputError(fmt::format("--tables prints figures of the hexapod, not of {}", machine.name));
   const auto mechanism = machine.make_mechanism();
   calibration::StudySetting setting;
-  setting.nominal = machine.hexapod.geometry;
+  setting.nominal = machine.hexapod().geometry;
   setting.mechanism = mechanism.get();
   setting.region = calibration::reference_region(machine.X_BT_home);
   const auto line = [](const std::string& text) {

@@ -33,12 +33,12 @@ std::string try_plant() {
   const auto machine = machine::load_machine("hexapod");
   const auto plant = sim::make_mujoco_plant(machine, sim::make_as_built(machine, "nominal", 1));
   kinematics::StrutLengths lengths{};
-  if (kinematics::inverse(machine.hexapod.geometry, machine.X_BT_home, lengths) !=
+  if (kinematics::inverse(machine.hexapod().geometry, machine.X_BT_home, lengths) !=
       kinematics::SolveStatus::ok)
     throw std::runtime_error("home cannot be reached");
-  machine::AxisArray home{};
+  kinematics::AxisVector home{};
   for (std::size_t i = 0; i < lengths.size(); ++i)
-    home[i] = lengths[i] - machine.hexapod.geometry.length_offset[i];
+    home[i] = lengths[i] - machine.hexapod().geometry.length_offset[i];
   plant->reset(home);
   for (int i = 0; i < 100; ++i) plant->step({home, {}});
   return fmt::format("{}, closure {:.3f} um at rest", plant->engine(), to_um(plant->closure_error()));

@@ -54,7 +54,7 @@ int print_axes(const std::string& name) {
   std::string out = fmt::format("{},status\n", fmt::join(axis_header(*mechanism), ","));
   for (const auto& row : rows) {
     const Pose X_BT = machine.X_WB.inverse() * pose_of(row);
-    std::array<double, kinematics::kMaxAxes> axes{};
+    kinematics::AxisVector axes{};
     const auto solved = mechanism->inverse(X_BT, {}, std::span(axes).first(n));
     std::string status =
         solved == kinematics::SolveStatus::ok ? status_of(*mechanism, X_BT, axes) : to_string(solved);
@@ -74,7 +74,7 @@ int print_poses(const std::string& name) {
   const auto rows = read_number_table(std::cin, "standard input", axis_header(*mechanism));
   std::string out = fmt::format("{},status\n", fmt::join(kPoseHeader, ","));
   for (const auto& row : rows) {
-    std::array<double, kinematics::kMaxAxes> axes{};
+    kinematics::AxisVector axes{};
     for (std::size_t i = 0; i < row.values.size(); ++i)
       axes[i] = row.values[i] * file_unit(*mechanism, static_cast<int>(i));
     Pose X_BT;

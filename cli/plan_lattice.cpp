@@ -77,7 +77,7 @@ void warn_of_lengths(const toolpath::Lattice& lattice) {
 std::function<bool(const Pose&)> reach_of(const machine::MachineDescription& machine) {
   const std::shared_ptr<kinematics::Mechanism> mechanism = machine.make_mechanism();
   return [mechanism, X_BW = Pose(machine.X_WB.inverse())](const Pose& X_WT) {
-    std::array<double, kinematics::kMaxAxes> storage{};
+    kinematics::AxisVector storage{};
     const auto axes = std::span(storage).first(static_cast<std::size_t>(mechanism->axis_count()));
     const Pose X_BT = X_BW * X_WT;
     if (mechanism->inverse(X_BT, {}, axes) != kinematics::SolveStatus::ok) return false;

@@ -19,7 +19,7 @@ endif()
 add_library(understudy_settings INTERFACE)
 # The same inputs must give the same bytes: no contraction that depends on inlining.
 target_compile_options(understudy_settings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 sees overlaps in std::string that are not there (PR 105651)
   $<$<BOOL:${UNDERSTUDY_WERROR}>:-Werror>)
 if(UNDERSTUDY_SANITIZE)

@@ -47,8 +47,8 @@ class ApproachMotion : public GapMotion {
 Pose standing_pose(const machine::MachineDescription& machine, const machine::MachinePort& port) {
   const auto mechanism = machine.make_mechanism();
   const auto axes = static_cast<std::size_t>(mechanism->axis_count());
-  const machine::AxisArray measured = port.state().position;
-  machine::AxisArray home{};
+  const kinematics::AxisVector measured = port.state().position;
+  kinematics::AxisVector home{};
   const std::span<double> home_axes(home.data(), axes);
   bool at_home = mechanism->inverse(machine.X_BT_home, home_axes, home_axes) == kinematics::SolveStatus::ok;
   for (std::size_t i = 0; i < axes; ++i) at_home = at_home && std::abs(measured[i] - home[i]) <= kAtHome;

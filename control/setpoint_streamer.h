@@ -62,11 +62,11 @@ class SetpointStreamer {
   std::vector<machine::Setpoint> batch_;
   std::size_t batch_size_;
   Pose X_WT_rest_;
-  machine::AxisArray axes_rest_;  ///< there
-  double filament_ = 0;           ///< [m], fed by everything pushed
-  double filament_at_start_ = 0;  ///< [m], when the stretch began: planners count from 0
-  double end_time_ = 0;           ///< [s], of the last setpoint queued
-  std::uint64_t dropped_ = 0;     ///< setpoints that were queued and then abandoned
+  kinematics::AxisVector axes_rest_;  ///< there
+  double filament_ = 0;               ///< [m], fed by everything pushed
+  double filament_at_start_ = 0;      ///< [m], when the stretch began: planners count from 0
+  double end_time_ = 0;               ///< [s], of the last setpoint queued
+  std::uint64_t dropped_ = 0;         ///< setpoints that were queued and then abandoned
 };
 
 }  // namespace understudy::control

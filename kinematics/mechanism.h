@@ -1,7 +1,8 @@
 // What every machine's kinematics offers to the rest: poses to axes and back, rates, limits.
 // Poses are X_BT: the tool seen from the frame B that the work stands in: the machine's base where the table
 // stands still, the table itself where axes move it. Axes are in SI (m or rad), in the machine's order.
-// No function here throws, allocates (but for `check`) or returns NaN: a Solve says why there is no answer.
+// No function here throws, allocates (but for `check`) or returns NaN: a SolveStatus says why there is no
+// answer.
 #pragma once
 
 #include <optional>
@@ -10,15 +11,14 @@
 #include <vector>
 
 #include "core/frames.h"
+#include "kinematics/axis_vector.h"
 
 namespace understudy::kinematics {
-
-constexpr int kMaxAxes = 8;
 
 /// Condition numbers are not told apart above this.
 constexpr double kSingularCondition = 1e7;
 
-enum class SolveStatus { ok, unreachable, singular, not_converged, bad_input };
+enum class [[nodiscard]] SolveStatus{ok, unreachable, singular, not_converged, bad_input};
 const char* to_string(SolveStatus s);
 
 enum class LimitKind {

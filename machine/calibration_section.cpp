@@ -91,7 +91,7 @@ void read_axis(YamlMap& map, const kinematics::ChainAxis& drawn, kinematics::Cha
 }
 
 void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
-  ChainModel& model = *machine.chain;
+  ChainModel& model = machine.chain();
   if (machine.mechanism != "arm" && machine.mechanism != "chain")
     throw InputError(map.place(),
                      fmt::format("a calibrated '{}' has no inverse kinematics here: only hexapod, "
@@ -125,7 +125,7 @@ void read_calibration(YamlMap& root, MachineDescription& machine) {
   }
   root.section("calibration", [&](YamlMap& map) {
     read_record(map, machine.calibration.emplace());
-    if (machine.chain)
+    if (machine.is_chain())
       read_chain_calibration(map, machine);
     else
       read_struts(map, machine.hexapod);

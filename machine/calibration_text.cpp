@@ -72,8 +72,8 @@ std::string calibration_section(const MachineDescription& machine) {
       "  tip_sigma_um: {:.3f}   # RMS over the work space\n",
       kKey, record.estimator, quoted(record.measurements), quoted(record.measurements_sha256), record.poses,
       to_um(record.tip_sigma));
-  return out +
-         (machine.chain ? axes_text(machine.chain->kinematics.chain) : struts_text(machine.hexapod.geometry));
+  return out + (machine.is_chain() ? axes_text(machine.chain().kinematics.chain)
+                                   : struts_text(machine.hexapod().geometry));
 }
 
 std::string with_section(const std::string& text, const std::string& section) {

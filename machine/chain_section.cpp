@@ -129,7 +129,7 @@ void check_apart(const YamlMap& map, const Chain& chain, std::size_t index) {
 }
 
 void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription& machine) {
-  ChainModel& model = *machine.chain;
+  ChainModel& model = machine.chain();
   Chain& chain = model.kinematics.chain;
   if (listed) {
     if (index >= kinematics::kMaxAxes)
@@ -186,7 +186,7 @@ Link rigid_body(const UrdfArm& arm, int axis) {
 
 /// Axes, links and the tool's mount from a URDF beside the machine file.
 void read_urdf_chain(YamlMap& map, MachineDescription& machine) {
-  ChainModel& model = *machine.chain;
+  ChainModel& model = machine.chain();
   const std::string file = map.text("urdf"), base = map.text("base_link"), tool = map.text("tool_link");
   const Pose X_LT = read_tool_mount(map);
   if (!map.complete()) return;
@@ -207,7 +207,7 @@ void read_base(YamlMap& map, MachineDescription& machine) {
 }  // namespace
 
 void read_chain(YamlMap& root, MachineDescription& machine) {
-  ChainModel& model = machine.chain.emplace();
+  ChainModel& model = machine.model.emplace<machine::ChainModel>();
   model.kinematics.kind = machine.mechanism;
   const ChainKind& kind = *kinematics::find_chain_kind(machine.mechanism);
   Chain& chain = model.kinematics.chain;

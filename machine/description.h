@@ -2,12 +2,12 @@
 // Everything here is SI; the file uses mm, degrees, mm/s and says so in its keys.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/image.h"
@@ -85,8 +85,8 @@ struct Link {
 struct ChainModel {
   kinematics::ChainDescription kinematics;
   std::vector<Link> links;                    ///< one an axis; the tool belongs to the last of its branch
-  std::vector<double> play;                   ///< [m] or [rad], total free travel of each axis; nominal
-  std::vector<double> friction;               ///< [N] or [N m], below which an axis stays within its play
+  kinematics::AxisVector play;                ///< [m] or [rad], total free travel of each axis; nominal
+  kinematics::AxisVector friction;            ///< [N] or [N m], below which an axis stays within its play
   std::vector<geometry::Shape> frame_bodies;  ///< what stands still; poses in O
 };
 
@@ -161,6 +161,13 @@ struct GapLimits {
   double standoff = 0;      ///< [m], S' out along the normal from S
 };
 
+template <typename... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+template <typename... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
 struct MachineDescription {
   std::string name;
   std::string mechanism;       ///< "hexapod", or the name of a kinematics::ChainKind
@@ -172,13 +179,24 @@ struct MachineDescription {
   Pose X_WB = Pose::Identity();
   Pose X_BT_home = Pose::Identity();
 
-  /// One of the two: the closed loops of a hexapod, or an open chain.
-  HexapodModel hexapod;
-  std::optional<ChainModel> chain;
+  /// The closed loops of a hexapod, or an open chain.
+  std::variant<HexapodModel, ChainModel> model;
+  bool is_chain() const { return std::holds_alternative<ChainModel>(model); }
+  /// Of a machine of that kind: elsewhere a mistake of the caller, std::bad_variant_access.
+  const HexapodModel& hexapod() const { return std::get<HexapodModel>(model); }
+  HexapodModel& hexapod() { return std::get<HexapodModel>(model); }
+  const ChainModel& chain() const { return std::get<ChainModel>(model); }
+  ChainModel& chain() { return std::get<ChainModel>(model); }
+  /// The answer of the one that takes this machine's model: visit([](const HexapodModel&) {...}, [](const
+  /// ChainModel&) {...}).
+  template <typename... Cases>
+  auto visit(Cases&&... cases) const {
+    return std::visit(Overloaded{std::forward<Cases>(cases)...}, model);
+  }
   /// Empty: the geometry is the drawn one.
   std::optional<CalibrationRecord> calibration;
 
-  std::array<Drive, kinematics::kMaxAxes> drives{};  ///< one an axis
+  kinematics::PerAxis<Drive> drives{};  ///< one an axis
   Tool tool;
   Process process;             ///< of a tool that prints
   bool has_microscope = true;  ///< with its laser; without, there is no gap control
@@ -196,7 +214,9 @@ struct MachineDescription {
   /// How the joints turn the screws of a hexapod; lead 0 where rails guide them.
   kinematics::ScrewCoupling screw_coupling() const;
   /// Axis positions at which the drives read 0: l_i0 of a strut, 0 of a chain's axis. [m] or [rad]
-  std::array<double, kinematics::kMaxAxes> drive_zero() const;
+  kinematics::AxisVector drive_zero() const;
+  /// The description gives this axis, or its strut, any play.
+  bool has_play(int axis) const;
   /// [m], at most, by which all play together may shift the tip near home along any direction.
   double tip_play() const;
 };

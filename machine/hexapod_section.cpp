@@ -17,7 +17,7 @@ Vec3 on_circle(double radius, double angle, double height) {
   return {radius * std::cos(angle), radius * std::sin(angle), height};
 }
 
-void check_apart(const Place& place, const char* what, const std::array<Vec3, kinematics::kStruts>& joints) {
+void check_apart(const Place& place, const char* what, const kinematics::PerStrut<Vec3>& joints) {
   for (std::size_t i = 0; i < joints.size(); ++i)
     for (std::size_t j = i + 1; j < joints.size(); ++j) {
       const double distance = (joints[i] - joints[j]).norm();
@@ -30,13 +30,13 @@ void check_apart(const Place& place, const char* what, const std::array<Vec3, ki
 
 void check_struts_exist(const Place& place, const MachineDescription& machine) {
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
-    const Vec3 d = machine.hexapod.geometry.base_joint[i] -
-                   machine.X_BT_home * machine.hexapod.geometry.platform_joint[i];
-    if (d.norm() <= machine.hexapod.geometry.deviation + kJointsApart)
+    const Vec3 d = machine.hexapod().geometry.base_joint[i] -
+                   machine.X_BT_home * machine.hexapod().geometry.platform_joint[i];
+    if (d.norm() <= machine.hexapod().geometry.deviation + kJointsApart)
       throw InputError(place,
                        fmt::format("strut {} has no length at home: its joints are {:.3f} mm apart, the "
                                    "deviation is {} mm",
-                                   i + 1, to_mm(d.norm()), to_mm(machine.hexapod.geometry.deviation)));
+                                   i + 1, to_mm(d.norm()), to_mm(machine.hexapod().geometry.deviation)));
   }
 }
 
@@ -49,25 +49,25 @@ void read_geometry(YamlMap& map, MachineDescription& machine) {
   const double platform_height = map.quantity("platform_height_mm", {0, 1000});
   const Vec3 home_tip = map.vector("home_tip_mm", {-5000, 5000});
   const double length_offset = map.quantity("length_offset_mm", {0, 5000});
-  machine.hexapod.geometry.deviation = map.quantity("deviation_mm", {0, 500});
-  machine.hexapod.strut_radius = map.quantity("strut_body_radius_mm", {0.1, 100});
+  machine.hexapod().geometry.deviation = map.quantity("deviation_mm", {0, 500});
+  machine.hexapod().strut_radius = map.quantity("strut_body_radius_mm", {0.1, 100});
 
   for (int i = 0; i < kinematics::kStruts; ++i) {
     const auto strut = static_cast<std::size_t>(i);
     const double centre = from_deg(120.0 * (i / 2));
     const double side = i % 2 == 0 ? -1 : 1;
-    machine.hexapod.geometry.base_joint[strut] = on_circle(base_radius, centre + side * base_half_angle, 0);
-    machine.hexapod.geometry.platform_joint[strut] =
+    machine.hexapod().geometry.base_joint[strut] = on_circle(base_radius, centre + side * base_half_angle, 0);
+    machine.hexapod().geometry.platform_joint[strut] =
         on_circle(platform_radius, centre + side * (from_deg(60) - platform_half_angle), platform_height);
-    machine.hexapod.geometry.length_offset[strut] = length_offset;
+    machine.hexapod().geometry.length_offset[strut] = length_offset;
   }
-  machine.hexapod.design = machine.hexapod.geometry;
+  machine.hexapod().design = machine.hexapod().geometry;
   machine.X_WB = make_pose(Quat::Identity(), Vec3(0, 0, base_height));
   machine.X_BT_home = machine.X_WB.inverse() * make_pose(Quat::Identity(), home_tip);
 }
 
 void read_limits(YamlMap& map, MachineDescription& machine) {
-  kinematics::HexapodLimits& limits = machine.hexapod.limits;
+  kinematics::HexapodLimits& limits = machine.hexapod().limits;
   limits.strut_min = map.quantity("strut_min_mm", {1, 5000});
   limits.strut_max = map.quantity("strut_max_mm", {1, 5000});
   limits.base_alpha_min = map.quantity("base_joint_alpha_min_deg", {-90, 90});
@@ -101,24 +101,24 @@ void read_hexapod(YamlMap& root, MachineDescription& machine) {
     read_drive(map, false, drive);
     if (map.has("screw_rotation")) {
       const std::string word = map.word("screw_rotation", {"guided", "free", "compensated"});
-      machine.hexapod.screw_rotation = word == "free"          ? ScrewRotation::free
-                                       : word == "compensated" ? ScrewRotation::compensated
-                                                               : ScrewRotation::guided;
+      machine.hexapod().screw_rotation = word == "free"          ? ScrewRotation::free
+                                         : word == "compensated" ? ScrewRotation::compensated
+                                                                 : ScrewRotation::guided;
     }
   });
   std::fill_n(machine.drives.begin(), kinematics::kStruts, drive);
-  root.section("play", [&](YamlMap& map) { read_play(map, machine.hexapod.play); });
-  root.section("masses", [&](YamlMap& map) { read_masses(map, machine.hexapod.masses); });
+  root.section("play", [&](YamlMap& map) { read_play(map, machine.hexapod().play); });
+  root.section("masses", [&](YamlMap& map) { read_masses(map, machine.hexapod().masses); });
 }
 
 void settle_home(const Place& place, MachineDescription& machine) {
-  check_apart(place, "base", machine.hexapod.geometry.base_joint);
-  check_apart(place, "platform", machine.hexapod.geometry.platform_joint);
+  check_apart(place, "base", machine.hexapod().geometry.base_joint);
+  check_apart(place, "platform", machine.hexapod().geometry.platform_joint);
   check_struts_exist(place, machine);
   // Studs were made as drawn; a calibration says nothing about them.
-  machine.hexapod.joints = kinematics::joints_at_home(machine.hexapod.design, machine.X_BT_home);
+  machine.hexapod().joints = kinematics::joints_at_home(machine.hexapod().design, machine.X_BT_home);
   std::vector<kinematics::LimitViolation> violations;
-  kinematics::check(machine.hexapod.geometry, machine.hexapod.joints, machine.hexapod.limits,
+  kinematics::check(machine.hexapod().geometry, machine.hexapod().joints, machine.hexapod().limits,
                     machine.X_BT_home, violations);
   if (!violations.empty())
     throw InputError(place, "home cannot be reached: " + kinematics::to_string(violations.front()));

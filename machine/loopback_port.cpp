@@ -32,12 +32,12 @@ LoopbackPort::LoopbackPort(const Options& options, FrameSource frames)
   last_.position = options_.start;
 }
 
-AxisArray LoopbackPort::position_at(double queue_time) const {
+AxisVector LoopbackPort::position_at(double queue_time) const {
   if (size_ == 0) return last_.position;
   const Setpoint& next = front();
   const double h = next.time - last_.time;
   const double u = std::clamp((queue_time - last_.time) / h, 0.0, 1.0);
-  AxisArray position{};
+  AxisVector position{};
   for (std::size_t i = 0; i < position.size(); ++i)
     position[i] = hermite(last_.position[i], last_.velocity[i], next.position[i], next.velocity[i], h, u);
   return position;
@@ -70,7 +70,7 @@ Status LoopbackPort::submit(std::span<const Setpoint> setpoints, double deadline
   return Status::ok;
 }
 
-void LoopbackPort::rest_at(const AxisArray& position) {
+void LoopbackPort::rest_at(const AxisVector& position) {
   last_.position = position;
   last_.velocity = {};
   last_.time = time_;

@@ -15,7 +15,7 @@ class LoopbackPort : public MachinePort {
   struct Options {
     int axis_count = 6;
     std::size_t queue_capacity = 4096;
-    AxisArray start{};
+    AxisVector start{};
     double frame_time = 0.02;  ///< [s], exposure plus transfer
     bool history = true;       ///< keep every executed setpoint, which allocates
   };
@@ -42,8 +42,8 @@ class LoopbackPort : public MachinePort {
   const std::vector<Setpoint>& history() const { return history_; }
 
  private:
-  AxisArray position_at(double queue_time) const;
-  void rest_at(const AxisArray& position);
+  AxisVector position_at(double queue_time) const;
+  void rest_at(const AxisVector& position);
   void execute_until(double time);
   const Setpoint& front() const { return ring_[head_]; }
   const Setpoint& back() const { return ring_[(head_ + size_ - 1) % ring_.size()]; }

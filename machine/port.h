@@ -14,8 +14,8 @@
 
 namespace understudy::machine {
 
+using kinematics::AxisVector;
 using kinematics::kMaxAxes;
-using AxisArray = std::array<double, kMaxAxes>;
 
 enum class Status {
   ok,
@@ -33,17 +33,17 @@ const char* to_string(Fault f);
 
 /// Where the axes shall be at a time. Between setpoints the port interpolates with position and velocity.
 struct Setpoint {
-  double time = 0;       ///< [s], port clock
-  AxisArray position{};  ///< [m or rad]; hexapod: strut lengths by the controller's geometry
-  AxisArray velocity{};  ///< [m/s or rad/s]
-  double filament = 0;   ///< [m], filament fed since the start, absolute
-  int line = 0;          ///< G-code line that this serves
+  double time = 0;        ///< [s], port clock
+  AxisVector position{};  ///< [m or rad]; hexapod: strut lengths by the controller's geometry
+  AxisVector velocity{};  ///< [m/s or rad/s]
+  double filament = 0;    ///< [m], filament fed since the start, absolute
+  int line = 0;           ///< G-code line that this serves
 };
 
 struct AxisState {
   double time = 0;             ///< [s], port clock now
   double sampled_at = 0;       ///< [s], when position was measured; age = time - sampled_at
-  AxisArray position{};        ///< measured by the drives, SI
+  AxisVector position{};       ///< measured by the drives, SI
   std::uint64_t accepted = 0;  ///< setpoints queued since the start
   std::uint64_t executed = 0;  ///< setpoints whose time has passed
   std::size_t free_slots = 0;  ///< room in the queue

@@ -43,14 +43,14 @@ bool same(const kinematics::Chain& a, const kinematics::Chain& b) {
 }
 
 const kinematics::Chain& drawn_chain(const MachineDescription& machine) {
-  const auto& known = machine.chain->kinematics;
+  const auto& known = machine.chain().kinematics;
   return machine.calibration ? known.design : known.chain;
 }
 
 const char* difference(const MachineDescription& a, const MachineDescription& b) {
   if (a.name != b.name) return "another machine";
   const bool drawn_alike =
-      a.chain ? same(drawn_chain(a), drawn_chain(b)) : same(a.hexapod.design, b.hexapod.design);
+      a.chain ? same(drawn_chain(a), drawn_chain(b)) : same(a.hexapod().design, b.hexapod().design);
   if (!drawn_alike) return "drawn differently";
   return same(a.X_WB, b.X_WB) ? nullptr : "placed differently";
 }

@@ -94,12 +94,12 @@ struct TracePoint {
   bool extruding = false;
   Pose X_WT = Pose::Identity();  ///< true
   Pose X_WT_programmed =
-      Pose::Identity();          ///< what the program asks for, without the gap controller's offset
-  double tip_error = 0;          ///< [m], true against programmed
-  double orientation_error = 0;  ///< [rad]
-  double gap = 0;                ///< [m], true, along the tool axis; infinity: nothing below
-  double path = 0;               ///< [m] of tip path since extrusion began; 0 before
-  machine::AxisArray axes{};     ///< SI, measured
+      Pose::Identity();           ///< what the program asks for, without the gap controller's offset
+  double tip_error = 0;           ///< [m], true against programmed
+  double orientation_error = 0;   ///< [rad]
+  double gap = 0;                 ///< [m], true, along the tool axis; infinity: nothing below
+  double path = 0;                ///< [m] of tip path since extrusion began; 0 before
+  kinematics::AxisVector axes{};  ///< SI, measured
 };
 
 /// A laser frame kept for the report: the controller's look and the truth beside it.

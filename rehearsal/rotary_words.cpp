@@ -6,8 +6,8 @@ namespace understudy::rehearsal {
 
 // Its axes carry the work, on which the world stands: W is the kinematics' S.
 std::optional<toolpath::RotaryWords> rotary_words(const machine::MachineDescription& machine) {
-  if (machine.mechanism != "five-axis" || !machine.chain) return std::nullopt;
-  const kinematics::ChainDescription& chain = machine.chain->kinematics;
+  if (machine.mechanism != "five-axis" || !machine.is_chain()) return std::nullopt;
+  const kinematics::ChainDescription& chain = machine.chain().kinematics;
   const std::vector<double>& p = chain.parameters;
   const kinematics::FiveAxisGeometry geometry{p[0], p[1], p[2], p[3]};
   toolpath::RotaryWords words;

@@ -10,9 +10,9 @@ Scene machine_scene(const machine::MachineDescription& machine, const sim::AsBui
   scene.X_WT = posture.X_WT;
   scene.bodies = sim::machine_bodies(machine, as_built, posture);
   // The base has no part in collisions: a ring of joints tells where the struts hang.
-  if (!machine.chain)
+  if (!machine.is_chain())
     for (const Vec3& p_BB : as_built.hexapod.base_joint) {
-      geometry::Shape joint{"base joint", geometry::Sphere{1.6 * machine.hexapod.strut_radius}};
+      geometry::Shape joint{"base joint", geometry::Sphere{1.6 * machine.hexapod().strut_radius}};
       joint.X_FS.translation() = machine.X_WB * p_BB;
       scene.bodies.push_back(joint);
     }

@@ -8,13 +8,13 @@ namespace understudy::sim {
 
 /// The truth at one instant.
 struct Snapshot {
-  double time = 0;                         ///< [s]
-  Pose X_WT = Pose::Identity();            ///< true tool pose
-  Pose X_WT_commanded = Pose::Identity();  ///< what the axes command means to the nominal geometry
-  machine::AxisArray axes_commanded{};     ///< SI, controller's geometry
-  machine::AxisArray axes{};               ///< SI, as the port tells the controller
-  machine::AxisArray axes_reached{};       ///< SI, where the drives are, whatever the port tells
-  double filament = 0;                     ///< [m], fed since the start
+  double time = 0;                          ///< [s]
+  Pose X_WT = Pose::Identity();             ///< true tool pose
+  Pose X_WT_commanded = Pose::Identity();   ///< what the axes command means to the nominal geometry
+  kinematics::AxisVector axes_commanded{};  ///< SI, controller's geometry
+  kinematics::AxisVector axes{};            ///< SI, as the port tells the controller
+  kinematics::AxisVector axes_reached{};    ///< SI, where the drives are, whatever the port tells
+  double filament = 0;                      ///< [m], fed since the start
   double fan = 0;
   double nozzle_temperature = 0;  ///< [K]
   int line = 0;                   ///< G-code line

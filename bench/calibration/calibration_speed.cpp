@@ -24,7 +24,7 @@ std::vector<calibration::Problem> make_problems() {
   using namespace calibration;
   const machine::MachineDescription machine = machine::load_machine("hexapod");
   const auto mechanism = machine.make_mechanism();
-  const HexapodGeometry& nominal = machine.hexapod.geometry;
+  const HexapodGeometry& nominal = machine.hexapod().geometry;
   std::vector<Problem> problems;
   Random random(1, "calibration speed");
   for (int n = 0; n < kProblems; ++n) {

@@ -15,7 +15,7 @@ void run(const calibration::TableSize& size) {
   const machine::MachineDescription machine = machine::load_machine("hexapod");
   const auto mechanism = machine.make_mechanism();
   calibration::StudySetting setting;
-  setting.nominal = machine.hexapod.geometry;
+  setting.nominal = machine.hexapod().geometry;
   setting.mechanism = mechanism.get();
   setting.region = calibration::reference_region(machine.X_BT_home);
   calibration::study_tables(setting, size, [](const std::string& line) {

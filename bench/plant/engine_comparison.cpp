@@ -17,8 +17,8 @@ EngineDifference difference(const MotionTrace& engine, const MotionTrace& mujoco
 EngineComparison compare_engines(const machine::MachineDescription& machine, const ReferenceMotion& motion,
                                  double play, double timestep) {
   const CommandStream stream = command_stream(machine, motion, timestep);
-  const AsBuilt built = built_with_play(machine, machine.chain ? play / kArmReach : play);
-  const int axes = machine.chain ? built.chain.size() : kinematics::kStruts;
+  const AsBuilt built = built_with_play(machine, machine.is_chain() ? play / kArmReach : play);
+  const int axes = machine.is_chain() ? built.chain.size() : kinematics::kStruts;
   MujocoOptions mujoco_options;
   BulletOptions bullet_options;
   QuasistaticOptions quasistatic_options;

@@ -42,13 +42,13 @@ std::vector<DriveCommand> circle_commands(const machine::MachineDescription& mac
     twist.head<3>() = radius * rate * Vec3(-std::sin(angle), std::cos(angle), 0);
     kinematics::StrutLengths lengths{};
     Mat6 J;
-    if (kinematics::inverse(machine.hexapod.geometry, X_BT, lengths) != kinematics::SolveStatus::ok ||
-        kinematics::jacobian(machine.hexapod.geometry, X_BT, J) != kinematics::SolveStatus::ok)
+    if (kinematics::inverse(machine.hexapod().geometry, X_BT, lengths) != kinematics::SolveStatus::ok ||
+        kinematics::jacobian(machine.hexapod().geometry, X_BT, J) != kinematics::SolveStatus::ok)
       throw std::runtime_error("the circle leaves the workspace");
     const Twist rates = J * twist;
     auto& command = commands[static_cast<std::size_t>(k)];
     for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
-      command.position[i] = lengths[i] - machine.hexapod.geometry.length_offset[i];
+      command.position[i] = lengths[i] - machine.hexapod().geometry.length_offset[i];
       command.velocity[i] = rates(static_cast<Eigen::Index>(i));
     }
   }

@@ -32,7 +32,7 @@ double cpu_seconds() {
 
 /// A circle of 15 mm at 15 degrees of tilt, fast enough to turn the loads of struts.
 std::vector<PathSample> circle_path(const machine::MachineDescription& machine) {
-  const auto& geometry = machine.hexapod.geometry;
+  const auto& geometry = machine.hexapod().geometry;
   std::vector<PathSample> path(kSamples);
   for (int k = 0; k < kSamples; ++k) {
     const double rate = 4 * std::numbers::pi, angle = rate * k * kTimestep, radius = 0.015;
@@ -80,11 +80,11 @@ void time_turn(std::vector<double>& seconds, Work work) {
 /// How often a drive's load turns its sign along the path: without that the plays would have nothing to do.
 int count_reversals(QuasistaticSampler& sampler, const std::vector<PathSample>& path) {
   int reversals = 0;
-  machine::AxisArray before{};
+  kinematics::AxisVector before{};
   for (const PathSample& sample : path) {
     Pose X_WT;
     sampler.sample(sample, X_WT);
-    const machine::AxisArray gap = sampler.gap();
+    const kinematics::AxisVector gap = sampler.gap();
     for (std::size_t i = 0; i < kStruts; ++i) reversals += gap[i] * before[i] < 0 ? 1 : 0;
     before = gap;
   }

@@ -13,7 +13,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 using std::numbers::pi;
 
 /// 0 to 1 over [0, duration], with no velocity or acceleration at the ends.
@@ -34,9 +34,9 @@ double turns(double t, double period, double ramp, double duration) {
 }
 
 /// Axes at a pose, and on the branch of `axes`.
-void solve(const kinematics::Mechanism& mechanism, const Pose& X_BT, double time, AxisArray& axes) {
+void solve(const kinematics::Mechanism& mechanism, const Pose& X_BT, double time, AxisVector& axes) {
   const auto count = static_cast<std::size_t>(mechanism.axis_count());
-  const AxisArray previous = axes;
+  const AxisVector previous = axes;
   const auto status = mechanism.inverse(X_BT, std::span(previous).first(count), std::span(axes).first(count));
   if (status != kinematics::SolveStatus::ok)
     throw MachineError(fmt::format("the motion is {} at {:.3f} s", kinematics::to_string(status), time));
@@ -114,13 +114,13 @@ CommandStream command_stream(const machine::MachineDescription& machine, const R
   const auto count = static_cast<std::size_t>(mechanism->axis_count());
   const auto zero = machine.drive_zero();
   CommandStream stream;
-  AxisArray axes{};
-  if (machine.chain) std::copy_n(machine.chain->kinematics.home.begin(), count, axes.begin());
+  AxisVector axes{};
+  if (machine.is_chain()) std::copy_n(machine.chain().kinematics.home.begin(), count, axes.begin());
   const auto steps = static_cast<int>(std::lround(motion.duration / timestep));
   for (int k = 0; k < steps; ++k) {
     const double t = k * timestep;
     solve(*mechanism, motion.X_BT(t), t, axes);
-    AxisArray before = axes, after = axes;
+    AxisVector before = axes, after = axes;
     solve(*mechanism, motion.X_BT(t - kHalf), t, before);
     solve(*mechanism, motion.X_BT(t + kHalf), t, after);
     DriveCommand command;

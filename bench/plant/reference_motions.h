@@ -40,8 +40,8 @@ CommandStream command_stream(const machine::MachineDescription& machine, const R
 
 /// What a plant did with a stream: one entry a step, at the step's end.
 struct MotionTrace {
-  std::vector<Vec3> tip_W;               ///< [m]
-  std::vector<machine::AxisArray> load;  ///< drive_force()
+  std::vector<Vec3> tip_W;                   ///< [m]
+  std::vector<kinematics::AxisVector> load;  ///< drive_force()
 };
 MotionTrace run(Plant& plant, const CommandStream& stream);
 

@@ -66,7 +66,7 @@ std::vector<std::string> chain_parameter_names(const Chain& chain) {
 Eigen::MatrixXd chain_rows(const ChainParameters& machine, const std::vector<double>& readings) {
   const Chain& chain = machine.chain;
   const std::vector<double> q = positions(machine, readings);
-  std::array<Pose, kinematics::kMaxAxes> links;
+  kinematics::PerAxis<Pose> links;
   kinematics::link_poses(chain, q, links);
   const auto link = [&](int axis) {
     return axis < 0 ? Pose::Identity() : links[static_cast<std::size_t>(axis)];

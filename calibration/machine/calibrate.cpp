@@ -82,12 +82,12 @@ std::vector<ParameterLine> parameter_lines(const Problem& problem, const Calibra
 
 void check_model(const machine::MachineDescription& machine, const Measurements& measurements,
                  CalibrateResult& result) {
-  if (machine.hexapod.screw_rotation == machine::ScrewRotation::compensated)
+  if (machine.hexapod().screw_rotation == machine::ScrewRotation::compensated)
     throw InputError(
         {measurements.file, 0, 0},
         "struts of a machine with screw_rotation compensated turn in their nuts: their drives do "
         "not tell lengths, which the estimators need");
-  if (machine.hexapod.screw_rotation == machine::ScrewRotation::free)
+  if (machine.hexapod().screw_rotation == machine::ScrewRotation::free)
     result.warnings.emplace_back(
         "screw_rotation is free: turning screws change the lengths, which no estimator models");
 }
@@ -104,7 +104,7 @@ void calibrate_hexapod(const Measurements& measurements, const machine::MachineD
   const Problem problem = hexapod_problem(measurements, nominal);
   const Calibration found = estimator->calibrate(problem);
   if (!found.ok()) refuse(measurements, found.message);
-  result.machine.hexapod.geometry = found.parameters.geometry;
+  result.machine.hexapod().geometry = found.parameters.geometry;
   for (std::size_t j = 0; j < problem.samples.size(); ++j)
     result.poses.push_back(residual_of(problem, found, j, measurements.poses[j].line));
   result.parameters = parameter_lines(problem, found, unknowns);

@@ -73,7 +73,7 @@ void check_rank(const Measurements& measurements, const ChainCalibration& found)
 
 /// An axis that stood still, named: the rank alone does not say which.
 void check_axes_moved(const Measurements& measurements, const machine::MachineDescription& machine) {
-  const auto& axes = machine.chain->kinematics.chain.axes;
+  const auto& axes = machine.chain().kinematics.chain.axes;
   constexpr double kStill = 1e-6;  // [m], [rad]
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto [low, high] = std::minmax_element(
@@ -99,12 +99,12 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
                     "chain can be calibrated",
                     nominal.mechanism));
   check_axes_moved(measurements, nominal);
-  const ChainParameters drawn{nominal.chain->kinematics.chain, {}};
+  const ChainParameters drawn{nominal.chain().kinematics.chain, {}};
   const auto samples = chain_samples(measurements, nominal);
   const ChainCalibration found = robust ? calibration::calibrate_chain_robust(drawn, samples)
                                         : calibration::calibrate_chain(drawn, samples);
   check_rank(measurements, found);
-  kinematics::ChainDescription& known = result.machine.chain->kinematics;
+  kinematics::ChainDescription& known = result.machine.chain().kinematics;
   if (known.design.axes.empty()) known.design = known.chain;
   known.chain = zeros_absorbed(found.parameters);
   result.machine.X_BT_home = kinematics::forward(known.chain, known.home);

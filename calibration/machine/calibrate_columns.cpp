@@ -128,7 +128,7 @@ TableColumns check_columns(const Words& header, const machine::MachineDescriptio
   columns.approach = sides.empty();
   if (!sides.empty() && sides.size() < approach_columns().size())
     throw InputError(place, fmt::format("approaches are told in part: missing {}", fmt::join(sides, ", ")));
-  if (columns.approach && machine.chain)
+  if (columns.approach && machine.is_chain())
     throw InputError(place, "approaches a1..a6 are those of a hexapod's struts");
   return columns;
 }

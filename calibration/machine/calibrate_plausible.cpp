@@ -41,7 +41,7 @@ bool reached(const machine::MachineDescription& machine, const kinematics::Mecha
 
 /// Strut lengths by their limits.
 void check_struts(const Measurements& m, const machine::MachineDescription& machine) {
-  const kinematics::HexapodLimits& limits = machine.hexapod.limits;
+  const kinematics::HexapodLimits& limits = machine.hexapod().limits;
   const double low = limits.strut_min - kBeyondRange, high = limits.strut_max + kBeyondRange;
   const auto columns = axis_columns(machine);
   const auto within = [&](double l) { return l >= low && l <= high; };
@@ -53,7 +53,7 @@ void check_struts(const Measurements& m, const machine::MachineDescription& mach
       for (const Unit& unit : kLengths)
         if (guess.empty() && within(unit.factor * length))
           guess = fmt::format(": {} given for millimetres?", unit.name);
-      if (guess.empty() && within(length + machine.hexapod.geometry.length_offset[i]))
+      if (guess.empty() && within(length + machine.hexapod().geometry.length_offset[i]))
         guess = ": a displacement of the drive given for the strut's length?";
       throw InputError(
           {m.file, pose.line, 0},
@@ -138,7 +138,7 @@ void check_plausible(const Measurements& m, const machine::MachineDescription& m
   const auto mechanism = machine.make_mechanism();
   // Poses and axes cannot fit then; which axis it is, the check of what can be known says.
   if (some_axis_stands_still(m, mechanism->axis_count())) return;
-  if (!machine.chain)
+  if (!machine.is_chain())
     check_struts(m, machine);
   else if (mechanism->axis_is_angle(0))
     check_angle_unit(m, machine, *mechanism);

@@ -19,7 +19,7 @@ using machine::MachineDescription;
 std::vector<Pose> chain_design(const MachineDescription& machine, const std::vector<Pose>& candidates,
                                const kinematics::Mechanism& mechanism, const SamplePosesRequest& request) {
   // D-optimal by the same information, but forwards only: a chain lists parameters that no pose tells.
-  const calibration::ChainParameters known{machine.chain->kinematics.chain, {}};
+  const calibration::ChainParameters known{machine.chain().kinematics.chain, {}};
   const Mat6 root = request.noise.covariance().llt().matrixL();
   std::vector<Eigen::MatrixXd> rows;
   for (const Pose& X_BT : candidates) {
@@ -64,8 +64,8 @@ std::vector<Pose> designed(const SamplePosesRequest& request, const MachineDescr
                            const kinematics::Mechanism& mechanism, const std::vector<Pose>& candidates,
                            Random& random) {
   if (request.design != "d-optimal") return candidates;
-  if (machine.chain) return chain_design(machine, candidates, mechanism, request);
-  const calibration::DesignSetting setting{{machine.hexapod.geometry, {}}, request.noise.covariance(), {}};
+  if (machine.is_chain()) return chain_design(machine, candidates, mechanism, request);
+  const calibration::DesignSetting setting{{machine.hexapod().geometry, {}}, request.noise.covariance(), {}};
   std::vector<Pose> poses;
   for (const std::size_t j :
        calibration::d_optimal(setting, candidates, static_cast<std::size_t>(request.count), random))
@@ -79,17 +79,17 @@ std::vector<Pose> choose(const SamplePosesRequest& request, const MachineDescrip
   const auto drawn = static_cast<std::size_t>(
       request.design == "d-optimal" ? std::max(request.candidates, request.count) : request.count);
   const auto candidates =
-      stand           ? stand->poses_in_view(mechanism, drawn, random)
-      : machine.chain ? chain_candidates(machine, mechanism, drawn, random)
-                      : calibration::random_reachable_poses(
-                            mechanism, calibration::reference_region(machine.X_BT_home), drawn, random);
+      stand                ? stand->poses_in_view(mechanism, drawn, random)
+      : machine.is_chain() ? chain_candidates(machine, mechanism, drawn, random)
+                           : calibration::random_reachable_poses(
+                                 mechanism, calibration::reference_region(machine.X_BT_home), drawn, random);
   return designed(request, machine, mechanism, candidates, random);
 }
 
 /// Where the twin's geometry puts the tool; false where it has no answer.
 bool true_pose(const MachineDescription& machine, const sim::AsBuilt& built, const std::vector<double>& axes,
                const Pose& X_BT_asked, Pose& X_BT) {
-  if (machine.chain) {
+  if (machine.is_chain()) {
     const std::vector<double> zero(built.axis_zero.begin(),
                                    built.axis_zero.begin() + static_cast<std::ptrdiff_t>(axes.size()));
     X_BT = calibration::forward({built.chain, zero}, axes);
@@ -97,14 +97,14 @@ bool true_pose(const MachineDescription& machine, const sim::AsBuilt& built, con
   }
   kinematics::StrutLengths lengths{};
   for (std::size_t i = 0; i < lengths.size(); ++i)
-    lengths[i] = axes[i] - machine.hexapod.geometry.length_offset[i] + built.hexapod.length_offset[i];
+    lengths[i] = axes[i] - machine.hexapod().geometry.length_offset[i] + built.hexapod.length_offset[i];
   const auto reached = kinematics::forward(built.hexapod, lengths, X_BT_asked);
   X_BT = reached.X_BT;
   return reached.status == kinematics::SolveStatus::ok;
 }
 
 void check(const SamplePosesRequest& request, const MachineDescription& machine) {
-  if (request.from_pixels && machine.chain)
+  if (request.from_pixels && machine.is_chain())
     throw InputError("pictures of the targets are taken of a hexapod only");
   if (request.from_pixels && !request.as_built)
     throw InputError("pictures need a machine that stands there: --as-built");

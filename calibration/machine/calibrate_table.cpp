@@ -89,8 +89,8 @@ Mat6 covariance_of(const Row& row, NoiseColumns kind, const Mat6& assumed) {
   return covariance;
 }
 
-std::array<Approach, kinematics::kStruts> approach_of(const Row& row) {
-  std::array<Approach, kinematics::kStruts> approach{};
+kinematics::PerStrut<Approach> approach_of(const Row& row) {
+  kinematics::PerStrut<Approach> approach{};
   for (std::size_t i = 0; i < approach.size(); ++i) {
     const std::string& column = approach_columns()[i];
     const double side = row.at(column);
@@ -214,7 +214,7 @@ std::string measurements_csv(const Measurements& measurements, const machine::Ma
 
 calibration::Problem hexapod_problem(const Measurements& measurements,
                                      const machine::MachineDescription& machine) {
-  calibration::Problem problem{{machine.hexapod.geometry, {}}, {}};
+  calibration::Problem problem{{machine.hexapod().geometry, {}}, {}};
   const Pose X_BW = machine.X_WB.inverse();
   for (const MeasuredPose& pose : measurements.poses) {
     calibration::PoseSample sample;
@@ -222,7 +222,7 @@ calibration::Problem hexapod_problem(const Measurements& measurements,
     sample.covariance = told_in(X_BW.linear(), pose.covariance);
     kinematics::StrutLengths lengths{};
     std::copy_n(pose.axes.begin(), lengths.size(), lengths.begin());
-    sample.displacement = calibration::displacements(machine.hexapod.geometry, lengths);
+    sample.displacement = calibration::displacements(machine.hexapod().geometry, lengths);
     sample.approach = pose.approach;
     problem.samples.push_back(sample);
   }

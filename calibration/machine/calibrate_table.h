@@ -20,7 +20,7 @@ struct MeasuredPose {
   Pose X_WT = Pose::Identity();        ///< measured
   Mat6 covariance = Mat6::Identity();  ///< as calibration::PoseSample::covariance, but in W
   std::vector<double> axes;            ///< as commanded [m] or [rad]; of a hexapod strut lengths
-  std::array<calibration::Approach, kinematics::kStruts> approach{};
+  kinematics::PerStrut<calibration::Approach> approach{};
 };
 
 struct Measurements {

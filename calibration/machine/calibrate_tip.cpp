@@ -23,7 +23,7 @@ double sigma_of(const Mat3& covariance) { return std::sqrt(std::max(0.0, covaria
 bool moved_tip(const machine::MachineDescription& before, const kinematics::Mechanism& old_model,
                const machine::MachineDescription& after, const kinematics::Mechanism& new_model,
                const Pose& X_BT, double& distance) {
-  std::array<double, kinematics::kMaxAxes> axes{};
+  kinematics::AxisVector axes{};
   const auto n = static_cast<std::size_t>(old_model.axis_count());
   if (old_model.inverse(X_BT, {}, std::span(axes).first(n)) != kinematics::SolveStatus::ok) return false;
   const auto old_zero = before.drive_zero(), new_zero = after.drive_zero();
@@ -35,7 +35,7 @@ bool moved_tip(const machine::MachineDescription& before, const kinematics::Mech
 }
 
 bool reachable(const kinematics::Mechanism& mechanism, const Pose& X_BT) {
-  std::array<double, kinematics::kMaxAxes> axes{};
+  kinematics::AxisVector axes{};
   const auto used = std::span(axes).first(static_cast<std::size_t>(mechanism.axis_count()));
   if (mechanism.inverse(X_BT, {}, used) != kinematics::SolveStatus::ok) return false;
   std::vector<kinematics::LimitViolation> violations;
@@ -99,7 +99,7 @@ TipMap tip_map(const machine::MachineDescription& before, const machine::Machine
 TipCovariance hexapod_tip(const machine::MachineDescription& machine,
                           const calibration::Calibration& calibration,
                           const calibration::Unknowns& unknowns) {
-  calibration::HexapodParameters parameters{machine.hexapod.geometry, {}};
+  calibration::HexapodParameters parameters{machine.hexapod().geometry, {}};
   return [parameters, covariance = calibration.covariance, unknowns](const Pose& X_BT, Mat3& at) {
     const auto tip = calibration::tip_uncertainty(parameters, covariance, unknowns, std::span(&X_BT, 1));
     if (tip.covariances.empty()) return false;
@@ -141,7 +141,7 @@ TipCovariance chain_tip(const machine::MachineDescription& machine,
 kinematics::Chain zeros_absorbed(const calibration::ChainParameters& machine) {
   std::vector<double> zero = machine.zero;
   zero.resize(machine.chain.axes.size(), 0.0);
-  std::array<Pose, kinematics::kMaxAxes> links;
+  kinematics::PerAxis<Pose> links;
   kinematics::link_poses(machine.chain, zero, links);
   const auto link = [&](int axis) {
     return axis < 0 ? Pose::Identity() : links[static_cast<std::size_t>(axis)];

@@ -132,14 +132,14 @@ void ContinuousGapController::remember(const PlannedPoint& point) {
 
 /// By how much the axes move for a shift along the tool axis. False: they cannot.
 bool ContinuousGapController::axes_shift(const PlannedPoint& point, double correction,
-                                         machine::AxisArray& shift) {
+                                         kinematics::AxisVector& shift) {
   shift = {};
   if (correction == 0) return true;
   const auto axes = static_cast<std::size_t>(mechanism_->axis_count());
   const Pose X_BW = machine_.X_WB.inverse();
   Pose X_WT = point.X_WT;
   X_WT.translation() += correction * tool_axis(X_WT);
-  machine::AxisArray plain = point.setpoint.position, shifted = point.setpoint.position;
+  kinematics::AxisVector plain = point.setpoint.position, shifted = point.setpoint.position;
   const std::span<double> from(plain.data(), axes), to(shifted.data(), axes);
   violations_.clear();
   const bool solved = mechanism_->inverse(X_BW * point.X_WT, from, from) == kinematics::SolveStatus::ok &&
@@ -151,7 +151,7 @@ bool ContinuousGapController::axes_shift(const PlannedPoint& point, double corre
 }
 
 bool ContinuousGapController::shift(const PlannedPoint& point, Setpoint& ready) {
-  machine::AxisArray shift{};
+  kinematics::AxisVector shift{};
   if (active_) {
     remember(point);
     if (!axes_shift(point, correction_, shift)) {

@@ -71,7 +71,7 @@ class ContinuousGapController : public SetpointFilter {
   }
   bool passed_at(double time, Passed& at) const;
   void remember(const PlannedPoint& point);
-  bool axes_shift(const PlannedPoint& point, double correction, machine::AxisArray& shift);
+  bool axes_shift(const PlannedPoint& point, double correction, kinematics::AxisVector& shift);
   bool find_surface(const Passed& at);
   machine::Status look(const Passed& expected);
   GapStop read(const Passed& expected, GapSample& look, Passed& at);
@@ -102,7 +102,7 @@ class ContinuousGapController : public SetpointFilter {
   std::size_t head_ = 0, filled_ = 0;
   machine::Setpoint held_;  // complete when the next one's shift is known
   bool holding_ = false;
-  machine::AxisArray shift_before_{}, shift_held_{};
+  kinematics::AxisVector shift_before_{}, shift_held_{};
   double time_before_ = 0;
   double correction_ = 0;
   double reported_at_ = 0;

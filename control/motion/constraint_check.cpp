@@ -88,7 +88,7 @@ class Checker {
     const bool programmed_feed = step.kind == StepKind::move || step.kind == StepKind::print;
     const int parts = parts_of(segment, step_, kCheckTurn);
     for (int k = 1; k <= parts; ++k) {
-      const machine::AxisArray before = axes_;
+      const kinematics::AxisVector before = axes_;
       const double fraction = static_cast<double>(k) / parts, s = fraction * segment.length;
       const Location at{pushed_, fraction};
       if (!note_pose(path_.pose_at(segment, s), path_.axes_at(segment, s, axes_), step.line, at)) continue;
@@ -119,7 +119,7 @@ class Checker {
   }
 
   /// No path through here: the planner would refuse it.
-  void note_leap(const machine::AxisArray& before, int line, const Location& at) {
+  void note_leap(const kinematics::AxisVector& before, int line, const Location& at) {
     const auto [axis, turn] = path_.largest_turn(before, axes_);
     if (turn <= kMaxAxisJump) return;
     note({{LimitKind::singularity, "axis " + mechanism_->axis_name(axis), turn, kMaxAxisJump, "rad"}, line},
@@ -223,7 +223,7 @@ class Checker {
   Pose X_WT_;
   bool plannable_ = true;
   std::size_t pushed_ = 0;
-  machine::AxisArray axes_{}, velocity_{};
+  kinematics::AxisVector axes_{}, velocity_{};
   std::vector<LimitViolation> violations_;
   std::vector<Found> found_;
   std::set<std::size_t> untimed_;  // of found_, not passed by the plan yet

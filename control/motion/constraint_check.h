@@ -21,10 +21,10 @@ struct ConstraintReport {
   /// One entry for every run of moves in which one part breaks one limit: the worst value met there. Ordered
   /// by line.
   std::vector<ConstraintFinding> findings;
-  double duration = 0;                        ///< [s], planned time of the program
-  machine::AxisArray axis_min{}, axis_max{};  ///< range used, SI
-  machine::AxisArray velocity_max{};          ///< largest planned axis speed
-  machine::AxisArray acceleration_max{};      ///< change of speed in a cycle, jumps at corners included
+  double duration = 0;                            ///< [s], planned time of the program
+  kinematics::AxisVector axis_min{}, axis_max{};  ///< range used, SI
+  kinematics::AxisVector velocity_max{};          ///< largest planned axis speed
+  kinematics::AxisVector acceleration_max{};      ///< change of speed in a cycle, jumps at corners included
   double condition_worst = 0;
 };
 

@@ -10,8 +10,8 @@
 
 namespace understudy::control {
 
+using kinematics::AxisVector;
 using kinematics::SolveStatus;
-using machine::AxisArray;
 
 namespace {
 
@@ -58,7 +58,7 @@ MotionLimits motion_limits(const machine::MachineDescription& machine) {
 // finish); pieces are planned in windows and handed out as points. Times here count from `start_time`.
 struct MotionPlanner::State {
   State(const kinematics::Mechanism& mechanism, const Pose& X_WB, const MotionLimits& motion_limits,
-        const Pose& X_WT_start, const AxisArray& axes_start, double start, PoseCheck pose_check);
+        const Pose& X_WT_start, const AxisVector& axes_start, double start, PoseCheck pose_check);
 
   PathKinematics kinematics;
   MotionLimits limits;
@@ -71,8 +71,8 @@ struct MotionPlanner::State {
   std::size_t steps_pushed = 0;
   Pose X_WT_rest;  // at the end of what was queued
   double filament_rest = 0;
-  AxisArray axes_rest{};  // at the end of what was cut
-  AxisArray axes_end{};   // at the end of what was queued
+  AxisVector axes_rest{};  // at the end of what was cut
+  AxisVector axes_end{};   // at the end of what was queued
 
   std::deque<Piece> pieces;
   double window_length = 0;   // [m]
@@ -83,11 +83,11 @@ struct MotionPlanner::State {
   double start_time = 0;
   std::int64_t cycle = 0;  // last one handed out
   double piece_time = 0;   // when pieces.front() begins
-  AxisArray axes_now{};
+  AxisVector axes_now{};
   bool resting = true;  // the last point handed out is at rest at the end of everything
 
   void push(const toolpath::Step& step);
-  void find_slopes(PathSegment& segment, AxisArray& axes) const;
+  void find_slopes(PathSegment& segment, AxisVector& axes) const;
   void queue(PathSegment segment);
   void cut_last(double exit_speed);
   void finish();
@@ -99,7 +99,7 @@ struct MotionPlanner::State {
 
 MotionPlanner::State::State(const kinematics::Mechanism& mechanism, const Pose& X_WB,
                             const MotionLimits& motion_limits, const Pose& X_WT_start,
-                            const AxisArray& axes_start, double start, PoseCheck pose_check)
+                            const AxisVector& axes_start, double start, PoseCheck pose_check)
     : kinematics(mechanism, X_WB),
       limits(motion_limits),
       channels(channel_limits(motion_limits, mechanism.axis_count())),
@@ -129,7 +129,7 @@ void MotionPlanner::State::push(const toolpath::Step& step) {
   }
   PathSegment segment = kinematics.segment(step, X_WT_rest, axes_end, limits);
   segment.step = steps_pushed;
-  AxisArray axes = axes_end;
+  AxisVector axes = axes_end;
   std::optional<PathSegment> first = kinematics.self_motion_before(segment, axes);
   if (first) find_slopes(*first, axes);
   if (segment.moves()) find_slopes(segment, axes);
@@ -140,8 +140,8 @@ void MotionPlanner::State::push(const toolpath::Step& step) {
 }
 
 // Leaves the planner as it is when the segment cannot be.
-void MotionPlanner::State::find_slopes(PathSegment& segment, AxisArray& axes) const {
-  AxisArray near = axes;
+void MotionPlanner::State::find_slopes(PathSegment& segment, AxisVector& axes) const {
+  AxisVector near = axes;
   kinematics.require_reachable(segment, check, axes);
   SolveStatus status = kinematics.evaluate(segment, 0, near, segment.slope_begin);
   near = axes;
@@ -280,8 +280,8 @@ bool MotionPlanner::State::next(PlannedPoint& point) {
 
 namespace {
 
-AxisArray axes_from_home(const kinematics::Mechanism& mechanism, const Pose& X_WB, const Pose& X_WT) {
-  AxisArray axes{};
+AxisVector axes_from_home(const kinematics::Mechanism& mechanism, const Pose& X_WB, const Pose& X_WT) {
+  AxisVector axes{};
   (void)mechanism.inverse(X_WB.inverse() * X_WT, {}, axes);  // what fails here fails again in the constructor
   return axes;
 }
@@ -290,7 +290,7 @@ AxisArray axes_from_home(const kinematics::Mechanism& mechanism, const Pose& X_W
 
 MotionPlanner::MotionPlanner(const kinematics::Mechanism& mechanism, const Pose& X_WB,
                              const MotionLimits& limits, const Pose& X_WT_start, double start_time,
-                             PoseCheck check, const machine::AxisArray* axes_start)
+                             PoseCheck check, const kinematics::AxisVector* axes_start)
     : state_(std::make_unique<State>(mechanism, X_WB, limits, X_WT_start,
                                      axes_start ? *axes_start : axes_from_home(mechanism, X_WB, X_WT_start),
                                      start_time, check)) {}
@@ -303,6 +303,6 @@ double MotionPlanner::time() const {
   return state_->start_time + static_cast<double>(state_->cycle) * state_->limits.cycle_time;
 }
 Pose MotionPlanner::resting_pose() const { return state_->X_WT_rest; }
-machine::AxisArray MotionPlanner::resting_axes() const { return state_->axes_end; }
+kinematics::AxisVector MotionPlanner::resting_axes() const { return state_->axes_end; }
 
 }  // namespace understudy::control

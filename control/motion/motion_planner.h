@@ -18,13 +18,13 @@
 namespace understudy::control {
 
 struct MotionLimits {
-  machine::AxisArray axis_velocity{};      ///< [m/s or rad/s]
-  machine::AxisArray axis_acceleration{};  ///< [m/s^2 or rad/s^2]
-  machine::AxisArray velocity_jump{};      ///< [m/s or rad/s], at once at a corner, besides
-  double tip_acceleration = 0;             ///< [m/s^2]
-  double travel_velocity = 0;              ///< [m/s], G0
-  double orientation_velocity = 0;         ///< [rad/s]
-  double cycle_time = 0;                   ///< [s]
+  kinematics::AxisVector axis_velocity{};      ///< [m/s or rad/s]
+  kinematics::AxisVector axis_acceleration{};  ///< [m/s^2 or rad/s^2]
+  kinematics::AxisVector velocity_jump{};      ///< [m/s or rad/s], at once at a corner, besides
+  double tip_acceleration = 0;                 ///< [m/s^2]
+  double travel_velocity = 0;                  ///< [m/s], G0
+  double orientation_velocity = 0;             ///< [rad/s]
+  double cycle_time = 0;                       ///< [s]
 };
 MotionLimits motion_limits(const machine::MachineDescription& machine);
 
@@ -65,7 +65,7 @@ class MotionPlanner {
   /// branch of `axes_start`; nullptr: of home.
   MotionPlanner(const kinematics::Mechanism& mechanism, const Pose& X_WB, const MotionLimits& limits,
                 const Pose& X_WT_start, double start_time, PoseCheck check = PoseCheck::limits,
-                const machine::AxisArray* axes_start = nullptr);
+                const kinematics::AxisVector* axes_start = nullptr);
   ~MotionPlanner();
 
   /// Queues a step that moves or dwells. Throws InputError naming the line and the axis or strut and by how
@@ -80,7 +80,7 @@ class MotionPlanner {
 
   double time() const;        ///< [s] of the last point handed out
   Pose resting_pose() const;  ///< X_WT at the end of what was queued
-  machine::AxisArray resting_axes() const;
+  kinematics::AxisVector resting_axes() const;
 
  private:
   struct State;

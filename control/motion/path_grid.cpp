@@ -83,7 +83,8 @@ ChannelArray corner_jump(const PathSegment& before, const PathSegment& after, in
 
 void append_pieces(const PathSegment& segment, std::size_t number, double exit_speed,
                    const ChannelArray& jump, const PathKinematics& kinematics, const MotionLimits& motion,
-                   const ChannelLimits& channels, machine::AxisArray& position, std::deque<Piece>& pieces) {
+                   const ChannelLimits& channels, kinematics::AxisVector& position,
+                   std::deque<Piece>& pieces) {
   Piece piece;
   piece.segment = number;
   piece.rest = segment.rest;

@@ -18,6 +18,7 @@ ChannelArray corner_jump(const PathSegment& before, const PathSegment& after, in
 /// most. `position`: near axis positions on entry, those at the segment's end on return.
 void append_pieces(const PathSegment& segment, std::size_t number, double exit_speed,
                    const ChannelArray& jump, const PathKinematics& kinematics, const MotionLimits& motion,
-                   const ChannelLimits& channels, machine::AxisArray& position, std::deque<Piece>& pieces);
+                   const ChannelLimits& channels, kinematics::AxisVector& position,
+                   std::deque<Piece>& pieces);
 
 }  // namespace understudy::control

@@ -23,7 +23,8 @@ PathKinematics::PathKinematics(const kinematics::Mechanism& mechanism, const Pos
       rotary_axes_(mechanism.rotary_axes()) {}
 
 PathSegment PathKinematics::segment(const toolpath::Step& step, const Pose& X_WT_begin,
-                                    const machine::AxisArray& axes_begin, const MotionLimits& limits) const {
+                                    const kinematics::AxisVector& axes_begin,
+                                    const MotionLimits& limits) const {
   const bool moves = toolpath::moves(step);
   if (moves && step.rotary) require_turns(step);
   std::optional<PathSegment::Rotary> rotary;
@@ -44,7 +45,7 @@ void PathKinematics::require_turns(const toolpath::Step& step) const {
     refuse(step.line, "the pose is not the one that B and C make");
 }
 
-SolveStatus PathKinematics::axes(const Pose& X_WT, machine::AxisArray& position) const {
+SolveStatus PathKinematics::axes(const Pose& X_WT, kinematics::AxisVector& position) const {
   return mechanism_.inverse(X_BW_ * X_WT, position, position);
 }
 
@@ -70,14 +71,14 @@ Pose PathKinematics::pose_at(const PathSegment& segment, double s) const {
 }
 
 SolveStatus PathKinematics::axes_at(const PathSegment& segment, double s,
-                                    machine::AxisArray& position) const {
+                                    kinematics::AxisVector& position) const {
   ChannelArray slope{};
   if (segment.self_motion) return evaluate_self_motion(segment, s, position, slope);
   if (segment.rotary) return evaluate_rotary(segment, s, position, slope);
   return axes(pose_at(segment, s), position);
 }
 
-SolveStatus PathKinematics::evaluate(const PathSegment& segment, double s, machine::AxisArray& position,
+SolveStatus PathKinematics::evaluate(const PathSegment& segment, double s, kinematics::AxisVector& position,
                                      ChannelArray& slope) const {
   slope.fill(0);
   if (segment.self_motion) return evaluate_self_motion(segment, s, position, slope);
@@ -100,7 +101,7 @@ SolveStatus PathKinematics::evaluate(const PathSegment& segment, double s, machi
 }
 
 SolveStatus PathKinematics::evaluate_rotary(const PathSegment& segment, double s,
-                                            machine::AxisArray& position, ChannelArray& slope) const {
+                                            kinematics::AxisVector& position, ChannelArray& slope) const {
   kinematics::RotaryTarget rate;
   if (segment.moves()) {
     const auto& [from, to] = *segment.rotary;
@@ -114,15 +115,16 @@ SolveStatus PathKinematics::evaluate_rotary(const PathSegment& segment, double s
 
 /// The free axis goes straight from one end to the other; the inverse lets it, and moves the rest with it.
 SolveStatus PathKinematics::evaluate_self_motion(const PathSegment& segment, double s,
-                                                 machine::AxisArray& position, ChannelArray& slope) const {
+                                                 kinematics::AxisVector& position,
+                                                 ChannelArray& slope) const {
   const Pose X_BT = X_BW_ * segment.X_WT_begin;
-  const auto at = [&](double share, machine::AxisArray& axes) {
+  const auto at = [&](double share, kinematics::AxisVector& axes) {
     for (std::size_t i = 0; i < axes.size(); ++i)
       axes[i] = (1 - share) * segment.self_motion->from[i] + share * segment.self_motion->to[i];
     return mechanism_.inverse(X_BT, axes, axes);
   };
   constexpr double kStep = 1e-5;  // of the motion: far above rounding, far below what bends
-  machine::AxisArray before{}, after{};
+  kinematics::AxisVector before{}, after{};
   const double share = s / segment.length;
   for (const SolveStatus status : {at(share - kStep, before), at(share + kStep, after), at(share, position)})
     if (status != SolveStatus::ok) return status;
@@ -131,8 +133,8 @@ SolveStatus PathKinematics::evaluate_self_motion(const PathSegment& segment, dou
   return SolveStatus::ok;
 }
 
-std::pair<int, double> PathKinematics::largest_turn(const machine::AxisArray& from,
-                                                    const machine::AxisArray& to) const {
+std::pair<int, double> PathKinematics::largest_turn(const kinematics::AxisVector& from,
+                                                    const kinematics::AxisVector& to) const {
   std::pair<int, double> largest{0, 0.0};
   for (int i = 0; i < axis_count_; ++i) {
     const double turn = std::abs(to[static_cast<std::size_t>(i)] - from[static_cast<std::size_t>(i)]);
@@ -142,12 +144,12 @@ std::pair<int, double> PathKinematics::largest_turn(const machine::AxisArray& fr
 }
 
 std::optional<PathSegment> PathKinematics::self_motion_before(const PathSegment& segment,
-                                                              const machine::AxisArray& position) const {
+                                                              const kinematics::AxisVector& position) const {
   constexpr double kAhead = 1e-3;    // of a segment: there its way has shown which axes it needs
   constexpr double kSettled = 0.02;  // [rad], what an axis may move up to there without a turn of its own
   if (mechanism_.follows_spin() || segment.rotary || !segment.moves() || segment.turn == 0)
     return std::nullopt;
-  machine::AxisArray from = position, to = position;
+  kinematics::AxisVector from = position, to = position;
   if (axes(segment.X_WT_begin, from) != SolveStatus::ok ||
       axes_at(segment, kAhead * segment.length, to) != SolveStatus::ok)
     return std::nullopt;
@@ -166,7 +168,7 @@ std::optional<PathSegment> PathKinematics::self_motion_before(const PathSegment&
 }
 
 void PathKinematics::require_reachable(PathSegment& segment, PoseCheck check,
-                                       machine::AxisArray& position) const {
+                                       kinematics::AxisVector& position) const {
   if (segment.rotary && check == PoseCheck::solvable) {  // all of it is, in closed form
     if (axes_at(segment, segment.length, position) != SolveStatus::ok)
       refuse(segment.line, "the axes are not finite");
@@ -176,7 +178,7 @@ void PathKinematics::require_reachable(PathSegment& segment, PoseCheck check,
   // tell where finer ones are needed.
   constexpr double kNear = 20;    // condition number of a pose that is well away from it
   constexpr double kFinest = 64;  // 0.02 degrees of the tool
-  const machine::AxisArray begin = position;
+  const kinematics::AxisVector begin = position;
   for (int fineness = 1;;) {
     segment.fineness = fineness;
     position = begin;
@@ -192,9 +194,9 @@ void PathKinematics::require_reachable(PathSegment& segment, PoseCheck check,
 }
 
 PathKinematics::Walk PathKinematics::walk(const PathSegment& segment, PoseCheck check,
-                                          machine::AxisArray& position) const {
+                                          kinematics::AxisVector& position) const {
   std::vector<kinematics::LimitViolation> violations;
-  const auto require = [&](double s, machine::AxisArray& near) {
+  const auto require = [&](double s, kinematics::AxisVector& near) {
     const Pose X_WT = pose_at(segment, s);
     const SolveStatus status = axes_at(segment, s, near);
     const std::span<const double> solution = near;
@@ -209,11 +211,11 @@ PathKinematics::Walk PathKinematics::walk(const PathSegment& segment, PoseCheck 
   const int parts = segment.self_motion
                         ? std::max(1, static_cast<int>(std::ceil(segment.length / kTurnRadius / kCheckTurn)))
                         : segment.fineness * parts_of(segment, kCheckTravel, kCheckTurn);
-  machine::AxisArray end = position;
+  kinematics::AxisVector end = position;
   require(segment.length, end);  // the programmed pose before those on the way to it
   Walk seen;
   for (int k = 1; k <= parts; ++k) {
-    const machine::AxisArray before = position;
+    const kinematics::AxisVector before = position;
     const double s = segment.length * k / parts;
     require(s, position);
     if (may_pass)

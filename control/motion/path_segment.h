@@ -35,7 +35,7 @@ struct PathSegment {
   ChannelArray slope_begin{}, slope_end{};  ///< d(axis)/ds, d(tip)/ds at both ends
   /// The axes move and the tool stays: a table turns under an upright tool. From and to, along all of s.
   struct SelfMotion {
-    machine::AxisArray from{}, to{};
+    kinematics::AxisVector from{}, to{};
   };
   std::optional<SelfMotion> self_motion;
   /// The program names the turning axes: they run linearly in s, and the pose is what they make of it. For a
@@ -72,25 +72,27 @@ class PathKinematics {
   /// A step from X_WT_begin on, where the axes stand at `axes_begin`. Throws InputError as make_segment does,
   /// and for a pose that is not the one of the step's B and C.
   PathSegment segment(const toolpath::Step& step, const Pose& X_WT_begin,
-                      const machine::AxisArray& axes_begin, const MotionLimits& limits) const;
+                      const kinematics::AxisVector& axes_begin, const MotionLimits& limits) const;
 
-  kinematics::SolveStatus axes(const Pose& X_WT, machine::AxisArray& position) const;
+  kinematics::SolveStatus axes(const Pose& X_WT, kinematics::AxisVector& position) const;
   Pose pose_at(const PathSegment& segment, double s) const;
   /// Positions at s (`position` holds a near one on entry: the branch).
-  kinematics::SolveStatus axes_at(const PathSegment& segment, double s, machine::AxisArray& position) const;
+  kinematics::SolveStatus axes_at(const PathSegment& segment, double s,
+                                  kinematics::AxisVector& position) const;
   /// Positions at s (`position` holds a near one on entry: the branch) and d/ds of every channel.
-  kinematics::SolveStatus evaluate(const PathSegment& segment, double s, machine::AxisArray& position,
+  kinematics::SolveStatus evaluate(const PathSegment& segment, double s, kinematics::AxisVector& position,
                                    ChannelArray& slope) const;
   /// InputError naming line, part, value and limit for the first pose that is out, the end first, and for an
   /// axis that would have to leap. The poses are at most kCheckTravel and kCheckTurn apart. `position` is
   /// near the segment's beginning on entry, and at its end afterwards. Sets fineness.
-  void require_reachable(PathSegment& segment, PoseCheck check, machine::AxisArray& position) const;
+  void require_reachable(PathSegment& segment, PoseCheck check, kinematics::AxisVector& position) const;
   /// Where the segment begins in a pose that leaves an axis free, and its way needs that axis elsewhere: the
   /// motion that brings it there first, with the tool at rest.
   std::optional<PathSegment> self_motion_before(const PathSegment& segment,
-                                                const machine::AxisArray& position) const;
+                                                const kinematics::AxisVector& position) const;
   /// The angle axis that moves most from one to the other, and by how much [rad].
-  std::pair<int, double> largest_turn(const machine::AxisArray& from, const machine::AxisArray& to) const;
+  std::pair<int, double> largest_turn(const kinematics::AxisVector& from,
+                                      const kinematics::AxisVector& to) const;
 
  private:
   struct Walk {
@@ -98,13 +100,13 @@ class PathKinematics {
     double leap = 0;       ///< [rad], largest turn of an axis from one look to the next
     int leaping_axis = 0;
   };
-  Walk walk(const PathSegment& segment, PoseCheck check, machine::AxisArray& position) const;
+  Walk walk(const PathSegment& segment, PoseCheck check, kinematics::AxisVector& position) const;
   kinematics::RotaryTarget turned_tip(const PathSegment& segment, double s) const;
   void require_turns(const toolpath::Step& step) const;
-  kinematics::SolveStatus evaluate_rotary(const PathSegment& segment, double s, machine::AxisArray& position,
-                                          ChannelArray& slope) const;
+  kinematics::SolveStatus evaluate_rotary(const PathSegment& segment, double s,
+                                          kinematics::AxisVector& position, ChannelArray& slope) const;
   kinematics::SolveStatus evaluate_self_motion(const PathSegment& segment, double s,
-                                               machine::AxisArray& position, ChannelArray& slope) const;
+                                               kinematics::AxisVector& position, ChannelArray& slope) const;
 
   const kinematics::Mechanism& mechanism_;
   Pose X_WB_, X_BW_;

@@ -8,7 +8,7 @@
 namespace understudy::kinematics {
 namespace {
 
-using Axes = std::array<double, kMaxAxes>;
+using Axes = AxisVector;
 
 constexpr double kPathStep = 0.1;  // [rad]; branches are farther apart, but near singular postures
 

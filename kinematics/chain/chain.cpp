@@ -5,7 +5,7 @@
 namespace understudy::kinematics {
 namespace {
 
-using LinkPoses = std::array<Pose, kMaxAxes>;
+using LinkPoses = PerAxis<Pose>;
 
 const Pose& carrier(const LinkPoses& poses, int axis, const Pose& frame) {
   return axis < 0 ? frame : poses[static_cast<std::size_t>(axis)];

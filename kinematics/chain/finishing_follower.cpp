@@ -30,7 +30,7 @@ FinishingFollower::FinishingFollower(const Chain& chain, std::span<const double>
 SolveStatus FinishingFollower::step(const Pose& X_ST_target) {
   if (!usable_ || !X_ST_target.matrix().allFinite()) return SolveStatus::bad_input;
   const std::size_t n = chain_.axes.size();
-  std::array<double, kMaxAxes> q = axes_, change{};
+  AxisVector q = axes_, change{};
   const std::span<double> moved(q.data(), n);
   const Twist answer = options_.period * (options_.proportional * error_ + options_.integral * sum_);
   for (int k = 0; k <= options_.corrections; ++k) {

@@ -18,7 +18,7 @@ struct FollowerOptions {
   double metric = 0.1;        ///< [m], weight of a radian in the norm
   int corrections = 1;        ///< Newton steps at each point; 0 is the paper's scheme
   /// z of eq 4, added to each step as far as it does not move the task; [m] and [rad] per point.
-  std::array<double, kMaxAxes> null_space_motion{};
+  AxisVector null_space_motion{};
 };
 
 class FinishingFollower {
@@ -37,7 +37,7 @@ class FinishingFollower {
   Chain chain_;
   FollowerOptions options_;
   bool usable_ = false;
-  std::array<double, kMaxAxes> axes_{};
+  AxisVector axes_{};
   Twist error_ = Twist::Zero();  // left at the last point
   Twist sum_ = Twist::Zero();    // its integral over time
 };

@@ -17,7 +17,6 @@ constexpr double kNormalPivots = 1e-4;
 
 using TaskRows = Eigen::Matrix<double, kTask, 6>;
 using TaskVector = Eigen::Matrix<double, kTask, 1>;
-using AxisVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>;
 using TaskJacobian = Eigen::Matrix<double, kTask, Eigen::Dynamic, 0, kTask, kMaxAxes>;
 
 bool finite(std::span<const double> values) {
@@ -34,7 +33,7 @@ TaskRows task_rows(const Pose& X_ST, double metric) {
 }
 
 /// The smallest y with J y = wanted, or nearest to it where J has lost rank: then false.
-bool smallest_solution(const TaskJacobian& J, const TaskVector& wanted, AxisVector& y) {
+bool smallest_solution(const TaskJacobian& J, const TaskVector& wanted, AxisColumn& y) {
   // Normal equations halve the digits of an ill-conditioned J, but are ten times quicker where it is not.
   const Eigen::LDLT<Eigen::Matrix<double, kTask, kTask>> normal(J * J.transpose());
   const TaskVector pivots = normal.vectorD();
@@ -73,7 +72,7 @@ SolveStatus minimum_norm_rates(const Chain& chain, std::span<const double> axes,
   ChainJacobian J;
   const TaskRows rows = task_rows(forward(chain, axes, J), metric);
   // In y = W q, with W = metric for angles and 1 for slides, the norm is the plain one.
-  AxisVector weight(chain.size()), y_null = AxisVector::Zero(chain.size());
+  AxisColumn weight(chain.size()), y_null = AxisColumn::Zero(chain.size());
   for (std::size_t i = 0; i < n; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     weight[k] = chain.axes[i].angle ? metric : 1.0;
@@ -82,7 +81,7 @@ SolveStatus minimum_norm_rates(const Chain& chain, std::span<const double> axes,
   TaskJacobian J_scaled = rows * J;
   for (Eigen::Index k = 0; k < weight.size(); ++k) J_scaled.col(k) /= weight[k];
   const TaskVector wanted = rows * twist - J_scaled * y_null;
-  AxisVector y;
+  AxisColumn y;
   const bool full_rank = smallest_solution(J_scaled, wanted, y);
   y += y_null;
   if (!y.allFinite()) return SolveStatus::bad_input;

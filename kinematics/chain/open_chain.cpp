@@ -12,7 +12,7 @@ namespace {
 constexpr int kFurtherStarts = 128;
 constexpr double kReachSlack = 1e-9;  // [m], rounding of a reach of metres and to spare
 
-using Axes = std::array<double, kMaxAxes>;
+using Axes = AxisVector;
 
 /// Halton's sequence: fills the box of all axes evenly, however many starts are tried.
 double halton(int index, int base) {

@@ -23,7 +23,7 @@ constexpr double kDampingFloor = 1e-16;  // of the squared size of the Jacobian:
 /// Error and derivative of the task: tip, then angles about x, y and z of T as lengths; the last row is zero
 /// where the spin is left out.
 struct Iterate {
-  std::array<double, kMaxAxes> axes{};
+  AxisVector axes{};
   Twist error;
   ChainJacobian J;
   double position = 0, angle = 0;  // [m], [rad]
@@ -54,11 +54,10 @@ void evaluate(const Chain& chain, const Pose& X_goal, bool follows_spin, double 
   if (!follows_spin) at.J.row(5).setZero();
 }
 
-using Step = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>;
 using SquareOfAxes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxAxes, kMaxAxes>;
 
 /// Of the smallest norm; the smaller of the two square matrices, so that neither is singular by its size.
-Step damped_step(const Iterate& at, double damping, int task_size) {
+AxisColumn damped_step(const Iterate& at, double damping, int task_size) {
   if (at.J.cols() >= task_size) {
     Mat6 square = at.J * at.J.transpose();
     square.diagonal().array() += damping;
@@ -70,7 +69,7 @@ Step damped_step(const Iterate& at, double damping, int task_size) {
 }
 
 /// Per axis in SI again, shortened so that no angle leaps.
-void move(const Chain& chain, double scale, Step step, const Iterate& from, Iterate& to) {
+void move(const Chain& chain, double scale, AxisColumn step, const Iterate& from, Iterate& to) {
   double largest = 0;
   for (int i = 0; i < chain.size(); ++i)
     if (chain.axes[static_cast<std::size_t>(i)].angle) {
@@ -78,10 +77,7 @@ void move(const Chain& chain, double scale, Step step, const Iterate& from, Iter
       largest = std::max(largest, std::abs(step[i]));
     }
   if (largest > kStepMax) step *= kStepMax / largest;
-  for (int i = 0; i < chain.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    to.axes[k] = from.axes[k] + step[i];
-  }
+  for (int i = 0; i < chain.size(); ++i) to.axes[i] = from.axes[i] + step[i];
 }
 
 }  // namespace

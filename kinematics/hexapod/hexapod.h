@@ -12,14 +12,16 @@
 namespace understudy::kinematics {
 
 constexpr int kStruts = 6;
-using StrutLengths = std::array<double, kStruts>;
+template <typename T>
+using PerStrut = std::array<T, kStruts>;
+using StrutLengths = PerStrut<double>;  ///< [m]
 
 /// The 42 parameters b_i, a_i, l_i0 and the deviation `dev`. Immutable in use; [m].
 struct HexapodGeometry {
-  std::array<Vec3, kStruts> base_joint;      ///< b_i, p_BBi
-  std::array<Vec3, kStruts> platform_joint;  ///< a_i, p_TPi: from the nozzle tip
-  StrutLengths length_offset{};              ///< l_i0: strut length at drive displacement 0
-  double deviation = 0;                      ///< dev: distance of the screw's axis from the base joint
+  PerStrut<Vec3> base_joint;      ///< b_i, p_BBi
+  PerStrut<Vec3> platform_joint;  ///< a_i, p_TPi: from the nozzle tip
+  StrutLengths length_offset{};   ///< l_i0: strut length at drive displacement 0
+  double deviation = 0;           ///< dev: distance of the screw's axis from the base joint
 };
 
 /// What the joints and struts allow. Angles by the definitions of docs/reference.md#joint-angles.
@@ -34,8 +36,8 @@ struct HexapodLimits {
 
 /// Joint angles at a pose. `stud` is fixed to the platform, `radial` to the base.
 struct HexapodJoints {
-  std::array<Vec3, kStruts> stud_axis;    ///< unit, in T
-  std::array<Vec3, kStruts> radial_axis;  ///< e_r, unit, in B
+  PerStrut<Vec3> stud_axis;    ///< unit, in T
+  PerStrut<Vec3> radial_axis;  ///< e_r, unit, in B
 };
 
 struct StrutAngles {

@@ -22,7 +22,7 @@ namespace understudy::kinematics {
 struct ScrewCoupling {
   double lead = 0;  ///< [m] per turn, right-handed positive; 0: guided screws, no effect at all
   HexapodJoints joints;
-  std::array<double, kStruts> angle_at_home{};  ///< [rad]
+  PerStrut<double> angle_at_home{};  ///< [rad]
 };
 
 /// Joints in the middle of their range at home. `angle_at_home` is 0 where a joint is stretched out at home.

@@ -54,7 +54,7 @@ std::string key_figures(const CalibrateResult& result) {
 }
 
 std::string residual_section(const CalibrateResult& result) {
-  const bool chain = result.machine.chain.has_value();
+  const bool chain = result.machine.is_chain();
   return "<section><h2>Residuals</h2><div class=\"pictures\">" +
          chart(pose_chart(result), "Measured tip less calibrated model, pose by pose. Grey: rejected.") +
          chart(spread_chart(result),

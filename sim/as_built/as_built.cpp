@@ -48,15 +48,15 @@ void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
 /// As the controller knows the machine, or as it was drawn.
 AsBuilt without_errors(const machine::MachineDescription& machine, bool drawn) {
   AsBuilt built;
-  if (!machine.chain) {
-    built.hexapod = drawn && machine.calibration ? machine.hexapod.design : machine.hexapod.geometry;
-    built.nut_play.fill(machine.hexapod.play.screw_nut);
-    built.ball_play.fill(machine.hexapod.play.ball_joint);
+  if (!machine.is_chain()) {
+    built.hexapod = drawn && machine.calibration ? machine.hexapod().design : machine.hexapod().geometry;
+    built.nut_play.fill(machine.hexapod().play.screw_nut);
+    built.ball_play.fill(machine.hexapod().play.ball_joint);
     return built;
   }
-  const kinematics::ChainDescription& known = machine.chain->kinematics;
+  const kinematics::ChainDescription& known = machine.chain().kinematics;
   built.chain = drawn && machine.calibration ? known.design : known.chain;
-  for (std::size_t i = 0; i < built.chain.axes.size(); ++i) built.axis_play[i] = machine.chain->play[i];
+  for (std::size_t i = 0; i < built.chain.axes.size(); ++i) built.axis_play[i] = machine.chain().play[i];
   return built;
 }
 

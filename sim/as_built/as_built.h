@@ -13,14 +13,13 @@ struct AsBuilt {
   std::string source;  ///< "nominal", "sampled", "manufactured", or the file it was read from
   std::uint64_t seed = 0;
   // Hexapod.
-  kinematics::HexapodGeometry hexapod;                  ///< true 42 parameters and dev
-  std::array<double, kinematics::kStruts> nut_play{};   ///< [m], total free travel
-  std::array<double, kinematics::kStruts> ball_play{};  ///< [m]
+  kinematics::HexapodGeometry hexapod;       ///< true 42 parameters and dev
+  kinematics::PerStrut<double> nut_play{};   ///< [m], total free travel
+  kinematics::PerStrut<double> ball_play{};  ///< [m]
   // Open chain.
-  kinematics::Chain chain;                               ///< true screws and tool mount; empty for a hexapod
-  std::array<double, kinematics::kMaxAxes> axis_play{};  ///< [m] or [rad], total free travel
-  std::array<double, kinematics::kMaxAxes>
-      axis_zero{};  ///< [m] or [rad], true position where a drive reads 0
+  kinematics::Chain chain;             ///< true screws and tool mount; empty for a hexapod
+  kinematics::AxisVector axis_play{};  ///< [m] or [rad], total free travel
+  kinematics::AxisVector axis_zero{};  ///< [m] or [rad], true position where a drive reads 0
 };
 
 /// `set` is nominal (what the controller knows), sampled (that, off by the tolerances left after

@@ -34,7 +34,7 @@ void require(const YamlMap& map, const std::string& key) {
 }
 
 /// A part of the machine may be told once.
-using Told = std::array<bool, kinematics::kMaxAxes>;
+using Told = kinematics::PerAxis<bool>;
 
 void tell(const YamlMap& map, const std::string& key, std::size_t index, Told& told) {
   if (told[index])

@@ -27,7 +27,7 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
     : X_WB_(machine.X_WB),
       geometry_(as_built.hexapod),
       links_(machine, as_built),
-      is_chain_(machine.chain.has_value()),
+      is_chain_(machine.is_chain()),
       beads_(beads) {
   for (const geometry::Shape& shape : machine.tool.bodies) add_body(shape, Owner::tool, 0);
   if (is_chain_) {
@@ -45,7 +45,7 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
   geometry::Shape table = machine.table;
   table.name = "table";
   add_body(table, Owner::world, 0);
-  add_pairs(machine.hexapod.strut_radius);
+  add_pairs(machine.hexapod().strut_radius);
   if (beads_) add_bead_pairs(bodies_.size() - 1);
 }
 

@@ -38,9 +38,9 @@ class BodySet {
 
   /// How much a machine moves from one posture to another.
   struct Travel {
-    double path = 0;            ///< [m], of the tip
-    double turn = 0;            ///< [rad], of the tool
-    machine::AxisArray axes{};  ///< [m] or [rad], without sign
+    double path = 0;                ///< [m], of the tip
+    double turn = 0;                ///< [rad], of the tool
+    kinematics::AxisVector axes{};  ///< [m] or [rad], without sign
   };
   /// [m], at most, by which the two can approach.
   double motion(const BodyPair& pair, const Travel& travel) const;

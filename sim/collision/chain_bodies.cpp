@@ -17,14 +17,14 @@ double slide_travel(const kinematics::ChainAxis& axis) {
 
 ChainBodies::ChainBodies(const machine::MachineDescription& machine, const AsBuilt& as_built)
     : chain_(as_built.chain), zero_(as_built.axis_zero), X_WB_(machine.X_WB) {
-  if (!machine.chain) return;
-  for (const geometry::Shape& shape : machine.chain->frame_bodies) items_.push_back({shape, -1});
+  if (!machine.is_chain()) return;
+  for (const geometry::Shape& shape : machine.chain().frame_bodies) items_.push_back({shape, -1});
   for (int i = 0; i < chain_.size(); ++i)
-    for (const geometry::Shape& shape : machine.chain->links[static_cast<std::size_t>(i)].bodies)
+    for (const geometry::Shape& shape : machine.chain().links[static_cast<std::size_t>(i)].bodies)
       items_.push_back({shape, i});
   X_OL_.resize(chain_.axes.size(), Pose::Identity());
   for (const Item& item : items_) {
-    machine::AxisArray lever{};
+    kinematics::AxisVector lever{};
     const auto add = [&](int last, bool work) {
       for (int i = last; i >= 0; i = axis(i).parent)
         lever[static_cast<std::size_t>(i)] +=
@@ -61,9 +61,9 @@ double ChainBodies::way_to(int last) const {
   return length;
 }
 
-void ChainBodies::pose(const machine::AxisArray& axes) {
+void ChainBodies::pose(const kinematics::AxisVector& axes) {
   if (chain_.axes.empty()) return;
-  machine::AxisArray built = axes;
+  kinematics::AxisVector built = axes;
   for (std::size_t i = 0; i < built.size(); ++i) built[i] += zero_[i];
   kinematics::link_poses(chain_, built, X_OL_);
   X_WO_ = chain_.work_axis < 0
@@ -77,7 +77,7 @@ Pose ChainBodies::place(std::size_t item) const {
   return X_WL * body.shape.X_FS;
 }
 
-double ChainBodies::motion(std::size_t item, const machine::AxisArray& travel) const {
+double ChainBodies::motion(std::size_t item, const kinematics::AxisVector& travel) const {
   double sum = 0;
   for (std::size_t i = 0; i < travel.size(); ++i) sum += levers_[item][i] * travel[i];
   return sum;

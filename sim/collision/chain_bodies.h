@@ -21,11 +21,11 @@ class ChainBodies {
 
   const std::vector<Item>& items() const { return items_; }
   /// Poses every link for these axes.
-  void pose(const machine::AxisArray& axes);
+  void pose(const kinematics::AxisVector& axes);
   /// Of the shape's own frame, as last posed.
   Pose place(std::size_t item) const;
   /// [m], at most, by which any point of the item moves in W while each axis moves by at most `travel`.
-  double motion(std::size_t item, const machine::AxisArray& travel) const;
+  double motion(std::size_t item, const kinematics::AxisVector& travel) const;
   /// Whether the two are one body or meet in a joint, where nearness means nothing.
   bool joined(int axis, int other) const;
   int tool_axis() const { return chain_.tool_axis; }
@@ -37,10 +37,10 @@ class ChainBodies {
   double way_to(int axis) const;
 
   kinematics::Chain chain_;
-  machine::AxisArray zero_{};
+  kinematics::AxisVector zero_{};
   Pose X_WB_;
   std::vector<Item> items_;
-  std::vector<machine::AxisArray> levers_;  ///< [m per unit], of each item against each axis
+  std::vector<kinematics::AxisVector> levers_;  ///< [m per unit], of each item against each axis
   std::vector<Pose> X_OL_;
   Pose X_WO_ = Pose::Identity();
 };

@@ -8,7 +8,7 @@ namespace understudy::sim {
 
 struct Configuration {
   Pose X_WT = Pose::Identity();
-  machine::AxisArray axes{};  ///< [m] or [rad], by the drives; they pose the links of an open chain
+  kinematics::AxisVector axes{};  ///< [m] or [rad], by the drives; they pose the links of an open chain
 };
 
 }  // namespace understudy::sim

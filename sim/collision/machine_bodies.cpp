@@ -15,14 +15,14 @@ std::vector<geometry::Shape> hexapod_bodies(const machine::MachineDescription& m
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
     bodies.push_back(
         geometry::capsule_between("strut " + std::to_string(i + 1), machine.X_WB * geometry.base_joint[i],
-                                  X_WT * geometry.platform_joint[i], machine.hexapod.strut_radius));
+                                  X_WT * geometry.platform_joint[i], machine.hexapod().strut_radius));
   }
   return bodies;
 }
 
 std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& machine,
                                             const AsBuilt& as_built, const Configuration& posture) {
-  if (!machine.chain) return hexapod_bodies(machine, as_built.hexapod, posture.X_WT);
+  if (!machine.is_chain()) return hexapod_bodies(machine, as_built.hexapod, posture.X_WT);
   std::vector<geometry::Shape> bodies;
   for (geometry::Shape shape : machine.tool.bodies) {
     shape.X_FS = posture.X_WT * shape.X_FS;

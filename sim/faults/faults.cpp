@@ -14,8 +14,8 @@ namespace {
 bool ends_by(const FaultEvent& event, double time) { return time >= event.time + event.duration; }
 
 bool has_play(const machine::MachineDescription& machine, int axis) {
-  if (machine.chain) return machine.chain->play[static_cast<std::size_t>(axis)] > 0;
-  return machine.hexapod.play.screw_nut > 0 || machine.hexapod.play.ball_joint > 0;
+  if (machine.is_chain()) return machine.chain().play[static_cast<std::size_t>(axis)] > 0;
+  return machine.hexapod().play.screw_nut > 0 || machine.hexapod().play.ball_joint > 0;
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ double ScrewTurning::growth(const Pose& X_WT, int strut) const {
 }
 
 Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt& as_built,
-                      const machine::AxisArray& displacement) {
+                      const kinematics::AxisVector& displacement) {
   kinematics::StrutLengths lengths{};
   for (std::size_t i = 0; i < kStruts; ++i) lengths[i] = displacement[i] + as_built.hexapod.length_offset[i];
   const auto found =
@@ -38,12 +38,13 @@ Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt&
   return machine.X_WB * found.X_BT;
 }
 
-machine::AxisArray home_displacement(const machine::MachineDescription& machine, const AsBuilt& as_built) {
+kinematics::AxisVector home_displacement(const machine::MachineDescription& machine,
+                                         const AsBuilt& as_built) {
   kinematics::StrutLengths lengths{};
   if (kinematics::inverse(as_built.hexapod, machine.screw_coupling(), machine.X_BT_home, lengths) !=
       kinematics::SolveStatus::ok)
     throw MachineError("the as-built machine does not reach its home pose");
-  machine::AxisArray displacement{};
+  kinematics::AxisVector displacement{};
   for (std::size_t i = 0; i < kStruts; ++i) displacement[i] = lengths[i] - as_built.hexapod.length_offset[i];
   return displacement;
 }

@@ -22,9 +22,9 @@ class ScrewTurning {
 
 /// X_WT on the branch of home. Throws MachineError, with the strut lengths, when the loops cannot be closed.
 Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt& as_built,
-                      const machine::AxisArray& displacement);
+                      const kinematics::AxisVector& displacement);
 
 /// Drive displacements at home. Throws MachineError when the as-built machine does not reach it.
-machine::AxisArray home_displacement(const machine::MachineDescription& machine, const AsBuilt& as_built);
+kinematics::AxisVector home_displacement(const machine::MachineDescription& machine, const AsBuilt& as_built);
 
 }  // namespace understudy::sim

@@ -14,8 +14,8 @@ namespace understudy::sim {
 
 /// What a drive is asked for during one step, at the step's beginning: motor side, as-built zero.
 struct DriveCommand {
-  machine::AxisArray position{};  ///< [m or rad]; hexapod: drive displacement
-  machine::AxisArray velocity{};  ///< [m/s or rad/s], feed-forward
+  kinematics::AxisVector position{};  ///< [m or rad]; hexapod: drive displacement
+  kinematics::AxisVector velocity{};  ///< [m/s or rad/s], feed-forward
 };
 
 /// What has happened to an axis since it was built.
@@ -35,18 +35,18 @@ class Plant {
 
   /// Assembles the machine at rest for these displacements and lets it settle under gravity; time is 0.
   /// Throws MachineError when the loops cannot be closed.
-  virtual void reset(const machine::AxisArray& displacement) = 0;
+  virtual void reset(const kinematics::AxisVector& displacement) = 0;
   /// One timestep. Throws MachineError when the integration diverges: a result is never made up.
   virtual void step(const DriveCommand& command) = 0;
   /// From the next step on. A change of growth or play may be stepwise; the state stays continuous. Throws
   /// MachineError for what an engine cannot play.
   virtual void set_condition(int axis, const AxisCondition& condition) = 0;
 
-  virtual Pose tool_pose() const = 0;                   ///< X_WT, true
-  virtual machine::AxisArray displacement() const = 0;  ///< motor side, as encoders would see it
+  virtual Pose tool_pose() const = 0;                       ///< X_WT, true
+  virtual kinematics::AxisVector displacement() const = 0;  ///< motor side, as encoders would see it
   /// [N] or [N m], what each drive carried during the last step; hexapod: along the screw, positive where
   /// the strut pushes the platform, negative where it pulls.
-  virtual machine::AxisArray drive_force() const = 0;
+  virtual kinematics::AxisVector drive_force() const = 0;
   /// [m], largest distance between the two ends of a closed joint, play not counted, at the beginning of the
   /// last step.
   virtual double closure_error() const = 0;

@@ -7,7 +7,7 @@
 
 namespace understudy::sim {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 using machine::Fault;
 using machine::Setpoint;
 using machine::Status;
@@ -28,7 +28,7 @@ bool at_rest(const Setpoint& s, std::size_t axes, const machine::MachineDescript
 }
 
 /// Cubic Hermite between two setpoints.
-void blend(const Setpoint& a, const Setpoint& b, double time, AxisArray& position, AxisArray& velocity) {
+void blend(const Setpoint& a, const Setpoint& b, double time, AxisVector& position, AxisVector& velocity) {
   const double h = b.time - a.time;
   const double u = std::clamp((time - a.time) / h, 0.0, 1.0);
   const double u2 = u * u, u3 = u2 * u;
@@ -44,8 +44,8 @@ void blend(const Setpoint& a, const Setpoint& b, double time, AxisArray& positio
 
 /// Where the controller wants the axes now, by its own geometry.
 struct SimulatedPort::Target {
-  AxisArray position{};
-  AxisArray velocity{};
+  AxisVector position{};
+  AxisVector velocity{};
   double filament = 0;
   int line = 0;
 };
@@ -68,7 +68,7 @@ SimulatedPort::SimulatedPort(const machine::MachineDescription& machine, Plant& 
                                           std::span(last_.position).first(static_cast<std::size_t>(axes)));
   if (solved != kinematics::SolveStatus::ok)
     throw InputError(machine.file.string() + ": the home pose cannot be reached: " + to_string(solved));
-  AxisArray displacement{};
+  AxisVector displacement{};
   for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = last_.position[i] - drive_zero_[i];
   plant_.reset(displacement);
   last_.time = plant_.time();

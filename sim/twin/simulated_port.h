@@ -62,10 +62,10 @@ class SimulatedPort : public machine::MachinePort {
   Exposure exposure_;
   std::vector<Observer*> observers_;
   TwinOptions options_;
-  machine::AxisArray drive_zero_;
+  kinematics::AxisVector drive_zero_;
   std::vector<kinematics::AxisRange> ranges_;  ///< one an axis
   FaultyDrives drives_;
-  machine::AxisArray asked_{};  ///< [m] or [rad], axis positions that the drives were last asked for
+  kinematics::AxisVector asked_{};  ///< [m] or [rad], axis positions that the drives were last asked for
 
   std::vector<machine::Setpoint> ring_;  ///< fixed storage of the queue
   std::size_t head_ = 0, size_ = 0;

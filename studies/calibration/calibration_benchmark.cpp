@@ -140,7 +140,7 @@ std::vector<Standing> rank(const CalibrationBenchmark& benchmark) {
 
 CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, const Progress& progress) {
   const machine::MachineDescription machine = machine::load_machine(request.machine);
-  const bool chain = machine.chain.has_value(), pixels = request.from == MeasuredFrom::pixels;
+  const bool chain = machine.is_chain(), pixels = request.from == MeasuredFrom::pixels;
   CalibrationBenchmark benchmark{request, machine.name, machine.sha256, entrants_of(request, chain), {}, {}};
   const std::vector<Condition> conditions = conditions_of(request, chain);
   TrialSetting setting;

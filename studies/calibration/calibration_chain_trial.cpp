@@ -25,7 +25,7 @@ class ChainTrials : public TrialRunner {
   explicit ChainTrials(const TrialSetting& setting)
       : setting_(setting),
         machine_(*setting.machine),
-        description_(machine_.chain->kinematics),
+        description_(machine_.chain().kinematics),
         nominal_{description_.chain, {}} {
     for (const Method& entrant : setting.entrants)
       if (!entrant.plugin && entrant.name != "chain" && entrant.name != "robust")
@@ -95,7 +95,7 @@ class ChainTrials : public TrialRunner {
   /// Every axis stands at either end of its play; what is measured is where the tool really is.
   std::vector<ChainSample> exact_samples(const Condition& condition, int machine,
                                          const ChainParameters& truth,
-                                         const std::array<double, kinematics::kMaxAxes>& play) const {
+                                         const kinematics::AxisVector& play) const {
     Random poses(setting_.seed,
                  fmt::format("calibration benchmark/readings/{}/{}", machine, condition.poses));
     Random random = stream("play", condition, machine);

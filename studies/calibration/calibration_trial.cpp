@@ -29,7 +29,7 @@ class HexapodTrials : public TrialRunner {
   explicit HexapodTrials(const TrialSetting& setting)
       : setting_(setting),
         machine_(*setting.machine),
-        nominal_(machine_.hexapod.geometry),
+        nominal_(machine_.hexapod().geometry),
         mechanism_(machine_.make_mechanism()),
         region_(reference_region(machine_.X_BT_home)) {
     Random random(setting.seed, "calibration benchmark/held-out poses");
@@ -99,7 +99,7 @@ class HexapodTrials : public TrialRunner {
     std::vector<PoseSample> samples;
     const HexapodParameters cold = truth;
     for (std::size_t j = 0; j < poses.size(); ++j) {
-      std::array<Approach, kStruts> approach{};
+      PerStrut<Approach> approach{};
       for (Approach& a : approach) a = random.uniform() < 0.5 ? Approach::shortening : Approach::lengthening;
       const double time =
           poses.size() > 1 ? static_cast<double>(j) / static_cast<double>(poses.size() - 1) : 1;
@@ -113,7 +113,7 @@ class HexapodTrials : public TrialRunner {
 
   /// Screws that are `rise` [K] warmer: their middle length is the longer.
   HexapodParameters warmed(HexapodParameters machine, double rise) const {
-    const auto& limits = machine_.hexapod.limits;
+    const auto& limits = machine_.hexapod().limits;
     for (double& l : machine.geometry.length_offset)
       l += kScrewExpansion * rise * 0.5 * (limits.strut_min + limits.strut_max);
     return machine;

@@ -127,7 +127,7 @@ MeasuringFrame take_out_frame(std::vector<PixelPose>& poses) {
 MeasuringStand::MeasuringStand(const machine::MachineDescription& machine, const StandOptions& options,
                                int threads, const std::function<void(double)>& progress)
     : options_(options), X_WB_(machine.X_WB), X_BT_home_(machine.X_BT_home) {
-  if (machine.chain)
+  if (machine.is_chain())
     throw InputError(fmt::format("{}: the two cameras are made for a hexapod's platform", machine.name));
   if (options.layers < 2)
     throw InputError(fmt::format("measuring stand: {} layers of boards, 2 are needed", options.layers));

@@ -213,7 +213,7 @@ class ErringMachine {
   }
   machine::LoopbackPort& port() { return port_; }
 
-  Pose truth(const machine::AxisArray& axes) const {
+  Pose truth(const kinematics::AxisVector& axes) const {
     Pose X_BT;
     const auto n = static_cast<std::size_t>(mechanism_->axis_count());
     if (mechanism_->forward(std::span<const double>(axes.data(), n), machine_.X_BT_home, X_BT) !=

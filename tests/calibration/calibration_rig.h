@@ -18,7 +18,7 @@ namespace understudy::calibration {
 struct Rig {
   machine::MachineDescription machine = machine::load_machine("hexapod");
   std::unique_ptr<kinematics::Mechanism> mechanism = machine.make_mechanism();
-  const HexapodGeometry& nominal = machine.hexapod.geometry;
+  const HexapodGeometry& nominal = machine.hexapod().geometry;
   PoseRegion region = reference_region(machine.X_BT_home);
 
   std::vector<Pose> poses(std::size_t count, Random& random) const {

@@ -51,7 +51,7 @@ TEST_P(CycleOf, KinematicsNeitherAllocatesNorLocksNorTouchesFiles) {
   Pose nan = Pose::Identity();
   nan.translation().x() = std::nan("");
   poses.push_back(nan);
-  std::array<double, kinematics::kMaxAxes> home{}, axes{};
+  kinematics::AxisVector home{}, axes{};
   ASSERT_EQ(mechanism_->inverse(mechanism_->home(), {}, std::span(home).first(axes_)), SolveStatus::ok);
   Eigen::Matrix<double, Eigen::Dynamic, 6> rates(static_cast<Eigen::Index>(axes_), 6);
   int solved = 0;

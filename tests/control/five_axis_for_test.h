@@ -18,7 +18,7 @@ struct FiveAxisForTest {
   Pose X_WT_home = machine.X_WB * machine.X_BT_home;
 
   toolpath::GcodeOptions gcode() const {
-    const std::vector<double>& p = machine.chain->kinematics.parameters;
+    const std::vector<double>& p = machine.chain().kinematics.parameters;
     const kinematics::FiveAxisGeometry geometry{p[0], p[1], p[2], p[3]};
     toolpath::GcodeOptions options;
     options.X_WT_home = X_WT_home;

@@ -37,7 +37,7 @@ TEST(Mechanism, HexapodBehindTheInterfaceIsTheSameHexapod) {
   EXPECT_TRUE(mechanism->home().isApprox(X_home));
 
   const Pose X = tilted({0.01, -0.02, 0.005}, from_deg(12), 0.7);
-  std::array<double, kMaxAxes> axes{};
+  AxisVector axes{};
   ASSERT_EQ(mechanism->inverse(X, {}, axes), SolveStatus::ok);
   StrutLengths lengths{};
   ASSERT_EQ(inverse(g, X, lengths), SolveStatus::ok);

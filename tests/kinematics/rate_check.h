@@ -24,7 +24,7 @@ inline double worst_rate_difference(const Mechanism& mechanism, const Pose& X, s
     Twist twist = Twist::Zero();
     twist[column] = h;
     const auto moved = [&](double sign) {
-      std::array<double, kMaxAxes> found{};
+      AxisVector found{};
       const Pose X_moved = make_pose(Mat3(exp_rotation(sign * twist.tail<3>()) * X.linear()),
                                      Vec3(X.translation() + sign * twist.head<3>()));
       EXPECT_EQ(mechanism.inverse(X_moved, axes, found), SolveStatus::ok);

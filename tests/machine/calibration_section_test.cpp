@@ -27,11 +27,11 @@ MachineDescription calibrated_hexapod() {
   MachineDescription m = load_machine("hexapod");
   Random random(3, "calibration section test");
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
-    m.hexapod.geometry.base_joint[i] += some(random, 0.5e-3);
-    m.hexapod.geometry.platform_joint[i] += some(random, 0.5e-3);
-    m.hexapod.geometry.length_offset[i] += 0.5e-3 * random.normal();
+    m.hexapod().geometry.base_joint[i] += some(random, 0.5e-3);
+    m.hexapod().geometry.platform_joint[i] += some(random, 0.5e-3);
+    m.hexapod().geometry.length_offset[i] += 0.5e-3 * random.normal();
   }
-  m.hexapod.geometry.deviation += 0.3e-3;
+  m.hexapod().geometry.deviation += 0.3e-3;
   m.calibration = {"maximum_likelihood", "poses \"3\".csv", std::string(64, '0'), 24, 17.5e-6};
   return m;
 }
@@ -39,7 +39,7 @@ MachineDescription calibrated_hexapod() {
 MachineDescription calibrated_arm() {
   MachineDescription m = load_machine("arm");
   Random random(4, "calibration section test");
-  kinematics::ChainDescription& k = m.chain->kinematics;
+  kinematics::ChainDescription& k = m.chain().kinematics;
   k.design = k.chain;
   for (auto& axis : k.chain.axes) {
     axis.point += some(random, 0.5e-3);
@@ -69,15 +69,15 @@ class CalibrationSection : public EditedFile {
 TEST_F(CalibrationSection, ReplacesTheGeometryThatTheControllerUses) {
   const MachineDescription drawn = load_machine("hexapod"), m = calibrated_hexapod(), read = back(m);
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
-    EXPECT_LT((read.hexapod.geometry.base_joint[i] - m.hexapod.geometry.base_joint[i]).norm(), kDigits);
-    EXPECT_LT((read.hexapod.geometry.platform_joint[i] - m.hexapod.geometry.platform_joint[i]).norm(),
+    EXPECT_LT((read.hexapod().geometry.base_joint[i] - m.hexapod().geometry.base_joint[i]).norm(), kDigits);
+    EXPECT_LT((read.hexapod().geometry.platform_joint[i] - m.hexapod().geometry.platform_joint[i]).norm(),
               kDigits);
-    EXPECT_NEAR(read.drive_zero()[i], m.hexapod.geometry.length_offset[i], kDigits);
-    EXPECT_EQ(read.hexapod.design.base_joint[i], drawn.hexapod.geometry.base_joint[i]);
+    EXPECT_NEAR(read.drive_zero()[i], m.hexapod().geometry.length_offset[i], kDigits);
+    EXPECT_EQ(read.hexapod().design.base_joint[i], drawn.hexapod().geometry.base_joint[i]);
     // Studs were made as drawn: they are not what was measured.
-    EXPECT_EQ(read.hexapod.joints.stud_axis[i], drawn.hexapod.joints.stud_axis[i]);
+    EXPECT_EQ(read.hexapod().joints.stud_axis[i], drawn.hexapod().joints.stud_axis[i]);
   }
-  EXPECT_NEAR(read.hexapod.geometry.deviation, m.hexapod.geometry.deviation, kDigits);
+  EXPECT_NEAR(read.hexapod().geometry.deviation, m.hexapod().geometry.deviation, kDigits);
   EXPECT_TRUE(read.X_BT_home.isApprox(drawn.X_BT_home, 0));
   ASSERT_TRUE(read.calibration);
   EXPECT_EQ(read.calibration->measurements, "poses \"3\".csv");
@@ -101,7 +101,7 @@ TEST_F(CalibrationSection, LeavesTheRestOfTheFileAsItIsAndReplacesAnOlderOne) {
 TEST_F(CalibrationSection, ACalibratedArmReachesPosesByItsMeasuredAxes) {
   const MachineDescription m = calibrated_arm(), read = back(m);
   const auto mechanism = read.make_mechanism();
-  const kinematics::Chain& truth = m.chain->kinematics.chain;
+  const kinematics::Chain& truth = m.chain().kinematics.chain;
   Random random(5, "calibrated arm");
   for (int k = 0; k < 50; ++k) {
     const Pose X = make_pose(Mat3(exp_rotation(some(random, 0.1)) * read.X_BT_home.linear()),
@@ -132,12 +132,12 @@ TEST_F(CalibrationSection, ListsEveryStrutOnce) {
 
 TEST_F(CalibrationSection, MustLeaveHomeWithinTheLimits) {
   MachineDescription m = calibrated_hexapod();
-  m.hexapod.limits.strut_max = 0.19;  // does not matter: the file's own limits do
+  m.hexapod().limits.strut_max = 0.19;  // does not matter: the file's own limits do
   EXPECT_NO_THROW(back(m));
   // Base joints 24 mm lower, ball joints 24 mm higher: struts at home are some 45 mm shorter than 189 mm,
   // below 170.
-  for (auto& b : m.hexapod.geometry.base_joint) b.z() -= 24e-3;
-  for (auto& a : m.hexapod.geometry.platform_joint) a.z() += 24e-3;
+  for (auto& b : m.hexapod().geometry.base_joint) b.z() -= 24e-3;
+  for (auto& a : m.hexapod().geometry.platform_joint) a.z() += 24e-3;
   try {
     back(m);
     FAIL() << "accepted";

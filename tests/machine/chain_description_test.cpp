@@ -17,27 +17,27 @@ using testing::HasSubstr;
 
 std::vector<std::string> axis_names(const MachineDescription& m) {
   std::vector<std::string> names;
-  for (const auto& axis : m.chain->kinematics.chain.axes) names.push_back(axis.name);
+  for (const auto& axis : m.chain().kinematics.chain.axes) names.push_back(axis.name);
   return names;
 }
 
 TEST(ChainDescription, TheArmIsTheOneOfItsFile) {
   const auto m = load_machine("arm");
-  ASSERT_TRUE(m.chain);
+  ASSERT_TRUE(m.is_chain());
   EXPECT_THAT(axis_names(m), ElementsAre("j1", "j2", "j3", "j4", "j5", "j6"));
-  EXPECT_EQ(m.chain->kinematics.kind, "arm");
-  EXPECT_DOUBLE_EQ(m.chain->kinematics.length_scale, 0.3);
-  EXPECT_DOUBLE_EQ(m.chain->kinematics.condition_max, 200);
-  EXPECT_DOUBLE_EQ(m.chain->kinematics.chain.axes[1].lower, from_deg(-45));
-  EXPECT_DOUBLE_EQ(m.chain->kinematics.home[4], from_deg(55));
+  EXPECT_EQ(m.chain().kinematics.kind, "arm");
+  EXPECT_DOUBLE_EQ(m.chain().kinematics.length_scale, 0.3);
+  EXPECT_DOUBLE_EQ(m.chain().kinematics.condition_max, 200);
+  EXPECT_DOUBLE_EQ(m.chain().kinematics.chain.axes[1].lower, from_deg(-45));
+  EXPECT_DOUBLE_EQ(m.chain().kinematics.home[4], from_deg(55));
   // docs/reference.md#robot-arm: 0.36 arcmin in every joint; 3.6 degrees a turn of 8192 counts.
-  for (const double play : m.chain->play) EXPECT_NEAR(play, from_deg(0.36 / 60), 1e-15);
+  for (const double play : m.chain().play) EXPECT_NEAR(play, from_deg(0.36 / 60), 1e-15);
   EXPECT_NEAR(m.drives[0].step(), from_deg(3.6) / 8192, 1e-18);
   EXPECT_DOUBLE_EQ(m.drives[5].velocity_max, from_deg(420));
   EXPECT_FALSE(m.drives[1].self_locking);
   EXPECT_EQ(m.drives[0].stiffness, 0);
   double mass = 0;
-  for (const Link& link : m.chain->links) mass += link.mass;
+  for (const Link& link : m.chain().links) mass += link.mass;
   EXPECT_NEAR(mass, 26.6, 1e-9);  // "about 27 kg in all"
   EXPECT_FALSE(m.has_microscope);
   EXPECT_TRUE(m.X_WB.translation().isApprox(Vec3(-0.45, 0, -0.2), 1e-12));
@@ -48,9 +48,9 @@ TEST(ChainDescription, TheArmIsTheOneOfItsFile) {
 
 TEST(ChainDescription, TheTableOfTheFiveAxisPrinterCarriesTheWork) {
   const auto m = load_machine("five-axis");
-  ASSERT_TRUE(m.chain);
+  ASSERT_TRUE(m.is_chain());
   EXPECT_THAT(axis_names(m), ElementsAre("x", "y", "z", "b", "c"));
-  const auto& chain = m.chain->kinematics.chain;
+  const auto& chain = m.chain().kinematics.chain;
   EXPECT_EQ(chain.axes[static_cast<std::size_t>(chain.work_axis)].name, "c");
   EXPECT_EQ(chain.axes[static_cast<std::size_t>(chain.axes[4].parent)].name, "b");
   EXPECT_NEAR(chain.axes[3].point.z(), -0.030, 1e-12);
@@ -58,8 +58,8 @@ TEST(ChainDescription, TheTableOfTheFiveAxisPrinterCarriesTheWork) {
   EXPECT_EQ(chain.axes[4].upper, kinematics::kEndless);
   EXPECT_TRUE(m.X_WB.isApprox(Pose::Identity(), 0));  // W moves with the table
   EXPECT_TRUE(m.X_BT_home.translation().isApprox(Vec3(0, 0, 0.05), 1e-12));
-  EXPECT_DOUBLE_EQ(m.chain->play[0], 20e-6);
-  EXPECT_NEAR(m.chain->play[3], from_deg(1.0 / 60), 1e-15);
+  EXPECT_DOUBLE_EQ(m.chain().play[0], 20e-6);
+  EXPECT_NEAR(m.chain().play[3], from_deg(1.0 / 60), 1e-15);
   EXPECT_FALSE(m.drives[0].self_locking);
   EXPECT_TRUE(m.drives[2].self_locking);
   EXPECT_TRUE(m.drives[3].self_locking);
@@ -68,7 +68,7 @@ TEST(ChainDescription, TheTableOfTheFiveAxisPrinterCarriesTheWork) {
 
 TEST(ChainDescription, TheFinishingStageCutsAndDoesNotPrint) {
   const auto m = load_machine("finishing");
-  ASSERT_TRUE(m.chain);
+  ASSERT_TRUE(m.is_chain());
   EXPECT_THAT(axis_names(m), ElementsAre("z", "c", "x", "y", "yaw", "pitch"));
   EXPECT_FALSE(m.tool.prints());
   EXPECT_DOUBLE_EQ(m.tool.flat_diameter, 0.003);
@@ -86,15 +86,15 @@ using ListedChain = EditedFile;
 
 TEST_F(ListedChain, StandsAsItsLinesSay) {
   const auto m = load_machine(write(kScara));
-  ASSERT_TRUE(m.chain);
-  const auto& chain = m.chain->kinematics.chain;
+  ASSERT_TRUE(m.is_chain());
+  const auto& chain = m.chain().kinematics.chain;
   EXPECT_THAT(axis_names(m), ElementsAre("shoulder", "elbow", "wrist", "quill"));
   for (int i = 0; i < 4; ++i) EXPECT_EQ(chain.axes[static_cast<std::size_t>(i)].parent, i - 1);
   EXPECT_EQ(chain.tool_axis, 3);
   EXPECT_EQ(chain.work_axis, -1);
   EXPECT_FALSE(chain.axes[3].angle);
-  EXPECT_DOUBLE_EQ(m.chain->friction[0], 0.2);
-  EXPECT_DOUBLE_EQ(m.chain->friction[3], 0);
+  EXPECT_DOUBLE_EQ(m.chain().friction[0], 0.2);
+  EXPECT_DOUBLE_EQ(m.chain().friction[3], 0);
   // Two links of 200 mm at +40 and -40 degrees from the x axis, the quill 50 mm down from 100 mm.
   const Vec3 tip(2 * 0.2 * std::cos(from_deg(40)) - 0.25, 0, 0.05);
   EXPECT_LT(((m.X_WB * m.X_BT_home).translation() - tip).norm(), 1e-15);
@@ -110,7 +110,7 @@ TEST_F(ListedChain, ToolAndWorkMayBeCarriedByAnyAxisOrTheFrame) {
   const std::string moved = edited(kScara, "geometry", "work_carried_by: frame", "work_carried_by: shoulder");
   const std::string base = "base_mm: [-250, 0, 0]\n  base_turn_deg: 0\n  ";
   const auto m = load_machine(write(edited(moved, "geometry", base, "")));
-  EXPECT_EQ(m.chain->kinematics.chain.work_axis, 0);
+  EXPECT_EQ(m.chain().kinematics.chain.work_axis, 0);
   EXPECT_TRUE(m.X_WB.isApprox(Pose::Identity(), 0));  // what moves the work carries W
   EXPECT_THAT([&] { load_machine(write(moved)); },
               ::testing::ThrowsMessage<InputError>(

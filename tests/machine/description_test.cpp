@@ -77,21 +77,21 @@ TEST(MachineDescription, ShippedHexapodIsMachineG4) {
   // docs/reference.md#machine-g4: every strut of G4 is 189.29 mm at home with dev 0; dev 15 makes it
   // sqrt(189.29^2 - 15^2).
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
-    const Vec3 d = m.hexapod.geometry.base_joint[i] - m.X_BT_home * m.hexapod.geometry.platform_joint[i];
+    const Vec3 d = m.hexapod().geometry.base_joint[i] - m.X_BT_home * m.hexapod().geometry.platform_joint[i];
     EXPECT_NEAR(to_mm(d.norm()), 189.2924, 1e-4);
   }
   kinematics::StrutLengths lengths;
-  ASSERT_EQ(kinematics::inverse(m.hexapod.geometry, m.X_BT_home, lengths), kinematics::SolveStatus::ok);
+  ASSERT_EQ(kinematics::inverse(m.hexapod().geometry, m.X_BT_home, lengths), kinematics::SolveStatus::ok);
   EXPECT_NEAR(to_mm(lengths[0]), 188.6972, 1e-4);
   // Ball joints 16 mm apart or more, base joints 45 mm or more (docs/reference.md#machine-g4, to the
   // millimetre).
-  EXPECT_NEAR(to_mm((m.hexapod.geometry.platform_joint[0] - m.hexapod.geometry.platform_joint[1]).norm()),
+  EXPECT_NEAR(to_mm((m.hexapod().geometry.platform_joint[0] - m.hexapod().geometry.platform_joint[1]).norm()),
               2 * 29 * std::sin(from_deg(17)), 1e-9);
-  EXPECT_GT(to_mm((m.hexapod.geometry.base_joint[1] - m.hexapod.geometry.base_joint[2]).norm()), 45);
+  EXPECT_GT(to_mm((m.hexapod().geometry.base_joint[1] - m.hexapod().geometry.base_joint[2]).norm()), 45);
   EXPECT_TRUE((m.X_WB * m.X_BT_home).translation().isApprox(Vec3(0, 0, 0.05), 1e-12));
   EXPECT_NEAR(m.drives[0].lead, kInch / 16, 1e-12);
   EXPECT_NEAR(m.drives[0].step(), kInch / 16 / 3200, 1e-15);
-  EXPECT_DOUBLE_EQ(m.hexapod.play.screw_nut, 50e-6);
+  EXPECT_DOUBLE_EQ(m.hexapod().play.screw_nut, 50e-6);
   EXPECT_DOUBLE_EQ(m.microscope.exposure, 0.01);
   EXPECT_DOUBLE_EQ(m.laser.wavelength, 650e-9);
   EXPECT_DOUBLE_EQ(m.orientation_velocity, from_deg(60));

@@ -26,7 +26,7 @@ std::vector<Pose> workspace_poses(const MachineDescription& m, int count) {
     const Mat3 R = exp_rotation(tilt * Vec3(std::cos(azimuth), std::sin(azimuth), 0));
     const Pose X = make_pose(R, Vec3(m.X_BT_home.translation() + shift));
     violations.clear();
-    kinematics::check(m.hexapod.geometry, m.hexapod.joints, m.hexapod.limits, X, violations);
+    kinematics::check(m.hexapod().geometry, m.hexapod().joints, m.hexapod().limits, X, violations);
     if (violations.empty()) poses.push_back(X);
   }
   return poses;
@@ -34,7 +34,7 @@ std::vector<Pose> workspace_poses(const MachineDescription& m, int count) {
 
 kinematics::HexapodGeometry built(const MachineDescription& m, const ToleranceSet& set, std::uint64_t seed) {
   Random random(seed, "as-built geometry of the tolerance test");
-  kinematics::HexapodGeometry g = m.hexapod.geometry;
+  kinematics::HexapodGeometry g = m.hexapod().geometry;
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       g.base_joint[i][axis] += set.joint_position * random.normal();
@@ -58,10 +58,10 @@ double share_below(const std::vector<double>& values, double limit) {
 
 Vec3 tip_error(const MachineDescription& m, const kinematics::HexapodGeometry& truth, const Pose& X_BT) {
   kinematics::StrutLengths lengths;
-  EXPECT_EQ(kinematics::inverse(m.hexapod.geometry, X_BT, lengths), kinematics::SolveStatus::ok);
+  EXPECT_EQ(kinematics::inverse(m.hexapod().geometry, X_BT, lengths), kinematics::SolveStatus::ok);
   // The drive's displacement is length - l_i0 of the controller; the built strut adds its own l_i0.
   for (std::size_t i = 0; i < lengths.size(); ++i)
-    lengths[i] += truth.length_offset[i] - m.hexapod.geometry.length_offset[i];
+    lengths[i] += truth.length_offset[i] - m.hexapod().geometry.length_offset[i];
   const auto result = kinematics::forward(truth, lengths, X_BT);
   EXPECT_EQ(result.status, kinematics::SolveStatus::ok);
   return result.X_BT.translation() - X_BT.translation();
@@ -87,11 +87,11 @@ TEST(Tolerances, ScatterOfTheHomeTipFollowsFromTheJacobian) {
   // l = sqrt(|d|^2 - dev^2): each strut's length scatters by 2 sigma_joint^2 |d|^2 / l^2 + sigma_offset^2,
   // and the tip by J^-1 times that times J^-T.
   Mat6 J;
-  ASSERT_EQ(kinematics::jacobian(m.hexapod.geometry, m.X_BT_home, J), kinematics::SolveStatus::ok);
+  ASSERT_EQ(kinematics::jacobian(m.hexapod().geometry, m.X_BT_home, J), kinematics::SolveStatus::ok);
   kinematics::StrutLengths lengths;
-  ASSERT_EQ(kinematics::inverse(m.hexapod.geometry, m.X_BT_home, lengths), kinematics::SolveStatus::ok);
+  ASSERT_EQ(kinematics::inverse(m.hexapod().geometry, m.X_BT_home, lengths), kinematics::SolveStatus::ok);
   const double l2 = lengths[0] * lengths[0],
-               d2 = l2 + m.hexapod.geometry.deviation * m.hexapod.geometry.deviation;
+               d2 = l2 + m.hexapod().geometry.deviation * m.hexapod().geometry.deviation;
   const double variance =
       2 * set.joint_position * set.joint_position * d2 / l2 + set.length_offset * set.length_offset;
   const Mat6 inverse = J.inverse();

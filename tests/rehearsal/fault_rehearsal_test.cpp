@@ -57,7 +57,7 @@ class FaultyRehearsal : public testing::Test {
       }
       if (a.time < from) continue;
       Mat6 J;
-      ASSERT_EQ(kinematics::jacobian(machine_.hexapod.geometry, machine_.X_WB.inverse() * a.X_WT, J),
+      ASSERT_EQ(kinematics::jacobian(machine_.hexapod().geometry, machine_.X_WB.inverse() * a.X_WT, J),
                 kinematics::SolveStatus::ok);
       const Eigen::Matrix<double, 6, 1> column = J.inverse().col(0);
       const Vec3 expected = machine_.X_WB.linear() * (column.head<3>() * change(a.time));

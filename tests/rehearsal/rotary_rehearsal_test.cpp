@@ -56,7 +56,7 @@ class RotaryRehearsal : public testing::Test {
 
   /// Slides that hold the tip of a line, by hand: back through both turns, about their axes.
   Vec3 slides_mm(const Line& line) const {
-    const auto& p = machine_.chain->kinematics.parameters;
+    const auto& p = machine_.chain().kinematics.parameters;
     const Vec3 b_axis = 1e3 * Vec3(p[0], 0, p[1]), c_axis = 1e3 * Vec3(p[2], p[3], 0);
     const Vec3 unturned =
         c_axis + Eigen::AngleAxisd(from_deg(-line.c_deg), Vec3::UnitZ()) * Vec3(line.tip_mm - c_axis);
@@ -133,7 +133,7 @@ TEST_F(RotaryRehearsal, MachineCoordinatesArePosesOfTheChainsAxes) {
       toolpath::parse_gcode("G49\nG0 X10 Y-5 Z60 B30 C100\nG43.4\nG49\nX11\n", "p.gcode", options).steps;
   const std::vector<double> axes = {11e-3, -5e-3, 60e-3, from_deg(30), from_deg(100)};
   // Products of exponentials, of which the closed form knows nothing.
-  const Pose expected = kinematics::forward(machine_.chain->kinematics.chain, axes);
+  const Pose expected = kinematics::forward(machine_.chain().kinematics.chain, axes);
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_LT((steps[1].X_WT.matrix() - expected.matrix()).norm(), 1e-14);
 }

@@ -10,7 +10,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 
 class BulletChain final : public BulletPlantBase {
  public:
@@ -20,13 +20,13 @@ class BulletChain final : public BulletPlantBase {
     // The work stands in S, which is the machine's base B; O is upright.
     X_WO_ = machine.X_WB * as_built.chain.X_OS_zero.inverse();
     set_gravity(X_WO_.linear() * Vec3(0, 0, options.gravity ? -kGravity : 0));
-    AxisArray home{};
-    const auto& axes = machine.chain->kinematics.home;
+    AxisVector home{};
+    const auto& axes = machine.chain().kinematics.home;
     std::copy(axes.begin(), axes.end(), home.begin());
     reset(home);
   }
 
-  void reset(const AxisArray& displacement) override;
+  void reset(const AxisVector& displacement) override;
 
   /// By the engine's own chain of frames.
   Pose tool_pose() const override { return link_pose(*tree_, as_built_.chain.tool_axis) * X_LT_; }
@@ -38,9 +38,9 @@ class BulletChain final : public BulletPlantBase {
   btMultiBody* tree_ = nullptr;
 };
 
-void BulletChain::reset(const AxisArray& displacement) {
+void BulletChain::reset(const AxisVector& displacement) {
   clear();
-  const machine::ChainModel& model = *machine_.chain;
+  const machine::ChainModel& model = machine_.chain();
   std::vector<BulletLink> links;
   for (std::size_t i = 0; i < as_built_.chain.axes.size(); ++i) {
     const kinematics::ChainAxis& axis = as_built_.chain.axes[i];
@@ -69,7 +69,7 @@ std::unique_ptr<Plant> make_bullet_chain(const machine::MachineDescription& mach
 
 std::unique_ptr<Plant> make_bullet_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const BulletOptions& options) {
-  if (!machine.chain) return make_bullet_hexapod(machine, as_built, options);
+  if (!machine.is_chain()) return make_bullet_hexapod(machine, as_built, options);
   if (as_built.chain.work_axis >= 0)
     throw InputError(fmt::format(
         "{}: bullet plays hexapods and arms; here axis '{}' carries the work: use mujoco or quasistatic",

@@ -14,8 +14,8 @@
 namespace understudy::sim {
 namespace {
 
+using kinematics::AxisVector;
 using kinematics::kStruts;
-using machine::AxisArray;
 
 Mat3 cube_inertia(double mass) { return cube_moment(mass) * Mat3::Identity(); }
 
@@ -44,10 +44,10 @@ class BulletHexapod final : public BulletPlantBase {
     reset(home_displacement(machine, as_built));
   }
 
-  void reset(const AxisArray& displacement) override;
+  void reset(const AxisVector& displacement) override;
   Pose tool_pose() const override {
     const Pose X_WC = link_pose(*platform_, -1);
-    return make_pose(X_WC.linear(), X_WC * Vec3(-machine_.hexapod.masses.platform_centre_T));
+    return make_pose(X_WC.linear(), X_WC * Vec3(-machine_.hexapod().masses.platform_centre_T));
   }
   double closure_error() const override { return closure_; }
 
@@ -78,15 +78,15 @@ class BulletHexapod final : public BulletPlantBase {
   AsBuilt as_built_;
   ScrewTurning screws_;
   btMultiBody* platform_ = nullptr;
-  std::array<Ball, kStruts> closures_{};
+  PerStrut<Ball> closures_{};
   std::array<BulletPlay*, kStruts> balls_{};
   double closure_ = 0;
 };
 
-void BulletHexapod::reset(const AxisArray& displacement) {
+void BulletHexapod::reset(const AxisVector& displacement) {
   clear();
   const Pose X_WT = assemble_hexapod(machine_, as_built_, displacement);
-  const machine::Masses& masses = machine_.hexapod.masses;
+  const machine::Masses& masses = machine_.hexapod().masses;
   platform_ =
       &add_body(make_floating_body(masses.platform, masses.platform_inertia,
                                    make_pose(Mat3(X_WT.linear()), Vec3(X_WT * masses.platform_centre_T))));
@@ -96,11 +96,12 @@ void BulletHexapod::reset(const AxisArray& displacement) {
 
 void BulletHexapod::add_strut(std::size_t i, const Pose& X_WT, double displacement) {
   const StrutChain chain =
-      assemble_strut(as_built_.hexapod, machine_.hexapod.joints, machine_.X_WB, X_WT, static_cast<int>(i));
+      assemble_strut(as_built_.hexapod, machine_.hexapod().joints, machine_.X_WB, X_WT, static_cast<int>(i));
   const double nut_play = options_.play ? as_built_.nut_play[i] : 0.0,
                ball_play = options_.play ? as_built_.ball_play[i] : 0.0,
-               friction = machine_.hexapod.play.friction;
-  const auto links = strut_links(chain, machine_.hexapod.masses, as_built_.hexapod.deviation, ball_play > 0);
+               friction = machine_.hexapod().play.friction;
+  const auto links =
+      strut_links(chain, machine_.hexapod().masses, as_built_.hexapod.deviation, ball_play > 0);
   btMultiBody& strut = add_body(make_tree(links, Pose::Identity()));
   const int last = strut.getNumLinks() - 1;
   add_damping({&strut, 0, kHingeDamping});
@@ -117,7 +118,7 @@ void BulletHexapod::add_strut(std::size_t i, const Pose& X_WT, double displaceme
   }
   closures_[i] = {
       &strut, last, strut.worldPosToLocal(last, to_bullet(chain.ball_W)),
-      to_bullet(Vec3(as_built_.hexapod.platform_joint[i] - machine_.hexapod.masses.platform_centre_T))};
+      to_bullet(Vec3(as_built_.hexapod.platform_joint[i] - machine_.hexapod().masses.platform_centre_T))};
   add_constraint(std::make_unique<btMultiBodyPoint2Point>(&strut, last, platform_, -1, closures_[i].ball_L,
                                                           closures_[i].ball_C));
 }

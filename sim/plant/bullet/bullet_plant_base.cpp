@@ -12,7 +12,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 
 double rotor_damping(const machine::Drive& drive) {
   return 2 * drive.damping_ratio * std::sqrt(drive.stiffness * drive.rotor());
@@ -88,7 +88,7 @@ double BulletPlantBase::largest_speed() const {
   return largest;
 }
 
-void BulletPlantBase::settle(const AxisArray& displacement) {
+void BulletPlantBase::settle(const AxisVector& displacement) {
   failed_ = false;
   DriveCommand hold;
   hold.position = displacement;
@@ -104,15 +104,15 @@ void BulletPlantBase::settle(const AxisArray& displacement) {
   steps_ = 0;
 }
 
-AxisArray BulletPlantBase::displacement() const {
-  AxisArray displacement{};
+AxisVector BulletPlantBase::displacement() const {
+  AxisVector displacement{};
   for (std::size_t i = 0; i < drives_.size(); ++i)
     displacement[i] = drives_[i].rotor != nullptr ? drives_[i].rotor->getJointPos(0) : drives_[i].position;
   return displacement;
 }
 
-AxisArray BulletPlantBase::drive_force() const {
-  AxisArray force{};
+AxisVector BulletPlantBase::drive_force() const {
+  AxisVector force{};
   for (std::size_t i = 0; i < drives_.size(); ++i) force[i] = drives_[i].play->force(options_.timestep);
   return force;
 }
@@ -203,7 +203,7 @@ void BulletPlantBase::move_motors() {
 
 void BulletPlantBase::check_state(const DriveCommand& command) const {
   check_assembly();
-  const AxisArray reached = displacement();
+  const AxisVector reached = displacement();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const Drive& drive = drives_[i];
     const double beyond = drive.play->overrun();

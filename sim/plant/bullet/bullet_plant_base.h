@@ -20,8 +20,8 @@ class BulletPlantBase : public Plant {
   double timestep() const override { return options_.timestep; }
   double time() const override { return static_cast<double>(steps_) * options_.timestep; }
   void step(const DriveCommand& command) override;
-  machine::AxisArray displacement() const override;
-  machine::AxisArray drive_force() const override;
+  kinematics::AxisVector displacement() const override;
+  kinematics::AxisVector drive_force() const override;
   double closure_error() const override { return 0; }
   void set_condition(int axis, const AxisCondition& condition) override;
 
@@ -43,7 +43,7 @@ class BulletPlantBase : public Plant {
                  const BulletPlay::Properties& play);
   void set_gravity(const Vec3& gravity_W) { gravity_W_ = gravity_W; }
   /// Holds the drives at `displacement` until everything is at rest; time is 0 afterwards.
-  void settle(const machine::AxisArray& displacement);
+  void settle(const kinematics::AxisVector& displacement);
   /// Throws MachineError when the state is no machine any more.
   virtual void check_assembly() const {}
   /// Called when every body's frames are those of the step's beginning.

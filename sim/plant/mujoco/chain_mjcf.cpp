@@ -23,7 +23,7 @@ class ChainWriter {
  public:
   ChainWriter(const machine::MachineDescription& machine, const AsBuilt& as_built,
               const MujocoOptions& options)
-      : machine_(machine), model_(*machine.chain), built_(as_built), options_(options) {}
+      : machine_(machine), model_(machine.chain()), built_(as_built), options_(options) {}
 
   std::string write() const {
     std::string equalities;

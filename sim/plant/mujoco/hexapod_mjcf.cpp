@@ -121,24 +121,26 @@ std::string write_hexapod_mjcf(const machine::MachineDescription& machine, const
     const auto s = static_cast<std::size_t>(i);
     Clearance play;
     if (options.play)
-      play = {as_built.nut_play[s], as_built.ball_play[s], machine.hexapod.play.friction,
+      play = {as_built.nut_play[s], as_built.ball_play[s], machine.hexapod().play.friction,
               options.play_across_struts};
-    const StrutChain chain = assemble_strut(as_built.hexapod, machine.hexapod.joints, machine.X_WB, X_WT, i);
-    struts += strut_bodies(i, chain, machine.hexapod.masses, machine.drives[s], play);
+    const StrutChain chain =
+        assemble_strut(as_built.hexapod, machine.hexapod().joints, machine.X_WB, X_WT, i);
+    struts += strut_bodies(i, chain, machine.hexapod().masses, machine.drives[s], play);
     end_parts[s] = play.ball > 0 ? "rod end" : "nut";
   }
   // Closures and drives give 24 rows, play limits at most 24 more, friction 12.
-  return fmt::format(R"(<mujoco model="{name}">{settings}
+  return fmt::format(
+      R"(<mujoco model="{name}">{settings}
   <worldbody>{platform}{struts}
   </worldbody>
   <equality>{equalities}
   </equality>
 </mujoco>
 )",
-                     fmt::arg("name", machine.name), fmt::arg("settings", mjcf_settings(options, 100)),
-                     fmt::arg("platform", platform_body(machine.hexapod.masses, X_WT, options.platform_drag)),
-                     fmt::arg("struts", struts),
-                     fmt::arg("equalities", closures_and_drives(as_built, machine.drives, end_parts)));
+      fmt::arg("name", machine.name), fmt::arg("settings", mjcf_settings(options, 100)),
+      fmt::arg("platform", platform_body(machine.hexapod().masses, X_WT, options.platform_drag)),
+      fmt::arg("struts", struts),
+      fmt::arg("equalities", closures_and_drives(as_built, machine.drives, end_parts)));
 }
 
 }  // namespace understudy::sim

@@ -72,14 +72,14 @@ std::string mjcf_settings(const MujocoOptions& options, int rows) {
 
 std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built, const Pose& X_WT,
                        const MujocoOptions& options) {
-  return machine.chain ? write_chain_mjcf(machine, as_built, options)
-                       : write_hexapod_mjcf(machine, as_built, X_WT, options);
+  return machine.is_chain() ? write_chain_mjcf(machine, as_built, options)
+                            : write_hexapod_mjcf(machine, as_built, X_WT, options);
 }
 
 std::unique_ptr<Plant> make_mujoco_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const MujocoOptions& options) {
-  return machine.chain ? make_mujoco_chain(machine, as_built, options)
-                       : make_mujoco_hexapod(machine, as_built, options);
+  return machine.is_chain() ? make_mujoco_chain(machine, as_built, options)
+                            : make_mujoco_hexapod(machine, as_built, options);
 }
 
 }  // namespace understudy::sim

@@ -6,23 +6,23 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 
 class MujocoChain final : public MujocoPlantBase {
  public:
   MujocoChain(const machine::MachineDescription& machine, const AsBuilt& as_built,
               const MujocoOptions& options)
       : MujocoPlantBase(machine, options), as_built_(as_built) {
-    AxisArray home{};
-    const auto& axes = machine.chain->kinematics.home;
+    AxisVector home{};
+    const auto& axes = machine.chain().kinematics.home;
     std::copy(axes.begin(), axes.end(), home.begin());
     reset(home);
   }
 
-  void reset(const AxisArray& displacement) override {
+  void reset(const AxisVector& displacement) override {
     fail_until_reset();
     // A driven joint reads the true position, a drive its displacement: axis_zero is between them.
-    AxisArray assembled{};
+    AxisVector assembled{};
     for (std::size_t i = 0; i < assembled.size(); ++i) assembled[i] = -as_built_.axis_zero[i];
     load(write_chain_mjcf(machine_, as_built_, options_), driven_joints(), assembled);
     find_positions();
@@ -33,7 +33,7 @@ class MujocoChain final : public MujocoPlantBase {
 
   /// Of the work: the joints tell the whole pose.
   Pose tool_pose() const override {
-    std::array<double, kinematics::kMaxAxes> axes{};
+    kinematics::AxisVector axes{};
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       axes[i] = data_->qpos[joints_[i].driven];
       if (joints_[i].play >= 0) axes[i] += data_->qpos[joints_[i].play];

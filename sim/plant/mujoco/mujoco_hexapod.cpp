@@ -13,8 +13,8 @@
 namespace understudy::sim {
 namespace {
 
+using kinematics::AxisVector;
 using kinematics::kStruts;
-using machine::AxisArray;
 
 class MujocoHexapod final : public MujocoPlantBase {
  public:
@@ -24,7 +24,7 @@ class MujocoHexapod final : public MujocoPlantBase {
     reset(home_displacement(machine, as_built));
   }
 
-  void reset(const AxisArray& displacement) override;
+  void reset(const AxisVector& displacement) override;
 
   Pose tool_pose() const override {
     const mjtNum* q = data_->qpos + platform_qpos_;
@@ -71,10 +71,10 @@ std::vector<DrivenJoint> MujocoHexapod::driven_joints() const {
   return joints;
 }
 
-void MujocoHexapod::reset(const AxisArray& displacement) {
+void MujocoHexapod::reset(const AxisVector& displacement) {
   fail_until_reset();
   const Pose X_WT = assemble_hexapod(machine_, as_built_, displacement);
-  AxisArray assembled = displacement;  // with what the screws' turning has added
+  AxisVector assembled = displacement;  // with what the screws' turning has added
   for (int i = 0; i < kStruts; ++i) assembled[static_cast<std::size_t>(i)] += screws_.growth(X_WT, i);
   load(write_mjcf(machine_, as_built_, X_WT, options_), driven_joints(), assembled);
   platform_qpos_ = model_->jnt_qposadr[find_id(*model_, mjOBJ_JOINT, kPlatformBody)];

@@ -14,7 +14,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 
 // Rotor of a drive that has let go, of the inertia that it carries: light, but no mass matrix is singular.
 constexpr double kReleasedRotor = 1e-3;
@@ -31,7 +31,7 @@ MujocoPlantBase::MujocoPlantBase(const machine::MachineDescription& machine, con
 std::string MujocoPlantBase::engine() const { return fmt::format("mujoco {}", mj_versionString()); }
 
 void MujocoPlantBase::load(const std::string& mjcf, const std::vector<DrivenJoint>& joints,
-                           const AxisArray& assembled) {
+                           const AxisVector& assembled) {
   failed_ = true;
   model_ = load_model(mjcf);
   data_ = make_data(*model_);
@@ -60,7 +60,7 @@ double MujocoPlantBase::largest_speed() const {
   return Eigen::Map<const Eigen::VectorXd>(data_->qvel, model_->nv).cwiseAbs().maxCoeff();
 }
 
-void MujocoPlantBase::settle(const AxisArray& displacement) {
+void MujocoPlantBase::settle(const AxisVector& displacement) {
   DriveCommand hold;
   hold.position = displacement;
   double still_since = 0;
@@ -73,8 +73,8 @@ void MujocoPlantBase::settle(const AxisArray& displacement) {
   data_->time = 0;
 }
 
-AxisArray MujocoPlantBase::displacement() const {
-  AxisArray displacement{};
+AxisVector MujocoPlantBase::displacement() const {
+  AxisVector displacement{};
   for (std::size_t i = 0; i < drives_.size(); ++i)
     displacement[i] = assembled_[i] + data_->qpos[drives_[i].qpos] - drives_[i].hidden;
   return displacement;
@@ -90,8 +90,8 @@ double MujocoPlantBase::force_of(const Drive& drive) const {
   return -rotor;
 }
 
-AxisArray MujocoPlantBase::drive_force() const {
-  AxisArray force{};
+AxisVector MujocoPlantBase::drive_force() const {
+  AxisVector force{};
   for (std::size_t i = 0; i < drives_.size(); ++i) force[i] = force_of(drives_[i]);
   return force;
 }
@@ -156,7 +156,7 @@ void MujocoPlantBase::command_drives(const DriveCommand& command) {
 
 void MujocoPlantBase::check_state(const DriveCommand& command) const {
   check_assembly();
-  const AxisArray reached = displacement();
+  const AxisVector reached = displacement();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (!drives_[i].following) continue;
     // The command belongs to the step's beginning, the state to its end.

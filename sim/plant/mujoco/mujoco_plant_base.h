@@ -25,16 +25,16 @@ class MujocoPlantBase : public Plant {
   double timestep() const override { return options_.timestep; }
   double time() const override { return data_->time; }
   void step(const DriveCommand& command) override;
-  machine::AxisArray displacement() const override;
-  machine::AxisArray drive_force() const override;
+  kinematics::AxisVector displacement() const override;
+  kinematics::AxisVector drive_force() const override;
   void set_condition(int axis, const AxisCondition& condition) override;
 
  protected:
   /// Compiles the model; `assembled`: drive displacements at which the driven joints read 0.
   void load(const std::string& mjcf, const std::vector<DrivenJoint>& joints,
-            const machine::AxisArray& assembled);
+            const kinematics::AxisVector& assembled);
   /// Holds the drives at `displacement` until everything is at rest; time is 0 afterwards.
-  void settle(const machine::AxisArray& displacement);
+  void settle(const kinematics::AxisVector& displacement);
   /// Throws MachineError when the state is no machine any more.
   virtual void check_assembly() const {}
   /// What a drive's reading leaves out, beside growth: [m] or [rad].
@@ -65,7 +65,7 @@ class MujocoPlantBase : public Plant {
   double force_of(const Drive& drive) const;
 
   std::vector<Drive> drives_;
-  machine::AxisArray assembled_{};
+  kinematics::AxisVector assembled_{};
   bool failed_ = true;  ///< the state is no result
 };
 

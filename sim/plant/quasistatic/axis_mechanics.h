@@ -24,7 +24,7 @@ class AxisMechanics {
   virtual double axis_zero(int axis) const = 0;
   /// As built, in units of the axis' position.
   virtual SeriesPlay built_play(int axis) const = 0;
-  virtual machine::AxisArray home() const = 0;  ///< true axis positions
+  virtual kinematics::AxisVector home() const = 0;  ///< true axis positions
 
   /// Forgets the last pose.
   virtual void start_from_home() = 0;

@@ -5,6 +5,9 @@
 #include <limits>
 
 namespace understudy::sim {
+
+using kinematics::AxisColumn;
+
 namespace {
 
 // A load that rises with 1 N/s takes 100 g across 100 um in 40 ms: this resolves it to a few per cent.
@@ -34,23 +37,19 @@ struct BacklashDynamics::Row {
   }
 };
 
-BacklashDynamics::BacklashDynamics(int axes)
-    : axes_(axes), gap_(AxisVector::Zero(axes)), rate_(AxisVector::Zero(axes)) {}
+BacklashDynamics::BacklashDynamics(int axes) : axes_(axes) {}
 
 void BacklashDynamics::set_play(int axis, const SeriesPlay& play) {
-  plays_[static_cast<std::size_t>(axis)] = play;
-  gap_(axis) = std::clamp(gap_(axis), -play.total() / 2, play.total() / 2);
+  plays_[axis] = play;
+  gap_[axis] = std::clamp(gap_[axis], -play.total() / 2, play.total() / 2);
 }
 
-void BacklashDynamics::centre() {
-  gap_.setZero();
-  rate_.setZero();
-}
+void BacklashDynamics::centre() { gap_ = rate_ = {}; }
 
 void BacklashDynamics::place(int axis, double gap) {
   const double half = play(axis).total() / 2;
-  gap_(axis) = std::clamp(gap, -half, half);
-  rate_(axis) = 0;
+  gap_[axis] = std::clamp(gap, -half, half);
+  rate_[axis] = 0;
 }
 
 BacklashDynamics::Row BacklashDynamics::row(int axis, double between, double gap) const {
@@ -70,14 +69,14 @@ BacklashDynamics::Row BacklashDynamics::row(int axis, double between, double gap
 
 bool BacklashDynamics::rests(const AxisLoad& load) const {
   for (int i = 0; i < axes_; ++i)
-    if (rate_(i) != 0 || resting_gap(i, load) != gap_(i)) return false;
+    if (rate_[i] != 0 || resting_gap(i, load) != gap_[i]) return false;
   return true;
 }
 
 double BacklashDynamics::resting_gap(int axis, const AxisLoad& load) const {
   const SeriesPlay& p = play(axis);
   if (p.total() <= 0) return 0;
-  const double gap = gap_(axis), between = load.between(axis), needed = load.drive(axis) - between;
+  const double gap = gap_[axis], between = load.between[axis], needed = load.drive[axis] - between;
   const double half = p.total() / 2;
   const double ledge = (between > 0 ? 0.5 : -0.5) * (p.outer - p.inner);
   const double pushed = std::max(-between, 0.0), pulled = std::min(-between, 0.0);
@@ -92,43 +91,44 @@ double BacklashDynamics::resting_gap(int axis, const AxisLoad& load) const {
 void BacklashDynamics::substep(const AxisMatrix& mass, const AxisLoad& load, double h,
                                AxisVector& drive_force) {
   AxisMatrix A = mass / (h * h);
-  const AxisVector momentum = mass * (gap_ + h * rate_) / (h * h);
-  std::array<Row, kMaxPlays> rows;
-  AxisVector fixed(axes_);
+  const AxisColumn momentum = mass * (column(gap_, axes_) + h * column(rate_, axes_)) / (h * h);
+  kinematics::PerAxis<Row> rows;
+  AxisVector fixed{};
   for (int i = 0; i < axes_; ++i) {
     const double drag = play(i).damping / h;
     A(i, i) += drag;
-    fixed(i) = momentum(i) + drag * gap_(i) - (load.drive(i) - load.between(i));
-    rows[static_cast<std::size_t>(i)] = row(i, load.between(i), gap_(i));
+    fixed[i] = momentum[i] + drag * gap_[i] - (load.drive[i] - load.between[i]);
+    rows[i] = row(i, load.between[i], gap_[i]);
   }
   AxisVector next = gap_;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0;
     for (int i = 0; i < axes_; ++i) {
-      const double others = fixed(i) - A.row(i).dot(next) + A(i, i) * next(i);
-      const double g = rows[static_cast<std::size_t>(i)].solve(A(i, i), others / A(i, i));
-      change = std::max(change, std::abs(g - next(i)));
-      next(i) = g;
+      const double others = fixed[i] - A.row(i).dot(column(next, axes_)) + A(i, i) * next[i];
+      const double g = rows[i].solve(A(i, i), others / A(i, i));
+      change = std::max(change, std::abs(g - next[i]));
+      next[i] = g;
     }
     if (change < kSweepTolerance) break;
   }
-  drive_force = A * next - fixed + load.between;
-  rate_ = (next - gap_) / h;
+  column(drive_force, axes_) = A * column(next, axes_) - column(fixed, axes_) + column(load.between, axes_);
+  column(rate_, axes_) = (column(next, axes_) - column(gap_, axes_)) / h;
   gap_ = next;
 }
 
 AxisVector BacklashDynamics::advance(const AxisMatrix& mass, const AxisLoad& load, double duration) {
   const int count = std::max(1, static_cast<int>(std::ceil(duration / kSubstep - 1e-9)));
-  AxisVector sum = AxisVector::Zero(axes_), force(axes_);
+  AxisVector sum{}, force{};
   for (int k = 0; k < count; ++k) {
     if (rests(load)) {
-      sum += load.drive;
+      elements(sum) += elements(load.drive);
     } else {
       substep(mass, load, duration / count, force);
-      sum += force;
+      elements(sum) += elements(force);
     }
   }
-  return sum / count;
+  elements(sum) /= count;
+  return sum;
 }
 
 }  // namespace understudy::sim

@@ -13,15 +13,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 
 #include "kinematics/mechanism.h"
 
 namespace understudy::sim {
 
-constexpr int kMaxPlays = kinematics::kMaxAxes;
-using AxisVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxPlays, 1>;
-using AxisMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxPlays, kMaxPlays>;
+using kinematics::AxisVector;
+using AxisMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kinematics::kMaxAxes, kinematics::kMaxAxes>;
 
 /// Of one axis; [m] or [rad], [N] or [N m].
 struct SeriesPlay {
@@ -34,8 +33,9 @@ struct SeriesPlay {
 
 /// What the drives have to push to keep every gap at rest.
 struct AxisLoad {
-  AxisVector drive;    ///< [N] or [N m], at the drive
-  AxisVector between;  ///< its part that moves the bodies between the plays; the rest reaches the outer play
+  AxisVector drive{};  ///< [N] or [N m], at the drive
+  AxisVector
+      between{};  ///< its part that moves the bodies between the plays; the rest reaches the outer play
 };
 
 /// The state of all plays of a machine. Nothing here allocates or throws.
@@ -44,7 +44,7 @@ class BacklashDynamics {
   explicit BacklashDynamics(int axes);
 
   void set_play(int axis, const SeriesPlay& play);
-  const SeriesPlay& play(int axis) const { return plays_[static_cast<std::size_t>(axis)]; }
+  const SeriesPlay& play(int axis) const { return plays_[axis]; }
   /// All gaps in the middle and at rest.
   void centre();
 
@@ -65,8 +65,8 @@ class BacklashDynamics {
   void substep(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& drive_force);
 
   int axes_;
-  std::array<SeriesPlay, kMaxPlays> plays_{};
-  AxisVector gap_, rate_;
+  kinematics::PerAxis<SeriesPlay> plays_{};
+  AxisVector gap_{}, rate_{};
 };
 
 }  // namespace understudy::sim

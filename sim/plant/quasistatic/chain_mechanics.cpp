@@ -35,10 +35,10 @@ class ChainMechanics final : public AxisMechanics {
                  const QuasistaticOptions& options);
 
   int axis_count() const override { return chain_.size(); }
-  std::string axis_name(int axis) const override { return "axis " + chain_.axes[index(axis)].name; }
-  double axis_zero(int axis) const override { return axis_zero_[index(axis)]; }
-  SeriesPlay built_play(int axis) const override { return play_[index(axis)]; }
-  machine::AxisArray home() const override;
+  std::string axis_name(int axis) const override { return "axis " + chain_.axes[axis].name; }
+  double axis_zero(int axis) const override { return axis_zero_[axis]; }
+  SeriesPlay built_play(int axis) const override { return play_[axis]; }
+  kinematics::AxisVector home() const override;
 
   void start_from_home() override {}
   SolveStatus place(const AxisVector& position) override;
@@ -49,53 +49,50 @@ class ChainMechanics final : public AxisMechanics {
   void mass_matrix(AxisMatrix& mass) const override;
 
  private:
-  static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
-  Pose carried_by(int axis, const Pose& X_zero) const {
-    return axis < 0 ? X_zero : pose_[index(axis)] * X_zero;
-  }
+  Pose carried_by(int axis, const Pose& X_zero) const { return axis < 0 ? X_zero : pose_[axis] * X_zero; }
   void move_link(int axis, double velocity, double acceleration);
   void add_nozzle_force();
 
   kinematics::Chain chain_;
   std::vector<machine::Link> links_;
-  machine::AxisArray axis_zero_{}, home_{};
-  std::array<SeriesPlay, kMaxAxes> play_;
+  kinematics::AxisVector axis_zero_{}, home_{};
+  PerAxis<SeriesPlay> play_;
   Pose X_WB_;
   double gravity_;
   Vec3 nozzle_force_T_;
 
-  std::array<Pose, kMaxAxes> pose_;  ///< X_OL
-  std::array<LinkState, kMaxAxes> state_;
+  PerAxis<Pose> pose_;  ///< X_OL
+  PerAxis<LinkState> state_;
 };
 
 ChainMechanics::ChainMechanics(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                const QuasistaticOptions& options)
     : chain_(as_built.chain),
-      links_(machine.chain->links),
+      links_(machine.chain().links),
       axis_zero_(as_built.axis_zero),
       X_WB_(machine.X_WB),
       gravity_(options.gravity ? kGravity : 0.0),
       nozzle_force_T_(options.nozzle_force_T) {
   pose_.fill(Pose::Identity());
-  const auto& home = machine.chain->kinematics.home;
+  const auto& home = machine.chain().kinematics.home;
   for (std::size_t i = 0; i < chain_.axes.size(); ++i) {
     home_[i] = home[i];
     // Grease at the machine's length scale, as in the MuJoCo plant.
-    const double scale = chain_.axes[i].angle ? machine.chain->kinematics.length_scale : 1.0;
+    const double scale = chain_.axes[i].angle ? machine.chain().kinematics.length_scale : 1.0;
     play_[i].damping = kPlayDamping * scale * scale;
-    play_[i].friction = machine.chain->friction[i];
+    play_[i].friction = machine.chain().friction[i];
     if (options.play) play_[i].inner = as_built.axis_play[i];
   }
 }
 
-machine::AxisArray ChainMechanics::home() const {
-  machine::AxisArray home = home_;
+kinematics::AxisVector ChainMechanics::home() const {
+  kinematics::AxisVector home = home_;
   for (std::size_t i = 0; i < chain_.axes.size(); ++i) home[i] += axis_zero_[i];
   return home;
 }
 
 SolveStatus ChainMechanics::place(const AxisVector& position) {
-  if (!position.allFinite()) return SolveStatus::bad_input;
+  if (!kinematics::column(position, chain_.size()).allFinite()) return SolveStatus::bad_input;
   kinematics::link_poses(chain_, std::span(position.data(), chain_.axes.size()), pose_);
   return SolveStatus::ok;
 }
@@ -106,10 +103,10 @@ Pose ChainMechanics::tool_pose() const {
 }
 
 void ChainMechanics::move_link(int axis, double velocity, double acceleration) {
-  const kinematics::ChainAxis& a = chain_.axes[index(axis)];
-  const machine::Link& link = links_[index(axis)];
-  const Pose& X = pose_[index(axis)];
-  LinkState& s = state_[index(axis)];
+  const kinematics::ChainAxis& a = chain_.axes[axis];
+  const machine::Link& link = links_[axis];
+  const Pose& X = pose_[axis];
+  LinkState& s = state_[axis];
   const Vec3 direction = X.linear() * a.direction;
   if (a.angle)
     s.screw << (X * a.point).cross(direction), direction;
@@ -118,8 +115,8 @@ void ChainMechanics::move_link(int axis, double velocity, double acceleration) {
   Vec6 carrier_velocity = Vec6::Zero(), carrier_acceleration = Vec6::Zero();
   carrier_acceleration(2) = gravity_;
   if (a.parent >= 0) {
-    carrier_velocity = state_[index(a.parent)].velocity;
-    carrier_acceleration = state_[index(a.parent)].acceleration;
+    carrier_velocity = state_[a.parent].velocity;
+    carrier_acceleration = state_[a.parent].acceleration;
   }
   s.velocity = carrier_velocity + velocity * s.screw;
   // The screw is carried along: its rate is the cross product of twists.
@@ -143,38 +140,38 @@ void ChainMechanics::add_nozzle_force() {
   const Vec3 force = X_OT.linear() * nozzle_force_T_;
   Vec6 wrench;
   wrench << force, X_OT.translation().cross(force);
-  if (chain_.tool_axis >= 0) state_[index(chain_.tool_axis)].wrench -= wrench;
-  if (chain_.work_axis >= 0) state_[index(chain_.work_axis)].wrench += wrench;
+  if (chain_.tool_axis >= 0) state_[chain_.tool_axis].wrench -= wrench;
+  if (chain_.work_axis >= 0) state_[chain_.work_axis].wrench += wrench;
 }
 
 SolveStatus ChainMechanics::load(const AxisVector& velocity, const AxisVector& acceleration, AxisLoad& load) {
-  for (int i = 0; i < chain_.size(); ++i) move_link(i, velocity(i), acceleration(i));
+  for (int i = 0; i < chain_.size(); ++i) move_link(i, velocity[i], acceleration[i]);
   add_nozzle_force();
   for (int i = chain_.size() - 1; i >= 0; --i) {
-    const LinkState& s = state_[index(i)];
-    load.drive(i) = s.screw.dot(s.wrench);
-    load.between(i) = 0;
-    const int parent = chain_.axes[index(i)].parent;
-    if (parent >= 0) state_[index(parent)].wrench += s.wrench;
+    const LinkState& s = state_[i];
+    load.drive[i] = s.screw.dot(s.wrench);
+    load.between[i] = 0;
+    const int parent = chain_.axes[i].parent;
+    if (parent >= 0) state_[parent].wrench += s.wrench;
   }
   return SolveStatus::ok;
 }
 
 void ChainMechanics::mass_matrix(AxisMatrix& mass) const {
-  std::array<Mat6, kMaxAxes> composite;
+  kinematics::PerAxis<Mat6> composite;
   for (int i = 0; i < chain_.size(); ++i) {
-    const LinkState& s = state_[index(i)];
-    const double m = links_[index(i)].mass;
+    const LinkState& s = state_[i];
+    const double m = links_[i].mass;
     const Mat3 P = cross(s.centre_O);
-    composite[index(i)] << m * Mat3::Identity(), -m * P, m * P, s.inertia_O - m * P * P;
+    composite[i] << m * Mat3::Identity(), -m * P, m * P, s.inertia_O - m * P * P;
   }
   mass.setZero(chain_.size(), chain_.size());
   for (int i = chain_.size() - 1; i >= 0; --i) {
-    const int parent = chain_.axes[index(i)].parent;
-    if (parent >= 0) composite[index(parent)] += composite[index(i)];
-    const Vec6 momentum = composite[index(i)] * state_[index(i)].screw;
-    for (int j = i; j >= 0; j = chain_.axes[index(j)].parent)
-      mass(i, j) = mass(j, i) = momentum.dot(state_[index(j)].screw);
+    const int parent = chain_.axes[i].parent;
+    if (parent >= 0) composite[parent] += composite[i];
+    const Vec6 momentum = composite[i] * state_[i].screw;
+    for (int j = i; j >= 0; j = chain_.axes[j].parent)
+      mass(i, j) = mass(j, i) = momentum.dot(state_[j].screw);
   }
 }
 

@@ -34,9 +34,9 @@ class HexapodMechanics final : public AxisMechanics {
 
   int axis_count() const override { return kStruts; }
   std::string axis_name(int axis) const override { return fmt::format("strut {}", axis + 1); }
-  double axis_zero(int axis) const override { return geometry_.length_offset[index(axis)]; }
+  double axis_zero(int axis) const override { return geometry_.length_offset[axis]; }
   SeriesPlay built_play(int axis) const override;
-  machine::AxisArray home() const override;
+  kinematics::AxisVector home() const override;
 
   void start_from_home() override {
     X_BT_ = X_BT_home_;
@@ -50,7 +50,6 @@ class HexapodMechanics final : public AxisMechanics {
   void mass_matrix(AxisMatrix& mass) const override;
 
  private:
-  static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
   SolveStatus factor();
   Vec6 residual(const AxisVector& position) const;
   Vec6 length_bias(const Twist& V) const;
@@ -60,8 +59,8 @@ class HexapodMechanics final : public AxisMechanics {
   kinematics::ScrewCoupling coupling_;  ///< a length's rate is taken for the drive's: 1 % of a strut's load
   machine::Masses masses_;
   SwingingBody motor_;
-  std::array<Vec3, kStruts> tangent_B_;
-  std::array<SeriesPlay, kStruts> play_;
+  PerStrut<Vec3> tangent_B_;
+  PerStrut<SeriesPlay> play_;
   Pose X_WB_, X_BT_home_;
   Vec3 gravity_B_, nozzle_force_T_;
 
@@ -69,42 +68,42 @@ class HexapodMechanics final : public AxisMechanics {
   double closure_ = 0;
   Eigen::PartialPivLU<Mat6> factors_;  ///< of J where it was loaded last: near enough for chord steps
   bool factored_ = false;
-  std::array<Vec3, kStruts> arm_B_;       ///< R a_i
-  std::array<Vec3, kStruts> strut_B_;     ///< from base joint to ball joint
-  std::array<double, kStruts> length_{};  ///< [m]
-  std::array<StrutSwing, kStruts> swing_;
+  PerStrut<Vec3> arm_B_;       ///< R a_i
+  PerStrut<Vec3> strut_B_;     ///< from base joint to ball joint
+  PerStrut<double> length_{};  ///< [m]
+  PerStrut<StrutSwing> swing_;
 };
 
 HexapodMechanics::HexapodMechanics(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                    const QuasistaticOptions& options)
     : geometry_(as_built.hexapod),
       coupling_(machine.screw_coupling()),
-      masses_(machine.hexapod.masses),
+      masses_(machine.hexapod().masses),
       X_WB_(machine.X_WB),
       X_BT_home_(machine.X_BT_home),
       gravity_B_(machine.X_WB.linear().transpose() * Vec3(0, 0, options.gravity ? -kGravity : 0.0)),
       nozzle_force_T_(options.nozzle_force_T),
       X_BT_(machine.X_BT_home) {
   motor_ = {masses_.motor, cube_moment(masses_.motor)};
-  for (std::size_t i = 0; i < kStruts; ++i) {
-    tangent_B_[i] = Vec3::UnitZ().cross(machine.hexapod.joints.radial_axis[i]).normalized();
+  for (int i = 0; i < kStruts; ++i) {
+    tangent_B_[i] = Vec3::UnitZ().cross(machine.hexapod().joints.radial_axis[i]).normalized();
     // The nut slides along the screw, the ball along the line between the joints: told in strut length, by
     // d(length)/d|d| = |d| / length, which changes by a thousandth over the stroke.
     const Vec3 d = X_BT_home_ * geometry_.platform_joint[i] - geometry_.base_joint[i];
     const double ratio = d.norm() / std::sqrt(d.squaredNorm() - std::pow(geometry_.deviation, 2));
-    play_[i].friction = machine.hexapod.play.friction;
+    play_[i].friction = machine.hexapod().play.friction;
     play_[i].damping = kPlayDamping;
     if (options.play) play_[i].inner = as_built.nut_play[i];
     if (options.play) play_[i].outer = as_built.ball_play[i] * ratio;
   }
 }
 
-SeriesPlay HexapodMechanics::built_play(int axis) const { return play_[index(axis)]; }
+SeriesPlay HexapodMechanics::built_play(int axis) const { return play_[axis]; }
 
-machine::AxisArray HexapodMechanics::home() const {
+kinematics::AxisVector HexapodMechanics::home() const {
   kinematics::StrutLengths lengths{};
   kinematics::inverse(geometry_, coupling_, X_BT_home_, lengths);
-  machine::AxisArray home{};
+  kinematics::AxisVector home{};
   std::copy(lengths.begin(), lengths.end(), home.begin());
   return home;
 }
@@ -113,8 +112,8 @@ Vec6 HexapodMechanics::residual(const AxisVector& position) const {
   Vec6 r;
   const double dev2 = geometry_.deviation * geometry_.deviation;
   for (int i = 0; i < kStruts; ++i) {
-    const Vec3 d = X_BT_ * geometry_.platform_joint[index(i)] - geometry_.base_joint[index(i)];
-    r(i) = std::sqrt(d.squaredNorm() - dev2) - position(i);
+    const Vec3 d = X_BT_ * geometry_.platform_joint[i] - geometry_.base_joint[i];
+    r(i) = std::sqrt(d.squaredNorm() - dev2) - position[i];
     if (coupling_.lead == 0) continue;
     double angle = 0;
     kinematics::passive_rotation(geometry_, coupling_, X_BT_, i, angle);
@@ -126,13 +125,12 @@ Vec6 HexapodMechanics::residual(const AxisVector& position) const {
 SolveStatus HexapodMechanics::factor() {
   Mat6 J;
   for (int i = 0; i < kStruts; ++i) {
-    const std::size_t s = index(i);
-    arm_B_[s] = X_BT_.linear() * geometry_.platform_joint[s];
-    strut_B_[s] = X_BT_.translation() + arm_B_[s] - geometry_.base_joint[s];
-    length_[s] = std::sqrt(strut_B_[s].squaredNorm() - geometry_.deviation * geometry_.deviation);
-    const Vec3 n = strut_B_[s] / length_[s];
+    arm_B_[i] = X_BT_.linear() * geometry_.platform_joint[i];
+    strut_B_[i] = X_BT_.translation() + arm_B_[i] - geometry_.base_joint[i];
+    length_[i] = std::sqrt(strut_B_[i].squaredNorm() - geometry_.deviation * geometry_.deviation);
+    const Vec3 n = strut_B_[i] / length_[i];
     J.block<1, 3>(i, 0) = n.transpose();
-    J.block<1, 3>(i, 3) = arm_B_[s].cross(n).transpose();
+    J.block<1, 3>(i, 3) = arm_B_[i].cross(n).transpose();
   }
   factors_.compute(J);
   const Vec6 pivots = factors_.matrixLU().diagonal().cwiseAbs();
@@ -157,7 +155,7 @@ SolveStatus HexapodMechanics::place(const AxisVector& position) {
     }
   }
   kinematics::StrutLengths lengths{};
-  for (int i = 0; i < kStruts; ++i) lengths[index(i)] = position(i);
+  for (int i = 0; i < kStruts; ++i) lengths[i] = position[i];
   kinematics::ForwardOptions options;
   options.tolerance = kTolerance;
   const auto found = kinematics::forward(geometry_, coupling_, lengths, start, options);
@@ -172,11 +170,10 @@ Vec6 HexapodMechanics::length_bias(const Twist& V) const {
   const Vec3 omega = V.tail<3>();
   Vec6 bias;
   for (int i = 0; i < kStruts; ++i) {
-    const std::size_t s = index(i);
-    const Vec3 turn = omega.cross(arm_B_[s]);
+    const Vec3 turn = omega.cross(arm_B_[i]);
     const Vec3 v = V.head<3>() + turn;
-    const double rate = strut_B_[s].dot(v) / length_[s];
-    bias(i) = (v.squaredNorm() + strut_B_[s].dot(omega.cross(turn)) - rate * rate) / length_[s];
+    const double rate = strut_B_[i].dot(v) / length_[i];
+    bias(i) = (v.squaredNorm() + strut_B_[i].dot(omega.cross(turn)) - rate * rate) / length_[i];
   }
   return bias;
 }
@@ -199,25 +196,24 @@ SolveStatus HexapodMechanics::load(const AxisVector& velocity, const AxisVector&
                                    AxisLoad& load) {
   const SolveStatus status = factor();
   if (status != SolveStatus::ok) return status;
-  const Twist V = factors_.solve(Vec6(velocity));
-  const Twist A = factors_.solve(Vec6(acceleration - length_bias(V)));
+  const Twist V = factors_.solve(Vec6(kinematics::column(velocity, kStruts)));
+  const Twist A = factors_.solve(Vec6(kinematics::column(acceleration, kStruts) - length_bias(V)));
   const Vec3 omega = V.tail<3>();
   Vec6 Q = platform_wrench(V, A);
   for (int i = 0; i < kStruts; ++i) {
-    const std::size_t s = index(i);
-    StrutSwing& swing = swing_[s];
-    if (!find_swing(strut_B_[s], tangent_B_[s], geometry_.deviation, swing)) return SolveStatus::singular;
-    const Vec3& arm = arm_B_[s];
+    StrutSwing& swing = swing_[i];
+    if (!find_swing(strut_B_[i], tangent_B_[i], geometry_.deviation, swing)) return SolveStatus::singular;
+    const Vec3& arm = arm_B_[i];
     const Vec3 turn = omega.cross(arm);
     const Vec3 v = V.head<3>() + turn;
     const Vec3 a = A.head<3>() + A.tail<3>().cross(arm) + omega.cross(turn);
     const Vec3 force = masses_.nut * (gravity_B_ - a) + swing_force(swing, motor_, v, a, gravity_B_);
     Q.head<3>() += force;
     Q.tail<3>() += arm.cross(force);
-    const double nut = (play_[s].outer > 0 ? 1 - kRodEndShare : 1.0) * masses_.nut;
-    load.between(i) = nut * (a - gravity_B_).dot(swing.screw_B());
+    const double nut = (play_[i].outer > 0 ? 1 - kRodEndShare : 1.0) * masses_.nut;
+    load.between[i] = nut * (a - gravity_B_).dot(swing.screw_B());
   }
-  load.drive = factors_.transpose().solve(-Q);
+  kinematics::column(load.drive, kStruts) = factors_.transpose().solve(-Q);
   return SolveStatus::ok;
 }
 
@@ -238,7 +234,7 @@ void HexapodMechanics::mass_matrix(AxisMatrix& mass) const {
   const Mat3& R = X_BT_.linear();
   add(masses_.platform * Mat3::Identity(), R * masses_.platform_centre_T);
   M.bottomRightCorner<3, 3>() += R * masses_.platform_inertia.asDiagonal() * R.transpose();
-  for (std::size_t i = 0; i < kStruts; ++i)
+  for (int i = 0; i < kStruts; ++i)
     add(masses_.nut * Mat3::Identity() + swing_inertia(swing_[i], motor_), arm_B_[i]);
   const Mat6 inverse = factors_.inverse();
   mass = inverse.transpose() * M * inverse;

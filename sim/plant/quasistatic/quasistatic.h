@@ -15,9 +15,9 @@ constexpr double kQuasistaticBound = 1.0;
 
 /// One point of a path, motor side.
 struct PathSample {
-  machine::AxisArray position{};      ///< [m or rad], drive displacement
-  machine::AxisArray velocity{};      ///< [m/s or rad/s]
-  machine::AxisArray acceleration{};  ///< [m/s^2 or rad/s^2]
+  kinematics::AxisVector position{};      ///< [m or rad], drive displacement
+  kinematics::AxisVector velocity{};      ///< [m/s or rad/s]
+  kinematics::AxisVector acceleration{};  ///< [m/s^2 or rad/s^2]
 };
 
 class QuasistaticMachine;
@@ -41,9 +41,9 @@ class QuasistaticSampler {
   /// As many of `path` as are ok, in order.
   std::size_t sample(std::span<const PathSample> path, std::span<Pose> X_WT);
   /// [N] or [N m], as Plant::drive_force, of the last sample.
-  machine::AxisArray drive_force() const;
+  kinematics::AxisVector drive_force() const;
   /// [m] or [rad]: where each axis is within its play, positive ahead of its drive.
-  machine::AxisArray gap() const;
+  kinematics::AxisVector gap() const;
   /// Puts an axis somewhere within its play, clamped: where a study says that it came from. It stays there
   /// while its load is below friction.
   void place_gap(int axis, double gap);

@@ -13,41 +13,36 @@ constexpr int kRounds = 4;
 
 QuasistaticMachine::QuasistaticMachine(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                        const QuasistaticOptions& options)
-    : mechanics_(machine.chain ? make_chain_mechanics(machine, as_built, options)
-                               : make_hexapod_mechanics(machine, as_built, options)),
+    : mechanics_(machine.is_chain() ? make_chain_mechanics(machine, as_built, options)
+                                    : make_hexapod_mechanics(machine, as_built, options)),
       drives_(machine.drives),
       plays_(mechanics_->axis_count()),
       behind_(plays_),
       inertia_(options.inertia),
-      zero_(axis_count()),
-      growth_(AxisVector::Zero(axis_count())),
-      compliance_(AxisVector::Zero(axis_count())),
-      force_(AxisVector::Zero(axis_count())),
-      load_{force_, force_},
       mass_(axis_count(), axis_count()) {
-  for (int i = 0; i < axis_count(); ++i) zero_(i) = mechanics_->axis_zero(i);
+  for (int i = 0; i < axis_count(); ++i) zero_[i] = mechanics_->axis_zero(i);
   repair();
 }
 
 void QuasistaticMachine::start_from_home() {
   mechanics_->start_from_home();
   plays_.centre();
-  force_.setZero();
+  force_ = {};
 }
 
 void QuasistaticMachine::repair() {
   for (int i = 0; i < axis_count(); ++i) {
-    const double stiffness = drives_[static_cast<std::size_t>(i)].stiffness;
-    compliance_(i) = stiffness > 0 ? 1 / stiffness : 0;
-    growth_(i) = 0;
+    const double stiffness = drives_[i].stiffness;
+    compliance_[i] = stiffness > 0 ? 1 / stiffness : 0;
+    growth_[i] = 0;
     plays_.set_play(i, mechanics_->built_play(i));
   }
   behind_ = plays_;
 }
 
-machine::AxisArray QuasistaticMachine::home_displacement() const {
-  machine::AxisArray home = mechanics_->home();
-  for (int i = 0; i < axis_count(); ++i) home[static_cast<std::size_t>(i)] -= zero_(i);
+kinematics::AxisVector QuasistaticMachine::home_displacement() const {
+  kinematics::AxisVector home = mechanics_->home();
+  for (int i = 0; i < axis_count(); ++i) home[i] -= zero_[i];
   return home;
 }
 
@@ -58,19 +53,27 @@ void QuasistaticMachine::loosen(int axis, double play_added) {
   behind_.set_play(axis, play);
 }
 
+AxisVector QuasistaticMachine::deflection() const {
+  AxisVector yielded;
+  elements(yielded) = elements(compliance_) * elements(force_);
+  return yielded;
+}
+
 SolveStatus QuasistaticMachine::place(const AxisVector& position) {
-  const AxisVector truth = position + zero_ + growth_ + plays_.gap() - deflection();
+  AxisVector truth;
+  elements(truth) = elements(position) + elements(zero_) + elements(growth_) + elements(plays_.gap()) -
+                    elements(deflection());
   return mechanics_->place(truth);
 }
 
 SolveStatus QuasistaticMachine::load(const AxisVector& velocity, const AxisVector& acceleration) {
   if (inertia_) return mechanics_->load(velocity, acceleration, load_);
-  const AxisVector still = AxisVector::Zero(axis_count());
+  constexpr AxisVector still{};
   return mechanics_->load(still, still, load_);
 }
 
 /// True when a play has moved.
-bool QuasistaticMachine::let_plays_rest(std::array<bool, kMaxPlays>& floating, const AxisVector& position,
+bool QuasistaticMachine::let_plays_rest(kinematics::PerAxis<bool>& floating, const AxisVector& position,
                                         const AxisVector& velocity, const AxisVector& acceleration,
                                         SolveStatus& status) {
   const AxisLoad first = load_;
@@ -78,7 +81,7 @@ bool QuasistaticMachine::let_plays_rest(std::array<bool, kMaxPlays>& floating, c
   bool moved = false;
   for (int i = 0; i < axis_count(); ++i) {
     const double target = plays_.resting_gap(i, first);
-    if (floating[static_cast<std::size_t>(i)] || target == from(i)) continue;
+    if (floating[i] || target == from[i]) continue;
     plays_.place(i, target);
     moved = true;
   }
@@ -89,18 +92,18 @@ bool QuasistaticMachine::let_plays_rest(std::array<bool, kMaxPlays>& floating, c
   // The pose that a play makes changes its own load. Where that pushes it back again, it floats between, in
   // the one place where it carries nothing.
   for (int i = 0; i < axis_count(); ++i) {
-    const double to = plays_.gap()(i);
-    const double before = first.drive(i) - first.between(i), after = load_.drive(i) - load_.between(i);
-    if (to == from(i) || before * after >= 0 || plays_.resting_gap(i, load_) == to) continue;
-    plays_.place(i, from(i) + (to - from(i)) * before / (before - after));
-    floating[static_cast<std::size_t>(i)] = true;
+    const double to = plays_.gap()[i];
+    const double before = first.drive[i] - first.between[i], after = load_.drive[i] - load_.between[i];
+    if (to == from[i] || before * after >= 0 || plays_.resting_gap(i, load_) == to) continue;
+    plays_.place(i, from[i] + (to - from[i]) * before / (before - after));
+    floating[i] = true;
   }
   return true;
 }
 
 SolveStatus QuasistaticMachine::settle(const AxisVector& position, const AxisVector& velocity,
                                        const AxisVector& acceleration) {
-  std::array<bool, kMaxPlays> floating{};
+  kinematics::PerAxis<bool> floating{};
   for (int round = 0; round < kRounds; ++round) {
     SolveStatus status = place(position);
     if (status == SolveStatus::ok) status = load(velocity, acceleration);
@@ -111,7 +114,7 @@ SolveStatus QuasistaticMachine::settle(const AxisVector& position, const AxisVec
     if (!moved) break;
   }
   behind_ = plays_;
-  return compliance_.isZero() ? SolveStatus::ok : place(position);
+  return compliance_ == AxisVector{} ? SolveStatus::ok : place(position);
 }
 
 SolveStatus QuasistaticMachine::advance(const Step& step) {

@@ -11,7 +11,6 @@ namespace understudy::sim {
 namespace {
 
 using kinematics::SolveStatus;
-using machine::AxisArray;
 
 // A velocity that changes faster than this, in accelerations of the drive, is a jump: it is over already.
 constexpr double kJump = 1.5;
@@ -21,19 +20,9 @@ void check_input(const machine::MachineDescription& machine, const AsBuilt& as_b
   if (!(options.timestep > 0 && std::isfinite(options.timestep)))
     throw InputError(fmt::format("timestep is {} s, not above 0", options.timestep));
   if (!options.nozzle_force_T.allFinite()) throw InputError("the nozzle force is not finite");
-  if (machine.chain && machine.chain->kinematics.chain.size() != as_built.chain.size())
+  if (machine.is_chain() && machine.chain().kinematics.chain.size() != as_built.chain.size())
     throw InputError(fmt::format("the as-built machine has {} axes, its description {}",
-                                 as_built.chain.size(), machine.chain->kinematics.chain.size()));
-}
-
-AxisVector axis_vector(const AxisArray& values, int count) {
-  return Eigen::Map<const AxisVector>(values.data(), count);
-}
-
-AxisArray axis_array(const AxisVector& values) {
-  AxisArray array{};
-  for (Eigen::Index i = 0; i < values.size(); ++i) array[static_cast<std::size_t>(i)] = values(i);
-  return array;
+                                 as_built.chain.size(), machine.chain().kinematics.chain.size()));
 }
 
 class QuasistaticPlant final : public Plant {
@@ -43,9 +32,7 @@ class QuasistaticPlant final : public Plant {
       : drives_(machine.drives),
         timestep_(options.timestep),
         machine_(machine, as_built, options),
-        still_(AxisVector::Zero(machine_.axis_count())),
-        reached_(still_),
-        motion_{still_, still_, still_, still_, options.timestep} {
+        motion_{.duration = options.timestep} {
     reset(machine_.home_displacement());
   }
 
@@ -53,25 +40,24 @@ class QuasistaticPlant final : public Plant {
   double timestep() const override { return timestep_; }
   double time() const override { return static_cast<double>(steps_) * timestep_; }
 
-  void reset(const AxisArray& displacement) override;
+  void reset(const AxisVector& displacement) override;
   void step(const DriveCommand& command) override;
   void set_condition(int axis, const AxisCondition& condition) override;
 
   Pose tool_pose() const override { return machine_.tool_pose(); }
-  AxisArray displacement() const override { return axis_array(reached_ - machine_.deflection()); }
-  AxisArray drive_force() const override { return axis_array(machine_.drive_force()); }
+  AxisVector displacement() const override;
+  AxisVector drive_force() const override { return machine_.drive_force(); }
   double closure_error() const override { return machine_.mechanics().closure_error(); }
 
  private:
   void demand(SolveStatus status) const;
   void follow(const DriveCommand& command);
 
-  std::array<machine::Drive, kinematics::kMaxAxes> drives_;
+  kinematics::PerAxis<machine::Drive> drives_;
   double timestep_;
   QuasistaticMachine machine_;
-  std::array<bool, kinematics::kMaxAxes> held_{};
-  const AxisVector still_;  ///< zeros
-  AxisVector reached_;      ///< by the drives, deflection not counted
+  kinematics::PerAxis<bool> held_{};
+  AxisVector reached_{};  ///< by the drives, deflection not counted
   QuasistaticMachine::Step motion_;
   long steps_ = 0;
   bool failed_ = true;  ///< the state is no result
@@ -81,39 +67,44 @@ void QuasistaticPlant::demand(SolveStatus status) const {
   if (status == SolveStatus::ok) return;
   std::string places;
   for (int i = 0; i < machine_.axis_count(); ++i)
-    places += fmt::format(" {:.3f}", 1e3 * (reached_(i) + machine_.mechanics().axis_zero(i)));
+    places += fmt::format(" {:.3f}", 1e3 * (reached_[i] + machine_.mechanics().axis_zero(i)));
   throw MachineError(fmt::format(
       "engine failure at {:.4f} s: the loops cannot be closed for axis positions{} (mm or mrad): {}", time(),
       places, kinematics::to_string(status)));
 }
 
-void QuasistaticPlant::reset(const AxisArray& displacement) {
+void QuasistaticPlant::reset(const AxisVector& displacement) {
   failed_ = true;
   steps_ = 0;
   held_.fill(false);
-  motion_ = {still_, still_, still_, still_, timestep_};
-  reached_ = axis_vector(displacement, machine_.axis_count());
+  motion_ = {.duration = timestep_};
+  reached_ = displacement;
   machine_.repair();
   machine_.start_from_home();
-  demand(machine_.settle(reached_, still_, still_));
+  demand(machine_.settle(reached_, {}, {}));
   failed_ = false;
+}
+
+AxisVector QuasistaticPlant::displacement() const {
+  AxisVector displacement;
+  elements(displacement) = elements(reached_) - elements(machine_.deflection());
+  return displacement;
 }
 
 void QuasistaticPlant::follow(const DriveCommand& command) {
   for (int i = 0; i < machine_.axis_count(); ++i) {
-    const auto s = static_cast<std::size_t>(i);
-    if (!std::isfinite(command.position[s] + command.velocity[s]))
+    if (!std::isfinite(command.position[i] + command.velocity[i]))
       throw MachineError(
           fmt::format("drive {} is commanded to a position that is not finite at {:.4f} s", i + 1, time()));
-    motion_.acceleration(i) = motion_.ahead(i) = 0;
-    if (held_[s]) continue;
-    const double acceleration = (command.velocity[s] - motion_.velocity(i)) / timestep_;
+    motion_.acceleration[i] = motion_.ahead[i] = 0;
+    if (held_[i]) continue;
+    const double acceleration = (command.velocity[i] - motion_.velocity[i]) / timestep_;
     const bool jump =
-        drives_[s].acceleration_max > 0 && std::abs(acceleration) > kJump * drives_[s].acceleration_max;
-    motion_.velocity(i) = command.velocity[s];
-    motion_.acceleration(i) = acceleration;
-    motion_.ahead(i) = jump ? 0 : acceleration;
-    reached_(i) = command.position[s] + timestep_ * (command.velocity[s] + timestep_ / 2 * motion_.ahead(i));
+        drives_[i].acceleration_max > 0 && std::abs(acceleration) > kJump * drives_[i].acceleration_max;
+    motion_.velocity[i] = command.velocity[i];
+    motion_.acceleration[i] = acceleration;
+    motion_.ahead[i] = jump ? 0 : acceleration;
+    reached_[i] = command.position[i] + timestep_ * (command.velocity[i] + timestep_ / 2 * motion_.ahead[i]);
   }
   motion_.end = reached_;
 }
@@ -130,9 +121,8 @@ void QuasistaticPlant::step(const DriveCommand& command) {
 void QuasistaticPlant::set_condition(int axis, const AxisCondition& condition) {
   if (axis < 0 || axis >= machine_.axis_count())
     throw InputError(fmt::format("axis {} is not one of {}", axis + 1, machine_.axis_count()));
-  const auto s = static_cast<std::size_t>(axis);
   const std::string name = machine_.mechanics().axis_name(axis);
-  if (condition.released && !drives_[s].self_locking)
+  if (condition.released && !drives_[axis].self_locking)
     throw MachineError(
         fmt::format("{} is released and not self-locking: quasistatic cannot play an axis that falls", name));
   const double built = machine_.mechanics().built_play(axis).total();
@@ -142,12 +132,12 @@ void QuasistaticPlant::set_condition(int axis, const AxisCondition& condition) {
   if (!std::isfinite(condition.growth)) throw InputError(fmt::format("{}: growth is not finite", name));
   machine_.loosen(axis, condition.play_added);
   machine_.grow(axis, condition.growth);
-  if (condition.released && !held_[s]) {
-    reached_(axis) -= machine_.deflection()(axis);
+  if (condition.released && !held_[axis]) {
+    reached_[axis] -= machine_.deflection()[axis];
     machine_.stiffen(axis);
-    motion_.velocity(axis) = 0;
+    motion_.velocity[axis] = 0;
   }
-  held_[s] = condition.released;
+  held_[axis] = condition.released;
 }
 
 }  // namespace
@@ -171,20 +161,16 @@ QuasistaticSampler& QuasistaticSampler::operator=(QuasistaticSampler&&) noexcept
 
 void QuasistaticSampler::restart() {
   machine_->start_from_home();
-  const AxisVector still = AxisVector::Zero(machine_->axis_count());
-  const SolveStatus status =
-      machine_->settle(axis_vector(machine_->home_displacement(), machine_->axis_count()), still, still);
+  const SolveStatus status = machine_->settle(machine_->home_displacement(), {}, {});
   if (status != SolveStatus::ok)
     throw MachineError(
         fmt::format("the machine cannot be assembled at home: {}", kinematics::to_string(status)));
 }
 
 SolveStatus QuasistaticSampler::sample(const PathSample& at, Pose& X_WT) {
-  const int n = machine_->axis_count();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i)
+  for (int i = 0; i < machine_->axis_count(); ++i)
     if (!std::isfinite(at.position[i] + at.velocity[i] + at.acceleration[i])) return SolveStatus::bad_input;
-  const SolveStatus status = machine_->settle(axis_vector(at.position, n), axis_vector(at.velocity, n),
-                                              axis_vector(at.acceleration, n));
+  const SolveStatus status = machine_->settle(at.position, at.velocity, at.acceleration);
   if (status == SolveStatus::ok)
     X_WT = machine_->tool_pose();
   else
@@ -199,8 +185,8 @@ std::size_t QuasistaticSampler::sample(std::span<const PathSample> path, std::sp
   return count;
 }
 
-AxisArray QuasistaticSampler::drive_force() const { return axis_array(machine_->drive_force()); }
-AxisArray QuasistaticSampler::gap() const { return axis_array(machine_->plays().gap()); }
+AxisVector QuasistaticSampler::drive_force() const { return machine_->drive_force(); }
+AxisVector QuasistaticSampler::gap() const { return machine_->plays().gap(); }
 void QuasistaticSampler::place_gap(int axis, double gap) { machine_->place_gap(axis, gap); }
 
 }  // namespace understudy::sim

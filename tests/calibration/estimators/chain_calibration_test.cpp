@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-kinematics::ChainDescription arm() { return machine::load_machine("arm").chain->kinematics; }
+kinematics::ChainDescription arm() { return machine::load_machine("arm").chain().kinematics; }
 
 std::vector<double> readings(const kinematics::ChainDescription& arm, Random& random) {
   std::vector<double> q;

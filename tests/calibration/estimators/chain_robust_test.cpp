@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 
 const kinematics::Chain& chain() {
-  static const kinematics::Chain arm = machine::load_machine("arm").chain->kinematics.chain;
+  static const kinematics::Chain arm = machine::load_machine("arm").chain().kinematics.chain;
   return arm;
 }
 

@@ -82,7 +82,7 @@ std::vector<double> open_loop_errors(const machine::MachineDescription& known, s
     } else {
       kinematics::StrutLengths lengths{};
       for (std::size_t i = 0; i < 6; ++i)
-        lengths[i] = axes[i] - known.hexapod.geometry.length_offset[i] + built.hexapod.length_offset[i];
+        lengths[i] = axes[i] - known.hexapod().geometry.length_offset[i] + built.hexapod.length_offset[i];
       tip = kinematics::forward(built.hexapod, lengths, X).X_BT.translation();
     }
     errors.push_back((tip - X.translation()).norm());
@@ -179,7 +179,7 @@ TEST_F(Calibrate, AnArmLearnsItsAxesAndTool) {
 }
 
 TEST_F(Calibrate, ZerosMovedIntoTheAxesLeaveThePosesWhereTheyWere) {
-  calibration::ChainParameters machine{machine::load_machine("arm").chain->kinematics.chain, {}};
+  calibration::ChainParameters machine{machine::load_machine("arm").chain().kinematics.chain, {}};
   machine.zero = {0.02, -0.03, 0.05, 0.01, -0.02, 0.04};
   const kinematics::Chain chain = zeros_absorbed(machine);
   Random random(1, "zeros");

@@ -27,7 +27,7 @@ const machine::MachineDescription& arm() {
   return machine;
 }
 
-ChainParameters nominal() { return {arm().chain->kinematics.chain, {}}; }
+ChainParameters nominal() { return {arm().chain().kinematics.chain, {}}; }
 
 ChainParameters built() {
   const auto as_built = sim::make_as_built(arm(), "manufactured", 3);

@@ -122,7 +122,7 @@ TEST(Plugin, BrokenPipesAreNoSignalToUs) {
 calibration::Problem problem() {
   const auto machine = machine::load_machine("hexapod");
   const auto mechanism = machine.make_mechanism();
-  calibration::Problem p{{machine.hexapod.geometry, {}}, {}};
+  calibration::Problem p{{machine.hexapod().geometry, {}}, {}};
   Random random(1, "plugin test");
   calibration::HexapodParameters truth = p.nominal;
   truth.geometry = calibration::perturbed(p.nominal.geometry, 0.5e-3, random);

@@ -50,7 +50,7 @@ class GapRig {
   /// Added to the commanded tip when the truth is asked for; for errors that come and go.
   void set_play(std::function<Vec3(const Pose& X_WT_commanded)> play) { play_ = std::move(play); }
 
-  Pose commanded(const machine::AxisArray& axes) const {
+  Pose commanded(const kinematics::AxisVector& axes) const {
     Pose X_BT;
     const auto solved =
         mechanism_->forward(std::span<const double>(axes.data(), 6), machine_.X_BT_home, X_BT);

@@ -73,7 +73,7 @@ TEST(ConstraintCheck, StrutTooLongIsFoundAtItsLineWithValueLimitAndTime) {
     EXPECT_EQ(found[k].line, 12);
     EXPECT_EQ(found[k].last_line, 13);
     EXPECT_NEAR(found[k].violation.value, strut_below_home(0.056), 1e-9);  // the worst of the line is its end
-    EXPECT_EQ(found[k].violation.limit, hexapod.machine.hexapod.limits.strut_max);
+    EXPECT_EQ(found[k].violation.limit, hexapod.machine.hexapod().limits.strut_max);
     EXPECT_NEAR(found[k].time, 0.056 / 0.02 + 0.02, 3e-3);  // d/v and two ramps, to cycles
     EXPECT_EQ(found[k].reduced_feed, 0);
     parts.insert(found[k].violation.part);
@@ -106,7 +106,7 @@ TEST(ConstraintCheck, JointAngleIsFound) {
 
 TEST(ConstraintCheck, ScrewsTooNearAreFound) {
   HexapodForTest hexapod;
-  hexapod.machine.hexapod.limits.screw_distance_min = 0.018;
+  hexapod.machine.hexapod().limits.screw_distance_min = 0.018;
   const auto report =
       check_constraints(program_of({hexapod.print_to(hexapod.at({1e-4, 0, 0}), 0.01, 4)}), hexapod.machine);
   std::set<std::string> parts;
@@ -123,7 +123,7 @@ TEST(ConstraintCheck, ScrewsTooNearAreFound) {
 
 TEST(ConstraintCheck, BadConditioningIsFound) {
   HexapodForTest hexapod;
-  hexapod.machine.hexapod.limits.condition_max = 6.0;  // home has 6.1, docs/reference.md#machine-g4
+  hexapod.machine.hexapod().limits.condition_max = 6.0;  // home has 6.1, docs/reference.md#machine-g4
   const auto report =
       check_constraints(program_of({hexapod.print_to(hexapod.at({1e-4, 0, 0}), 0.01, 5)}), hexapod.machine);
   const auto found = of_kind(report, LimitKind::singularity);
@@ -136,7 +136,7 @@ TEST(ConstraintCheck, BadConditioningIsFound) {
 // See the planner's test of the same turn: half-way three struts are 187.45 mm.
 TEST(ConstraintCheck, PosesBetweenProgrammedPointsAreChecked) {
   HexapodForTest hexapod;
-  hexapod.machine.hexapod.limits = limits_of_turning(0.188);
+  hexapod.machine.hexapod().limits = limits_of_turning(0.188);
   const auto report = check_constraints(
       program_of({hexapod.print_to(hexapod.at(Vec3::Zero(), {0, 0, from_deg(52)}), 0.01, 9)}),
       hexapod.machine);
@@ -175,7 +175,7 @@ TEST(ConstraintCheck, FeedThatAnAxisCutsBelowHalfIsAWarningWithTheSpeedItNeeds) 
 TEST(ConstraintCheck, PathThroughNoSolutionGivesFindingsAndGoesOn) {
   const HexapodForTest hexapod;
   // Ball joint 3 at base joint 3: nearer than dev, no strut length exists.
-  const auto& g = hexapod.machine.hexapod.geometry;
+  const auto& g = hexapod.machine.hexapod().geometry;
   const Pose X_WT =
       hexapod.machine.X_WB * make_pose(Mat3(Mat3::Identity()), g.base_joint[2] - g.platform_joint[2]);
   ConstraintReport report;
@@ -195,7 +195,7 @@ TEST(ConstraintCheck, PathThroughNoSolutionGivesFindingsAndGoesOn) {
   EXPECT_TRUE(names_strut_3);
   const auto lengths = of_kind(report, LimitKind::strut_length);
   // Checked on after the plan's end: line 4 is too low, in a run of lines of which one may be worse.
-  const double least = strut_below_home(0.055) - hexapod.machine.hexapod.limits.strut_max;
+  const double least = strut_below_home(0.055) - hexapod.machine.hexapod().limits.strut_max;
   EXPECT_TRUE(std::any_of(lengths.begin(), lengths.end(), [&](const auto& f) {
     return f.last_line == 4 && std::abs(f.violation.value - f.violation.limit) > least - 1e-9;
   }));

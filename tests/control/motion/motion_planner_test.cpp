@@ -62,7 +62,7 @@ TEST(MotionPlanner, StrutLimitsGiveTheTimeOfTheTrapezoidInStrutLength) {
   hexapod.limits.axis_acceleration.fill(0.3);
   MotionPlanner planner = hexapod.planner();
   const Pose X_WT = hexapod.at({0, 0, -0.03});
-  machine::AxisArray from{}, to{};
+  kinematics::AxisVector from{}, to{};
   const Pose X_BW = hexapod.machine.X_WB.inverse();
   ASSERT_EQ(hexapod.mechanism->inverse(X_BW * hexapod.X_WT_home, {}, from), kinematics::SolveStatus::ok);
   ASSERT_EQ(hexapod.mechanism->inverse(X_BW * X_WT, {}, to), kinematics::SolveStatus::ok);
@@ -181,7 +181,7 @@ TEST(MotionPlanner, PathGoesThroughEveryProgrammedPose) {
     ASSERT_LE((p.X_WT.matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-13);
     ASSERT_EQ(p.setpoint.line, steps[step].line);
     ASSERT_EQ(p.setpoint.time, 2.5 + static_cast<double>(n + 1) * hexapod.limits.cycle_time);
-    machine::AxisArray axes{};
+    kinematics::AxisVector axes{};
     hexapod.mechanism->inverse(hexapod.machine.X_WB.inverse() * p.X_WT, {}, axes);
     ASSERT_EQ(axes, p.setpoint.position);
   }

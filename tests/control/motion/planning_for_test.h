@@ -37,7 +37,8 @@ struct HexapodForTest {
   }
 
   std::unique_ptr<kinematics::Mechanism> with_limits(const kinematics::HexapodLimits& l) const {
-    return kinematics::make_hexapod(machine.hexapod.geometry, machine.hexapod.joints, l, machine.X_BT_home);
+    return kinematics::make_hexapod(machine.hexapod().geometry, machine.hexapod().joints, l,
+                                    machine.X_BT_home);
   }
 
   toolpath::Step step(toolpath::StepKind kind, const Pose& X_WT, double feed, int line) const {

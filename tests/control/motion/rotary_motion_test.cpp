@@ -27,7 +27,7 @@ const FiveAxisForTest& printer() {
 // The slides by hand: back through both turns, about their axes (docs/reference.md#five-axis-printer with
 // pivots).
 Vec3 slides(const Vec3& p_WT, double b, double c) {
-  const auto& g = printer().machine.chain->kinematics.parameters;
+  const auto& g = printer().machine.chain().kinematics.parameters;
   const Vec3 b_axis(g[0], 0, g[1]), c_axis(g[2], g[3], 0);
   const Vec3 turned = c_axis + Eigen::AngleAxisd(-c, Vec3::UnitZ()) * (p_WT - c_axis);
   return b_axis + Eigen::AngleAxisd(-b, Vec3::UnitY()) * (turned - b_axis);

@@ -14,7 +14,7 @@ namespace understudy::kinematics {
 namespace {
 
 using Eigen::Matrix4d;
-using Axes = std::array<double, kMaxAxes>;
+using Axes = AxisVector;
 using Rates = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 Vec3 random_vector(Random& random, double size) {

@@ -174,7 +174,7 @@ TEST(HexapodKinematics, NothingOfTheControlCycleAllocates) {
     inverse(g, X, lengths);
     jacobian(g, X, J);
     sink += forward(g, lengths, Pose::Identity()).residual + J(0, 0) + condition_number(g, X);
-    std::array<double, kMaxAxes> axes{};
+    AxisVector axes{};
     Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxAxes, 6> rates(kStruts, 6);
     Pose X_found = Pose::Identity();
     mechanism->inverse(X, axes, axes);

@@ -122,7 +122,7 @@ TEST_F(AsBuiltFile, AChainChangesOnlyWhatTheFileNames) {
 
 TEST_F(AsBuiltFile, AnOffsetMayBeBelowZero) {
   auto machine = hexapod_;
-  machine.hexapod.geometry.length_offset.fill(0);
+  machine.hexapod().geometry.length_offset.fill(0);
   const AsBuilt built = make_as_built(machine, "manufactured", 5);
   EXPECT_LT(*std::min_element(built.hexapod.length_offset.begin(), built.hexapod.length_offset.end()), 0);
   EXPECT_NO_THROW(make_as_built(machine, write(write_as_built(built)), 1));

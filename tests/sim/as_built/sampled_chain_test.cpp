@@ -29,7 +29,7 @@ struct Spread {
 class SampledChain : public testing::TestWithParam<const char*> {
  protected:
   const machine::MachineDescription machine_ = machine::load_machine(GetParam());
-  const kinematics::Chain& nominal_ = machine_.chain->kinematics.chain;
+  const kinematics::Chain& nominal_ = machine_.chain().kinematics.chain;
 };
 
 TEST_P(SampledChain, ErrorsSpreadAsTheToleranceSetStates) {
@@ -89,7 +89,7 @@ TEST_P(SampledChain, NominalIsTheDescription) {
     EXPECT_EQ(built.chain.axes[i].point, nominal_.axes[i].point);
     EXPECT_EQ(built.chain.axes[i].direction, nominal_.axes[i].direction);
     EXPECT_EQ(built.axis_zero[i], 0);
-    EXPECT_EQ(built.axis_play[i], machine_.chain->play[i]);
+    EXPECT_EQ(built.axis_play[i], machine_.chain().play[i]);
   }
 }
 

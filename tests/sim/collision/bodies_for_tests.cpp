@@ -24,12 +24,12 @@ machine::MachineDescription hexapod() {
   for (int i = 0; i < 6; ++i) {
     const int pair = i / 2;
     const double side = i % 2 == 0 ? -1 : 1;
-    machine.hexapod.geometry.base_joint[static_cast<std::size_t>(i)] =
+    machine.hexapod().geometry.base_joint[static_cast<std::size_t>(i)] =
         on_circle(0.080, 120.0 * pair + side * 43, 0);
-    machine.hexapod.geometry.platform_joint[static_cast<std::size_t>(i)] =
+    machine.hexapod().geometry.platform_joint[static_cast<std::size_t>(i)] =
         on_circle(0.029, 120.0 * pair + side * 17, 0.025);
   }
-  machine.hexapod.strut_radius = 4e-3;
+  machine.hexapod().strut_radius = 4e-3;
   machine.tool.flat_diameter = 1e-3;
   machine.tool.bodies = {
       {"nozzle", geometry::Frustum{0.5e-3, 3.5e-3, 12e-3}, Pose::Identity()},
@@ -44,7 +44,7 @@ machine::MachineDescription hexapod() {
 AsBuilt as_designed(const machine::MachineDescription& machine) {
   AsBuilt as_built;
   as_built.source = "nominal";
-  as_built.hexapod = machine.hexapod.geometry;
+  as_built.hexapod = machine.hexapod().geometry;
   return as_built;
 }
 

@@ -10,7 +10,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 
 std::size_t item_named(const ChainBodies& bodies, const std::string& name) {
   for (std::size_t i = 0; i < bodies.items().size(); ++i)
@@ -26,7 +26,7 @@ TEST(ChainBodies, AnArmsLinksTurnWithTheAxesThatCarryThem) {
   const Vec3 zero(0.150, 0, 0.430);  // the middle between (150, 0, 300) and (150, 0, 560) mm
   bodies.pose({});
   EXPECT_LT((bodies.place(upper).translation() - machine.X_WB * zero).norm(), 1e-15);
-  AxisArray axes{};
+  AxisVector axes{};
   axes[0] = from_deg(90);  // about the base's z
   bodies.pose(axes);
   EXPECT_LT((bodies.place(upper).translation() - machine.X_WB * Vec3(0, 0.150, 0.430)).norm(), 1e-15);
@@ -60,7 +60,7 @@ TEST(ChainBodies, WhatCarriesTheTableStandsStillBelowIt) {
   const std::size_t cradle = item_named(bodies, "cradle");
   bodies.pose({});
   const Pose X_zero = bodies.place(cradle);
-  AxisArray axes{0.05, -0.03, 0.02, from_deg(40), 0};
+  AxisVector axes{0.05, -0.03, 0.02, from_deg(40), 0};
   bodies.pose(axes);
   EXPECT_LT((bodies.place(cradle).matrix() - X_zero.matrix()).norm(), 1e-15);
   axes[4] = from_deg(30);
@@ -88,12 +88,12 @@ class LinkMotion : public testing::TestWithParam<const char*> {};
 TEST_P(LinkMotion, IsNeverMoreThanItsBound) {
   const auto machine = machine::load_machine(GetParam());
   ChainBodies bodies(machine, make_as_built(machine, "sampled", 2));
-  const auto& axes = machine.chain->kinematics.chain.axes;
+  const auto& axes = machine.chain().kinematics.chain.axes;
   Random random(81, "link motion");
   int moved = 0;
   double tightest = 0;
   for (int trial = 0; trial < 3000; ++trial) {
-    AxisArray from{}, to{}, travel{};
+    AxisVector from{}, to{}, travel{};
     const std::size_t only = trial % 2 == 0 ? static_cast<std::size_t>(trial / 2) % axes.size() : axes.size();
     for (std::size_t i = 0; i < axes.size(); ++i) {
       const double low = std::max(axes[i].lower, -3.0), high = std::min(axes[i].upper, 3.0);
@@ -131,15 +131,15 @@ TEST(ChainCollision, AnElbowThatMeetsTheTableIsSeenWhereTheArmReallyIs) {
   CollisionObserver observer(machine, built, nullptr, {});
   Snapshot s;
   s.X_WT = machine.X_WB * machine.X_BT_home;
-  for (std::size_t i = 0; i < 6; ++i) s.axes[i] = s.axes_reached[i] = machine.chain->kinematics.home[i];
+  for (std::size_t i = 0; i < 6; ++i) s.axes[i] = s.axes_reached[i] = machine.chain().kinematics.home[i];
   observer.observe(s);
   EXPECT_TRUE(observer.collisions().empty());
   // The port goes on telling home; the second axis has fallen forwards and laid the arm on the table.
   for (int step = 1; step <= 40; ++step) {
     s.time = 0.01 * step;
-    s.axes_reached[1] = machine.chain->kinematics.home[1] + from_deg(2.0 * step);
+    s.axes_reached[1] = machine.chain().kinematics.home[1] + from_deg(2.0 * step);
     s.X_WT = machine.X_WB *
-             kinematics::forward(machine.chain->kinematics.chain, std::span(s.axes_reached).first(6));
+             kinematics::forward(machine.chain().kinematics.chain, std::span(s.axes_reached).first(6));
     observer.observe(s);
   }
   bool link = false;

@@ -161,8 +161,8 @@ TEST(CollisionObserver, StrutsHaveTheAsBuiltGeometry) {
   const auto machine = test::hexapod();
   auto as_built = test::as_designed(machine);
   const Pose X_WT = make_pose(Quat::Identity(), Vec3(0, 0, kHomeHeight));
-  const Vec3 base = machine.X_WB * machine.hexapod.geometry.base_joint[0],
-             ball = X_WT * machine.hexapod.geometry.platform_joint[0];
+  const Vec3 base = machine.X_WB * machine.hexapod().geometry.base_joint[0],
+             ball = X_WT * machine.hexapod().geometry.platform_joint[0];
   const Vec3 middle = 0.5 * (base + ball), along = (ball - base).normalized();
   const Vec3 beside =
       along.cross(Vec3(0, 0, 1)).normalized() * (middle.head<2>().dot(along.head<2>()) > 0 ? 1 : 1);

@@ -8,7 +8,7 @@ namespace {
 
 TEST(MachineBodies, StrutsRunFromBaseJointToBallJointOfTheGivenGeometry) {
   const auto machine = test::hexapod();
-  auto geometry = machine.hexapod.geometry;
+  auto geometry = machine.hexapod().geometry;
   geometry.base_joint[2] += Vec3(0.4e-3, -0.3e-3, 0.2e-3);
   geometry.platform_joint[4] -= Vec3(0.1e-3, 0.2e-3, 0.3e-3);
   const Pose X_WT = make_pose(exp_rotation(Vec3(0.2, -0.1, 0.05)), Vec3(5e-3, -3e-3, 0.06));
@@ -18,7 +18,7 @@ TEST(MachineBodies, StrutsRunFromBaseJointToBallJointOfTheGivenGeometry) {
     const geometry::Shape& strut = bodies[3 + i];
     EXPECT_EQ(strut.name, "strut " + std::to_string(i + 1));
     const auto& capsule = std::get<geometry::Capsule>(strut.form);
-    EXPECT_EQ(capsule.radius, machine.hexapod.strut_radius);
+    EXPECT_EQ(capsule.radius, machine.hexapod().strut_radius);
     const Vec3 a = strut.X_FS * Vec3(0, 0, -capsule.length / 2),
                b = strut.X_FS * Vec3(0, 0, capsule.length / 2);
     const Vec3 base = machine.X_WB * geometry.base_joint[i], ball = X_WT * geometry.platform_joint[i];
@@ -30,7 +30,7 @@ TEST(MachineBodies, StrutsRunFromBaseJointToBallJointOfTheGivenGeometry) {
 TEST(MachineBodies, ToolBodiesFollowTheTool) {
   const auto machine = test::hexapod();
   const Pose X_WT = make_pose(exp_rotation(Vec3(0.2, -0.1, 0.05)), Vec3(5e-3, -3e-3, 0.06));
-  const auto bodies = hexapod_bodies(machine, machine.hexapod.geometry, X_WT);
+  const auto bodies = hexapod_bodies(machine, machine.hexapod().geometry, X_WT);
   EXPECT_EQ(bodies[0].name, "nozzle");
   EXPECT_EQ(bodies[2].name, "platform");
   EXPECT_LT((bodies[1].X_FS.translation() - X_WT * Vec3(0, 0, 17e-3)).norm(), 1e-15);

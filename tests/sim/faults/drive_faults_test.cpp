@@ -200,7 +200,7 @@ TEST_F(DriveFaults, EventsThatTheMachineCannotHaveAreRefused) {
   refused({FaultKind::loose_joint, 0, 0, 0, 0, nan}, "not above 0");
   refused({FaultKind::thermal_growth, 0, 0, 0, 1, nan}, "not finite");
   auto stiff = machine_;
-  stiff.hexapod.play = {};
+  stiff.hexapod().play = {};
   EXPECT_THAT(
       [&] {
         check_faults({{FaultKind::loose_joint, 2, 0, 0, 0, 1e-5}}, stiff);

@@ -45,7 +45,7 @@ machine::MachineDescription locked(const std::string& name, bool self_locking) {
 /// Axis 1 runs `way` at constant speed within `duration` and rests for as long.
 std::vector<Setpoint> run_axis(const SimulatedPort& port, double way, double duration) {
   std::vector<Setpoint> setpoints;
-  const machine::AxisArray start = port.state().position;
+  const kinematics::AxisVector start = port.state().position;
   const int count = static_cast<int>(duration / 1e-3);
   for (int k = 1; k <= 2 * count; ++k) {
     Setpoint s;
@@ -61,7 +61,7 @@ std::vector<Setpoint> run_axis(const SimulatedPort& port, double way, double dur
 /// The tip's shift per metre of strut 1: a column of the inverse Jacobian, in W.
 Vec3 tip_per_strut(const machine::MachineDescription& machine) {
   Mat6 J;
-  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, machine.X_BT_home, J),
+  EXPECT_EQ(kinematics::jacobian(machine.hexapod().geometry, machine.X_BT_home, J),
             kinematics::SolveStatus::ok);
   return machine.X_WB.linear() * J.inverse().col(0).head<3>();
 }

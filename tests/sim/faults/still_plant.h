@@ -12,7 +12,7 @@ class StillPlant : public Plant {
   std::string engine() const override { return "still 1"; }
   double timestep() const override { return 1e-3; }
   double time() const override { return time_; }
-  void reset(const machine::AxisArray& displacement) override { displacement_ = displacement; }
+  void reset(const kinematics::AxisVector& displacement) override { displacement_ = displacement; }
   void step(const DriveCommand& command) override {
     displacement_ = command.position;
     commands.push_back(command);
@@ -23,17 +23,17 @@ class StillPlant : public Plant {
     ++changes;
   }
   Pose tool_pose() const override { return Pose::Identity(); }
-  machine::AxisArray displacement() const override { return displacement_; }
-  machine::AxisArray drive_force() const override { return {}; }
+  kinematics::AxisVector displacement() const override { return displacement_; }
+  kinematics::AxisVector drive_force() const override { return {}; }
   double closure_error() const override { return 0; }
 
   std::vector<DriveCommand> commands;
-  std::array<AxisCondition, kinematics::kMaxAxes> conditions{};
+  kinematics::PerAxis<AxisCondition> conditions{};
   int changes = 0;
 
  private:
   double time_ = 0;
-  machine::AxisArray displacement_{};
+  kinematics::AxisVector displacement_{};
 };
 
 }  // namespace understudy::sim

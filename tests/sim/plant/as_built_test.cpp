@@ -19,10 +19,11 @@ std::vector<double> errors(const machine::MachineDescription& machine, const AsB
   std::vector<double> all;
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      all.push_back(built.hexapod.base_joint[i][axis] - machine.hexapod.geometry.base_joint[i][axis]);
-      all.push_back(built.hexapod.platform_joint[i][axis] - machine.hexapod.geometry.platform_joint[i][axis]);
+      all.push_back(built.hexapod.base_joint[i][axis] - machine.hexapod().geometry.base_joint[i][axis]);
+      all.push_back(built.hexapod.platform_joint[i][axis] -
+                    machine.hexapod().geometry.platform_joint[i][axis]);
     }
-    all.push_back(built.hexapod.length_offset[i] - machine.hexapod.geometry.length_offset[i]);
+    all.push_back(built.hexapod.length_offset[i] - machine.hexapod().geometry.length_offset[i]);
   }
   return all;
 }
@@ -31,10 +32,10 @@ TEST(AsBuilt, NominalIsTheDescription) {
   const auto machine = machine_g4();
   const AsBuilt built = make_as_built(machine, "nominal", 5);
   for (const double error : errors(machine, built)) EXPECT_EQ(error, 0);
-  EXPECT_EQ(built.hexapod.deviation, machine.hexapod.geometry.deviation);
+  EXPECT_EQ(built.hexapod.deviation, machine.hexapod().geometry.deviation);
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
-    EXPECT_EQ(built.nut_play[i], machine.hexapod.play.screw_nut);
-    EXPECT_EQ(built.ball_play[i], machine.hexapod.play.ball_joint);
+    EXPECT_EQ(built.nut_play[i], machine.hexapod().play.screw_nut);
+    EXPECT_EQ(built.ball_play[i], machine.hexapod().play.ball_joint);
   }
 }
 

@@ -15,7 +15,7 @@ constexpr double kMass = 2, kArm = 0.3;  // [kg], [m]
 machine::MachineDescription level_arm() {
   machine::MachineDescription machine;
   machine.name = "level arm";
-  auto& model = machine.chain.emplace();
+  auto& model = machine.model.emplace<machine::ChainModel>();
   kinematics::ChainAxis shoulder{"shoulder", true, Vec3::UnitY(), Vec3::Zero(), -1, -3, 3};
   kinematics::ChainAxis elbow{"elbow", true, Vec3::UnitY(), Vec3(0.2, 0, 0), 0, -3, 3};
   model.kinematics.chain.axes = {shoulder, elbow};
@@ -71,7 +71,7 @@ TEST(BulletChain, ToolIsWhereTheChainOfScrewsPutsIt) {
 
 TEST(BulletChain, ReleasedAxisSwingsAsAPhysicalPendulum) {
   auto machine = level_arm();
-  machine.chain->play = {0, 0};
+  machine.chain().play = {0, 0};
   const auto plant = make_bullet_plant(machine, make_as_built(machine, "nominal", 1));
   AxisCondition off;
   off.released = true;
@@ -99,7 +99,7 @@ TEST(BulletChain, ElasticDriveSagsByItsLoadOverItsStiffness) {
   machine.drives[1].damping_ratio = 0.3;
   machine.drives[1].lead = 0.1;
   machine.drives[1].steps_per_turn = 10;
-  machine.chain->play = {0, 0};
+  machine.chain().play = {0, 0};
   const auto plant = make_bullet_plant(machine, make_as_built(machine, "nominal", 1));
   const double sag = kMass * kGravity * kArm / 5000;
   EXPECT_NEAR(plant->displacement()[1], sag, 1e-3 * sag);  // the load turns by the sag: 1e-6 of it
@@ -107,7 +107,7 @@ TEST(BulletChain, ElasticDriveSagsByItsLoadOverItsStiffness) {
 
 TEST(BulletChain, TableThatMovesIsRefused) {
   auto machine = level_arm();
-  machine.chain->kinematics.chain.work_axis = 0;
+  machine.chain().kinematics.chain.work_axis = 0;
   const AsBuilt built = make_as_built(machine, "nominal", 1);
   EXPECT_THAT([&] { make_bullet_plant(machine, built); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("'shoulder' carries the work")));

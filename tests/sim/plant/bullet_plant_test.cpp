@@ -34,8 +34,8 @@ AsBuilt with_play(const machine::MachineDescription& machine, double total) {
 
 /// u_z: all struts of G4 have the same slope on the machine's axis.
 double slope(const machine::MachineDescription& machine) {
-  const Vec3 d =
-      machine.X_BT_home * machine.hexapod.geometry.platform_joint[0] - machine.hexapod.geometry.base_joint[0];
+  const Vec3 d = machine.X_BT_home * machine.hexapod().geometry.platform_joint[0] -
+                 machine.hexapod().geometry.base_joint[0];
   return std::abs(d.z()) / d.norm();
 }
 
@@ -59,11 +59,11 @@ TEST(BulletPlant, FollowsTheTiltedCircle) {
 
 TEST(BulletPlant, StrutsCarryTheWeight) {
   auto machine = machine_g4();
-  machine.hexapod.masses.motor = 1e-6;  // the platform carries all that the struts hold
+  machine.hexapod().masses.motor = 1e-6;  // the platform carries all that the struts hold
   const auto plant = make_bullet_plant(machine, make_as_built(machine, "nominal", 1), without_play());
   Pose X_BT = machine.X_BT_home;
   X_BT.linear() = exp_rotation(from_deg(15) * Vec3(0.6, 0.8, 0));
-  plant->reset(drive_command(machine.hexapod.geometry, X_BT).position);
+  plant->reset(drive_command(machine.hexapod().geometry, X_BT).position);
   // J^T f + W = 0; a nut hangs in the ball joint, so its weight is the platform's.
   Twist wrench = Twist::Zero();
   const auto add = [&](double mass, const Vec3& p_T) {
@@ -71,10 +71,10 @@ TEST(BulletPlant, StrutsCarryTheWeight) {
     wrench.head<3>() += weight;
     wrench.tail<3>() += (X_BT.linear() * p_T).cross(weight);
   };
-  add(machine.hexapod.masses.platform, machine.hexapod.masses.platform_centre_T);
-  for (const Vec3& ball : machine.hexapod.geometry.platform_joint) add(machine.hexapod.masses.nut, ball);
+  add(machine.hexapod().masses.platform, machine.hexapod().masses.platform_centre_T);
+  for (const Vec3& ball : machine.hexapod().geometry.platform_joint) add(machine.hexapod().masses.nut, ball);
   Mat6 J;
-  ASSERT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::SolveStatus::ok);
+  ASSERT_EQ(kinematics::jacobian(machine.hexapod().geometry, X_BT, J), kinematics::SolveStatus::ok);
   const Twist expected = -J.transpose().partialPivLu().solve(wrench);
   const auto force = plant->drive_force();
   // 0.2 mN: what six motors of 1 mg weigh, and what creeps at 1 um/s.
@@ -124,10 +124,10 @@ TEST(BulletPlay, LoopWidthWithoutGravityIsThePlayOverTheSlope) {
 TEST(BulletPlay, FrictionHoldsThePlatformWithinThePlay) {
   // Each strut carries 1.8 N: friction above that keeps it where the machine was assembled, in the middle.
   auto machine = machine_g4();
-  machine.hexapod.play.friction = 4;
+  machine.hexapod().play.friction = 4;
   const auto held = make_bullet_plant(machine, with_play(machine, 100e-6));
   EXPECT_NEAR(held->tool_pose().translation().z(), from_mm(50), 0.1e-6);
-  machine.hexapod.play.friction = 0.5;
+  machine.hexapod().play.friction = 0.5;
   const auto fallen = make_bullet_plant(machine, with_play(machine, 100e-6));
   EXPECT_NEAR(from_mm(50) - fallen->tool_pose().translation().z(), 50e-6 / slope(machine), 0.5e-6);
 }
@@ -135,7 +135,7 @@ TEST(BulletPlay, FrictionHoldsThePlatformWithinThePlay) {
 TEST(BulletPlant, GrowthOfAllStrutsLowersTheTip) {
   const auto machine = machine_g4();
   const auto plant = make_bullet_plant(machine, with_play(machine, 50e-6));
-  const DriveCommand home = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  const DriveCommand home = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   const double before = plant->tool_pose().translation().z();
   AxisCondition warm;
   warm.growth = 20e-6;
@@ -149,7 +149,7 @@ TEST(BulletPlant, GrowthOfAllStrutsLowersTheTip) {
 TEST(BulletPlant, LooseNutLetsTheTipSinkByHalfItsPlay) {
   const auto machine = machine_g4();
   const auto plant = make_bullet_plant(machine, with_play(machine, 50e-6));
-  const DriveCommand home = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  const DriveCommand home = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   const double before = plant->tool_pose().translation().z();
   AxisCondition loose;
   loose.play_added = 60e-6;
@@ -168,8 +168,8 @@ TEST(BulletPlant, ReleasedDriveStaysWhenItLocksItself) {
   plant->set_condition(2, off);
   Pose X_BT = machine.X_BT_home;
   X_BT.translation().z() -= from_mm(0.2);
-  const DriveCommand lower = drive_command(machine.hexapod.geometry, X_BT);
-  DriveCommand command = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  const DriveCommand lower = drive_command(machine.hexapod().geometry, X_BT);
+  DriveCommand command = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   for (int k = 0; k < steps_for(*plant, 0.2); ++k) {
     for (std::size_t i = 0; i < kStruts; ++i)
       command.position[i] += (lower.position[i] - command.position[i]) * 0.02;
@@ -181,7 +181,7 @@ TEST(BulletPlant, ReleasedDriveStaysWhenItLocksItself) {
 
 TEST(BulletPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
   auto machine = machine_g4();
-  machine.hexapod.screw_rotation = machine::ScrewRotation::free;
+  machine.hexapod().screw_rotation = machine::ScrewRotation::free;
   for (machine::Drive& drive : machine.drives) drive.lead = from_mm(1.5875);
   ASSERT_GT(machine.screw_coupling().lead, 0);
   const AsBuilt built = make_as_built(machine, "nominal", 1);
@@ -192,7 +192,7 @@ TEST(BulletPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
   kinematics::StrutLengths lengths{};
   ASSERT_EQ(kinematics::inverse(built.hexapod, machine.screw_coupling(), X_BT, lengths),
             kinematics::SolveStatus::ok);
-  const machine::AxisArray start = plant->displacement();
+  const kinematics::AxisVector start = plant->displacement();
   for (int k = 1; k <= steps_for(*plant, 0.4); ++k) {
     const double s = std::min(1.0, k * plant->timestep() / 0.3), blend = s * s * s * (10 + s * (6 * s - 15)),
                  rate = 30 * s * s * (1 - s) * (1 - s) / 0.3;
@@ -226,7 +226,7 @@ TEST(BulletPlant, ResetGivesTheSameBytesAgain) {
 TEST(BulletFailure, IsAnErrorWithPlaceAndTimeAndLastsUntilReset) {
   const auto machine = machine_g4();
   const auto plant = make_bullet_plant(machine, with_play(machine, 75e-6));
-  const DriveCommand home = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  const DriveCommand home = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   DriveCommand jump = home;
   jump.position[3] += from_mm(100);
   plant->step(home);

@@ -59,7 +59,7 @@ TEST_F(MujocoFailure, AFailedPlantStaysFailedUntilReset) {
 }
 
 TEST_F(MujocoFailure, LoopsThatCannotCloseAreAnErrorWithTheLengths) {
-  machine::AxisArray impossible = home_.position;
+  kinematics::AxisVector impossible = home_.position;
   impossible[0] += from_mm(400);
   EXPECT_THAT(
       [&] { plant_->reset(impossible); },

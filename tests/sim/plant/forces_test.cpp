@@ -15,7 +15,7 @@ using kinematics::kStruts;
 using Forces = Eigen::Matrix<double, kStruts, 1>;
 
 Forces forces(const Plant& plant) {
-  const machine::AxisArray force = plant.drive_force();
+  const kinematics::AxisVector force = plant.drive_force();
   return Eigen::Map<const Forces>(force.data());
 }
 
@@ -27,18 +27,18 @@ Forces holding_forces(const machine::MachineDescription& machine, const Pose& X_
     wrench.head<3>() += mass * gravity_B;
     wrench.tail<3>() += (X_BT.linear() * p_T).cross(mass * gravity_B);
   };
-  add(machine.hexapod.masses.platform, machine.hexapod.masses.platform_centre_T);
+  add(machine.hexapod().masses.platform, machine.hexapod().masses.platform_centre_T);
   // A nut and its rod end hang in the ball joint, so their weight is the platform's.
-  for (const Vec3& ball : machine.hexapod.geometry.platform_joint) add(machine.hexapod.masses.nut, ball);
+  for (const Vec3& ball : machine.hexapod().geometry.platform_joint) add(machine.hexapod().masses.nut, ball);
   Mat6 J;
-  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::SolveStatus::ok);
+  EXPECT_EQ(kinematics::jacobian(machine.hexapod().geometry, X_BT, J), kinematics::SolveStatus::ok);
   return -J.transpose().partialPivLu().solve(wrench);
 }
 
 /// G4 whose motors weigh nothing, so that the platform carries all that the struts hold.
 machine::MachineDescription machine_with_light_motors() {
   auto machine = machine_g4();
-  machine.hexapod.masses.motor = 1e-6;
+  machine.hexapod().masses.motor = 1e-6;
   return machine;
 }
 
@@ -61,7 +61,7 @@ TEST(MujocoForces, StrutsCarryTheWeight) {
   for (const double tilt : {0.0, 10.0, 20.0}) {
     for (const double azimuth : {0.0, 50.0, 200.0}) {
       const Pose X_BT = tilted(machine, from_deg(tilt), from_deg(azimuth));
-      plant->reset(drive_command(machine.hexapod.geometry, X_BT).position);
+      plant->reset(drive_command(machine.hexapod().geometry, X_BT).position);
       const Forces expected = holding_forces(machine, X_BT, Vec3(0, 0, -kGravity));
       // 1e-4 of a strut's share: the engine's solver stops at 1e-10 of the cost, and the motors weigh 60 uN.
       EXPECT_LE((forces(*plant) - expected).cwiseAbs().maxCoeff(), 2e-4) << tilt << " " << azimuth;
@@ -77,11 +77,11 @@ TEST(MujocoForces, HangingStrutsPull) {
 
 TEST(MujocoForces, AccelerationTakesForceByNewtonsLaw) {
   auto machine = machine_with_light_motors();
-  machine.hexapod.masses.nut =
+  machine.hexapod().masses.nut =
       1e-3;  // a strut's swing, which the closed form leaves out, then weighs nothing
   const AsBuilt built = make_as_built(machine, "nominal", 1);
   const auto plant = make_mujoco_plant(machine, built, without_play());
-  plant->reset(drive_command(machine.hexapod.geometry, machine.X_BT_home).position);
+  plant->reset(drive_command(machine.hexapod().geometry, machine.X_BT_home).position);
   const Vec3 acceleration(1, -0.5, 2);  // [m/s^2]
   const int steps = steps_for(*plant, 0.05);
   for (int k = 0; k < steps; ++k) {
@@ -90,7 +90,7 @@ TEST(MujocoForces, AccelerationTakesForceByNewtonsLaw) {
     X_BT.translation() += t * t / 2 * acceleration;
     Twist twist = Twist::Zero();
     twist.head<3>() = t * acceleration;
-    plant->step(drive_command(machine.hexapod.geometry, X_BT, twist));
+    plant->step(drive_command(machine.hexapod().geometry, X_BT, twist));
   }
   const double t = (steps - 1) * plant->timestep();
   Pose X_BT = machine.X_BT_home;
@@ -125,7 +125,7 @@ TEST(MujocoForces, PreloadIsLostAtTheDistanceThatStaticsGives) {
       RecordProperty(fmt::format("reversal_mm_tilt_{}_azimuth_{}", tilt, azimuth),
                      fmt::format("{:.2f}", to_mm(distance)));
       const auto largest = [&](double at) {
-        plant->reset(drive_command(machine.hexapod.geometry,
+        plant->reset(drive_command(machine.hexapod().geometry,
                                    beside_home(machine, from_deg(tilt), from_deg(azimuth), at))
                          .position);
         return forces(*plant).maxCoeff();

@@ -36,14 +36,14 @@ TEST_P(Mjcf, HasTheJointsOfTheMachine) {
 }
 
 TEST_P(Mjcf, HasTheMassesOfTheDescription) {
-  EXPECT_NEAR(
-      mj_getTotalmass(model_.get()),
-      machine_.hexapod.masses.platform + 6 * (machine_.hexapod.masses.motor + machine_.hexapod.masses.nut),
-      1e-12);
+  EXPECT_NEAR(mj_getTotalmass(model_.get()),
+              machine_.hexapod().masses.platform +
+                  6 * (machine_.hexapod().masses.motor + machine_.hexapod().masses.nut),
+              1e-12);
   const int platform = find_id(*model_, mjOBJ_BODY, kPlatformBody);
-  EXPECT_EQ(model_->body_mass[platform], machine_.hexapod.masses.platform);
+  EXPECT_EQ(model_->body_mass[platform], machine_.hexapod().masses.platform);
   const Vec3 centre(data_->xipos + 3 * platform);
-  EXPECT_LE((centre - X_WT_ * machine_.hexapod.masses.platform_centre_T).norm(), 1e-12);
+  EXPECT_LE((centre - X_WT_ * machine_.hexapod().masses.platform_centre_T).norm(), 1e-12);
 }
 
 TEST_P(Mjcf, IsAssembledAtThePose) {
@@ -70,10 +70,10 @@ TEST_P(Mjcf, ScrewStandsOffTheUniversalJointByDev) {
         second(data_->xaxis + 3 * beta);
     const Vec3 from_joint = Vec3(data_->xanchor + 3 * screw) - Vec3(data_->xanchor + 3 * alpha);
     const Vec3 offset = from_joint - axis.dot(from_joint) * axis;
-    EXPECT_NEAR(offset.norm(), machine_.hexapod.geometry.deviation, 1e-12);
-    EXPECT_GT(
-        offset.dot(machine_.X_WB.linear() * machine_.hexapod.joints.radial_axis[static_cast<std::size_t>(i)]),
-        0)
+    EXPECT_NEAR(offset.norm(), machine_.hexapod().geometry.deviation, 1e-12);
+    EXPECT_GT(offset.dot(machine_.X_WB.linear() *
+                         machine_.hexapod().joints.radial_axis[static_cast<std::size_t>(i)]),
+              0)
         << "the screws hang outside the circle of the universal joints";
     EXPECT_NEAR(axis.dot(second), 0, 1e-12);
     EXPECT_NEAR(first.dot(second), 0, 1e-12);

@@ -13,7 +13,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -23,8 +23,8 @@ std::unique_ptr<Plant> nominal_plant(const machine::MachineDescription& machine,
   return make_mujoco_plant(machine, make_as_built(machine, "nominal", 1), options);
 }
 
-Pose pose_of(const machine::MachineDescription& machine, const AxisArray& axes) {
-  const auto& chain = machine.chain->kinematics.chain;
+Pose pose_of(const machine::MachineDescription& machine, const AxisVector& axes) {
+  const auto& chain = machine.chain().kinematics.chain;
   return machine.X_WB *
          kinematics::forward(chain, std::span(axes).first(static_cast<std::size_t>(chain.size())));
 }
@@ -62,9 +62,9 @@ class ShippedChain : public testing::TestWithParam<const char*> {
 TEST_P(ShippedChain, WithoutPlayTheToolRestsWhereKinematicsPutsIt) {
   const auto plant = nominal_plant(machine_, false);
   Random random(71, "rest");
-  const auto& axes = machine_.chain->kinematics.chain.axes;
+  const auto& axes = machine_.chain().kinematics.chain.axes;
   for (int pose = 0; pose < 5; ++pose) {
-    AxisArray at = home_of(machine_);
+    AxisVector at = home_of(machine_);
     for (std::size_t i = 0; i < axes.size(); ++i)
       at[i] += random.uniform(-1, 1) * (axes[i].angle ? from_deg(15) : from_mm(20));
     plant->reset(at);
@@ -78,8 +78,8 @@ TEST_P(ShippedChain, WithoutPlayTheToolRestsWhereKinematicsPutsIt) {
 // docs/reference.md#mujoco, arm: tip error 0.5 um at 0.5 ms.
 TEST_P(ShippedChain, FollowsAMovingCommandWithinAMicrometre) {
   const auto plant = nominal_plant(machine_, false);
-  const AxisArray home = home_of(machine_);
-  const auto& axes = machine_.chain->kinematics.chain.axes;
+  const AxisVector home = home_of(machine_);
+  const auto& axes = machine_.chain().kinematics.chain.axes;
   const double rate = 2 * kPi;  // [rad/s]
   // Speeds up to 25 mm/s and 15 deg/s, all axes at once, from rest.
   const auto command_at = [&](double t) {
@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(Machines, ShippedChain, testing::Values("arm", "five-ax
 TEST(MujocoChain, ATurnedTableCarriesTheWork) {
   const auto machine = machine::load_machine("five-axis");
   const auto plant = nominal_plant(machine, false);
-  AxisArray at = home_of(machine);  // x, y, z, b, c
+  AxisVector at = home_of(machine);  // x, y, z, b, c
   at[0] = from_mm(20);
   at[4] = kPi / 2;
   plant->reset(at);
@@ -161,8 +161,8 @@ struct Loop {
 };
 Loop reversal(const machine::MachineDescription& machine, double speed) {
   const auto plant = nominal_plant(machine);
-  const Vec3 axis = machine.chain->kinematics.chain.axes[0].direction;
-  const double target = machine.chain->kinematics.home[0];
+  const Vec3 axis = machine.chain().kinematics.chain.axes[0].direction;
+  const double target = machine.chain().kinematics.home[0];
   const auto load = [&] {  // the load's own turn, from the tool
     const Mat3 R = plant->tool_pose().linear();
     return Vec3(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)).dot(axis) / 2;
@@ -226,7 +226,7 @@ TEST(MujocoChain, AnAxisZeroShiftsWhatTheDriveReadsNotWhereItIs) {
   AsBuilt built = make_as_built(machine, "nominal", 1);
   built.axis_zero[1] = 2e-3;
   const auto plant = make_mujoco_plant(machine, built);
-  AxisArray truth = home_of(machine);
+  AxisVector truth = home_of(machine);
   EXPECT_NEAR(plant->displacement()[1], truth[1], 5e-9);
   truth[1] += 2e-3;
   EXPECT_LT((plant->tool_pose().translation() - pose_of(machine, truth).translation()).norm(), 5e-9);

@@ -21,7 +21,8 @@ AsBuilt with_play(const machine::MachineDescription& machine, double total) {
 
 /// u_z: all struts of G4 have the same slope on the machine's axis.
 double slope(const machine::MachineDescription& machine, const Pose& X_BT) {
-  const Vec3 d = X_BT * machine.hexapod.geometry.platform_joint[0] - machine.hexapod.geometry.base_joint[0];
+  const Vec3 d =
+      X_BT * machine.hexapod().geometry.platform_joint[0] - machine.hexapod().geometry.base_joint[0];
   return std::abs(d.z()) / d.norm();
 }
 

@@ -39,8 +39,8 @@ machine::MachineDescription planar_arm() {
   return m;
 }
 
-machine::AxisArray pose_of(double shoulder, double elbow) {
-  machine::AxisArray axes{};
+kinematics::AxisVector pose_of(double shoulder, double elbow) {
+  kinematics::AxisVector axes{};
   axes[0] = shoulder;
   axes[1] = elbow;
   return axes;
@@ -90,7 +90,7 @@ TEST(QuasistaticChain, PlayHangsDownByHalfInEveryAxis) {
 
 TEST(QuasistaticChain, AgreesWithMujocoAtRest) {
   auto machine = planar_arm();
-  for (machine::Link& link : machine.chain->links) link.inertia_O = 0.01 * Mat3::Identity();
+  for (machine::Link& link : machine.chain().links) link.inertia_O = 0.01 * Mat3::Identity();
   const AsBuilt built = make_as_built(machine, "nominal", 1);
   const auto peer = make_mujoco_plant(machine, built);
   const auto plant = make_quasistatic_plant(machine, built);
@@ -105,7 +105,7 @@ TEST(QuasistaticChain, AgreesWithMujocoAtRest) {
 TEST(QuasistaticChain, MovingWorkTakesTheNozzlesReaction) {
   // The work on a vertical slide, the tool fixed: the slide carries weight and the nozzle's push.
   machine::MachineDescription machine = planar_arm();
-  machine::ChainModel& model = *machine.chain;
+  machine::ChainModel& model = machine.chain();
   kinematics::ChainAxis lift;
   lift.name = "z";
   lift.angle = false;

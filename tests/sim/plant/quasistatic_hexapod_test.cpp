@@ -14,11 +14,11 @@ namespace {
 using kinematics::kStruts;
 using Forces = Eigen::Matrix<double, kStruts, 1>;
 
-Forces forces(const machine::AxisArray& force) { return Eigen::Map<const Forces>(force.data()); }
+Forces forces(const kinematics::AxisVector& force) { return Eigen::Map<const Forces>(force.data()); }
 
 Mat6 jacobian_at(const machine::MachineDescription& machine, const Pose& X_BT) {
   Mat6 J;
-  EXPECT_EQ(kinematics::jacobian(machine.hexapod.geometry, X_BT, J), kinematics::SolveStatus::ok);
+  EXPECT_EQ(kinematics::jacobian(machine.hexapod().geometry, X_BT, J), kinematics::SolveStatus::ok);
   return J;
 }
 
@@ -31,15 +31,15 @@ Forces holding_forces(const machine::MachineDescription& machine, const Pose& X_
     wrench.head<3>() += mass * gravity_B;
     wrench.tail<3>() += (X_BT.linear() * p_T).cross(mass * gravity_B);
   };
-  add(machine.hexapod.masses.platform, machine.hexapod.masses.platform_centre_T);
-  for (const Vec3& ball : machine.hexapod.geometry.platform_joint) add(machine.hexapod.masses.nut, ball);
+  add(machine.hexapod().masses.platform, machine.hexapod().masses.platform_centre_T);
+  for (const Vec3& ball : machine.hexapod().geometry.platform_joint) add(machine.hexapod().masses.nut, ball);
   return -jacobian_at(machine, X_BT).transpose().partialPivLu().solve(wrench);
 }
 
 /// The closed form above leaves the swing of the motors out.
 machine::MachineDescription machine_with_light_motors() {
   auto machine = machine_g4();
-  machine.hexapod.masses.motor = 1e-9;
+  machine.hexapod().masses.motor = 1e-9;
   return machine;
 }
 
@@ -64,7 +64,7 @@ TEST(QuasistaticHexapod, StrutsCarryTheWeight) {
   const auto plant = make_quasistatic_plant(machine, with_nut_play(machine, 0));
   for (const double tilt : {0.0, 10.0, 25.0}) {
     const Pose X_BT = tilted(machine, tilt, 50);
-    plant->reset(drive_command(machine.hexapod.geometry, X_BT).position);
+    plant->reset(drive_command(machine.hexapod().geometry, X_BT).position);
     const Forces expected = holding_forces(machine, X_BT, Vec3(0, 0, -kGravity));
     EXPECT_LE((forces(plant->drive_force()) - expected).norm(), 1e-6) << tilt;  // motors weigh 10 nN
   }
@@ -74,14 +74,14 @@ TEST(QuasistaticHexapod, AccelerationTakesForceByNewtonsLaw) {
   auto machine = machine_with_light_motors();
   const auto plant = make_quasistatic_plant(machine, with_nut_play(machine, 0));
   const Vec3 acceleration(1, -0.5, 2);  // [m/s^2]
-  plant->reset(drive_command(machine.hexapod.geometry, machine.X_BT_home).position);
+  plant->reset(drive_command(machine.hexapod().geometry, machine.X_BT_home).position);
   Pose X_BT = machine.X_BT_home;
   for (int k = 0; k < 20; ++k) {
     const double t = k * plant->timestep();
     X_BT.translation() = machine.X_BT_home.translation() + t * t / 2 * acceleration;
     Twist twist = Twist::Zero();
     twist.head<3>() = t * acceleration;
-    plant->step(drive_command(machine.hexapod.geometry, X_BT, twist));
+    plant->step(drive_command(machine.hexapod().geometry, X_BT, twist));
   }
   const Forces expected = holding_forces(machine, X_BT, Vec3(0, 0, -kGravity) - acceleration);
   // The commands tell the acceleration half a step late; the struts' own rates change by 1e-3 of it.
@@ -94,7 +94,7 @@ TEST(QuasistaticHexapod, NozzleForceAddsItsStatics) {
   options.nozzle_force_T = Vec3(0.3, -0.2, 1.5);
   const auto plant = make_quasistatic_plant(machine, with_nut_play(machine, 0), options);
   const Pose X_BT = tilted(machine, 15, 200, Vec3(0.01, 0, -0.01));
-  plant->reset(drive_command(machine.hexapod.geometry, X_BT).position);
+  plant->reset(drive_command(machine.hexapod().geometry, X_BT).position);
   const Forces expected =
       holding_forces(machine, X_BT, Vec3(0, 0, -kGravity), X_BT.linear() * options.nozzle_force_T);
   EXPECT_LE((forces(plant->drive_force()) - expected).norm(), 1e-6);
@@ -125,7 +125,7 @@ TEST(QuasistaticHexapod, PlayShiftsTheTipByTheInverseJacobian) {
   const auto plant = make_quasistatic_plant(machine, with_nut_play(machine, play));
   for (const double tilt : {0.0, 15.0, 25.0}) {
     const Pose X_BT = tilted(machine, tilt, 30, Vec3(0.004, 0, -0.01));
-    plant->reset(drive_command(machine.hexapod.geometry, X_BT).position);
+    plant->reset(drive_command(machine.hexapod().geometry, X_BT).position);
     // A strut that pulls is drawn long.
     const Forces gap = -play / 2 * forces(plant->drive_force()).cwiseSign();
     const Twist shift = jacobian_at(machine, X_BT).partialPivLu().solve(gap);
@@ -151,8 +151,8 @@ TEST(QuasistaticHexapod, NutHangsOnItsOwnUntilTheRodLiftsIt) {
   AsBuilt built = make_as_built(machine, "nominal", 1);
   built.nut_play.fill(60e-6);
   built.ball_play.fill(30e-6);
-  machine.hexapod.masses.nut = 0.1;
-  const double weight = machine.hexapod.masses.platform + 6 * machine.hexapod.masses.nut;
+  machine.hexapod().masses.nut = 0.1;
+  const double weight = machine.hexapod().masses.platform + 6 * machine.hexapod().masses.nut;
   QuasistaticOptions options;
   // The platform is lifted with half of what the six nut bodies (half of nut and rod each) weigh.
   options.nozzle_force_T = Vec3(0, 0, kGravity * (weight - 0.5 * 6 * 0.05));
@@ -163,12 +163,12 @@ TEST(QuasistaticHexapod, NutHangsOnItsOwnUntilTheRodLiftsIt) {
 
 TEST(QuasistaticHexapod, FrictionHoldsThePlayOverTwiceItsWidth) {
   auto machine = machine_with_light_motors();
-  machine.hexapod.masses.nut = 1e-9;  // else its weight widens the loop
-  machine.hexapod.play.friction = 0.5;
+  machine.hexapod().masses.nut = 1e-9;  // else its weight widens the loop
+  machine.hexapod().play.friction = 0.5;
   QuasistaticSampler sampler(machine, with_nut_play(machine, 100e-6));
   const Mat6 J = jacobian_at(machine, machine.X_BT_home);
   PathSample sample;
-  sample.position = drive_command(machine.hexapod.geometry, machine.X_BT_home).position;
+  sample.position = drive_command(machine.hexapod().geometry, machine.X_BT_home).position;
   constexpr double kIncrement = 0.01;  // [m/s^2]: 1.7 mN a strut
   // Falls faster and faster until the struts push, and back; the force at which strut 1 changes sides.
   const auto force_at_change = [&](double from, double to) {
@@ -196,10 +196,10 @@ TEST(QuasistaticHexapod, ElasticDrivesYieldByForceOverStiffness) {
   for (machine::Drive& drive : machine.drives) drive.stiffness = 2e5, drive.resonance = 200;
   const auto plant = make_quasistatic_plant(machine, with_nut_play(machine, 0));
   const Pose X_BT = tilted(machine, 10, 0);
-  const DriveCommand command = drive_command(machine.hexapod.geometry, X_BT);
+  const DriveCommand command = drive_command(machine.hexapod().geometry, X_BT);
   plant->reset(command.position);
   const DriveCommand reached =
-      drive_command(machine.hexapod.geometry, machine.X_WB.inverse() * plant->tool_pose());
+      drive_command(machine.hexapod().geometry, machine.X_WB.inverse() * plant->tool_pose());
   for (std::size_t i = 0; i < kStruts; ++i) {
     const double yielded = -plant->drive_force()[i] / 2e5;
     EXPECT_NEAR(reached.position[i] - command.position[i], yielded, 1e-9 + 1e-3 * std::abs(yielded));
@@ -210,10 +210,10 @@ TEST(QuasistaticHexapod, ElasticDrivesYieldByForceOverStiffness) {
 TEST(QuasistaticHexapod, FallsThroughItsPlayAsABodyFalls) {
   // The drives fall faster than gravity: the platform stays behind by (a - g) t^2 / 2 until it lands.
   auto machine = machine_with_light_motors();
-  machine.hexapod.masses.nut = 1e-9;
+  machine.hexapod().masses.nut = 1e-9;
   const double play = 200e-6;
   const auto plant = make_quasistatic_plant(machine, with_nut_play(machine, play));
-  plant->reset(drive_command(machine.hexapod.geometry, machine.X_BT_home).position);
+  plant->reset(drive_command(machine.hexapod().geometry, machine.X_BT_home).position);
   const double z0 = plant->tool_pose().translation().z();
   constexpr double kFall = 16;  // [m/s^2]
   double lift = 0;
@@ -223,7 +223,7 @@ TEST(QuasistaticHexapod, FallsThroughItsPlayAsABodyFalls) {
     X_BT.translation().z() -= kFall * t * t / 2;
     Twist twist = Twist::Zero();
     twist(2) = -kFall * t;
-    plant->step(drive_command(machine.hexapod.geometry, X_BT, twist));
+    plant->step(drive_command(machine.hexapod().geometry, X_BT, twist));
     const double now = t + plant->timestep();
     lift = plant->tool_pose().translation().z() - z0 + kFall * now * now / 2;
   }

@@ -41,7 +41,7 @@ TEST(QuasistaticPlant, RefusesImpossibleOptions) {
 TEST(QuasistaticPlant, FailsLoudlyAndStaysFailedUntilReset) {
   const auto machine = machine_g4();
   const auto plant = make_quasistatic_plant(machine, make_as_built(machine, "nominal", 1));
-  const DriveCommand home = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  const DriveCommand home = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   DriveCommand bad = home;
   bad.position[2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(message_of([&] { plant->step(bad); }), HasSubstr("drive 3"));
@@ -75,7 +75,7 @@ TEST(QuasistaticPlant, SelfLockingDriveStaysWhereItWasReleased) {
   auto machine = machine_g4();
   machine.drives[1].self_locking = true;
   const auto plant = make_quasistatic_plant(machine, make_as_built(machine, "nominal", 1));
-  DriveCommand command = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  DriveCommand command = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   plant->reset(command.position);
   AxisCondition released;
   released.released = true;
@@ -94,14 +94,14 @@ TEST(QuasistaticPlant, GrowthMovesTheToolAndNotTheReading) {
   QuasistaticOptions options;
   options.play = false;
   const auto plant = make_quasistatic_plant(machine, make_as_built(machine, "nominal", 1), options);
-  const DriveCommand command = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  const DriveCommand command = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   plant->reset(command.position);
   AxisCondition warm;
   warm.growth = 40e-6;
   plant->set_condition(0, warm);
   plant->step(command);
   const DriveCommand reached =
-      drive_command(machine.hexapod.geometry, machine.X_WB.inverse() * plant->tool_pose());
+      drive_command(machine.hexapod().geometry, machine.X_WB.inverse() * plant->tool_pose());
   EXPECT_NEAR(reached.position[0] - command.position[0], 40e-6, 1e-11);
   EXPECT_NEAR(reached.position[1] - command.position[1], 0, 1e-11);
   EXPECT_NEAR(plant->displacement()[0], command.position[0], 1e-12);
@@ -110,10 +110,10 @@ TEST(QuasistaticPlant, GrowthMovesTheToolAndNotTheReading) {
 TEST(QuasistaticPlant, LooseNutLetsItsStrutLonger) {
   const auto machine = machine_g4();
   const auto plant = make_quasistatic_plant(machine, make_as_built(machine, "nominal", 1));
-  const DriveCommand command = drive_command(machine.hexapod.geometry, machine.X_BT_home);
+  const DriveCommand command = drive_command(machine.hexapod().geometry, machine.X_BT_home);
   plant->reset(command.position);
   const auto length = [&] {
-    return drive_command(machine.hexapod.geometry, machine.X_WB.inverse() * plant->tool_pose()).position[4];
+    return drive_command(machine.hexapod().geometry, machine.X_WB.inverse() * plant->tool_pose()).position[4];
   };
   const double before = length();
   AxisCondition loose;
@@ -169,7 +169,7 @@ TEST(QuasistaticPlant, StepAndSampleDoNotAllocate) {
 
 TEST(QuasistaticPlant, ScrewsThatTurnMoveTheToolAsKinematicsSays) {
   auto machine = machine_g4();
-  machine.hexapod.screw_rotation = machine::ScrewRotation::free;
+  machine.hexapod().screw_rotation = machine::ScrewRotation::free;
   for (machine::Drive& drive : machine.drives) drive.lead = 1.5875e-3;
   QuasistaticOptions options;
   options.play = false;
@@ -196,7 +196,7 @@ TEST(QuasistaticSampler, SaysWhatHasNoPoseAndGoesOn) {
   const auto machine = machine_g4();
   QuasistaticSampler sampler(machine, make_as_built(machine, "nominal", 1));
   PathSample home, bad;
-  home.position = drive_command(machine.hexapod.geometry, machine.X_BT_home).position;
+  home.position = drive_command(machine.hexapod().geometry, machine.X_BT_home).position;
   Pose X_WT = Pose::Identity();
   bad.position.fill(std::numeric_limits<double>::infinity());
   EXPECT_EQ(sampler.sample(bad, X_WT), kinematics::SolveStatus::bad_input);

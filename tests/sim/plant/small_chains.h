@@ -28,7 +28,7 @@ inline machine::MachineDescription small_chain(const std::vector<SmallAxis>& axe
   machine::MachineDescription m;
   m.name = "small";
   m.mechanism = "chain";
-  machine::ChainModel& model = m.chain.emplace();
+  machine::ChainModel& model = m.model.emplace<machine::ChainModel>();
   model.kinematics.kind = "chain";
   model.kinematics.length_scale = 0.1;
   kinematics::Chain& chain = model.kinematics.chain;
@@ -64,11 +64,11 @@ inline machine::MachineDescription two_links(double q1, double q2) {
   return small_chain({upper, lower}, {0.55, 0, 0});
 }
 
-inline DriveCommand hold(const machine::AxisArray& position) { return {position, {}}; }
+inline DriveCommand hold(const kinematics::AxisVector& position) { return {position, {}}; }
 
-inline machine::AxisArray home_of(const machine::MachineDescription& machine) {
-  machine::AxisArray home{};
-  const auto& axes = machine.chain->kinematics.home;
+inline kinematics::AxisVector home_of(const machine::MachineDescription& machine) {
+  kinematics::AxisVector home{};
+  const auto& axes = machine.chain().kinematics.home;
   std::copy(axes.begin(), axes.end(), home.begin());
   return home;
 }

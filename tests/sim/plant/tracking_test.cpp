@@ -68,15 +68,16 @@ Pose random_pose(const machine::MachineDescription& machine, Random& random) {
     const Pose X_BT =
         make_pose(exp_rotation(tilt * axis), Vec3(machine.X_BT_home.translation() + Vec3(x, y, z)));
     kinematics::StrutLengths lengths{};
-    if (kinematics::inverse(machine.hexapod.geometry, X_BT, lengths) != kinematics::SolveStatus::ok) continue;
+    if (kinematics::inverse(machine.hexapod().geometry, X_BT, lengths) != kinematics::SolveStatus::ok)
+      continue;
     const auto [low, high] = std::minmax_element(lengths.begin(), lengths.end());
     if (*low > from_mm(173) && *high < from_mm(237)) return X_BT;
   }
 }
 
 /// Rest to rest in the drives along a quintic with zero end velocity and acceleration.
-void drive_to(Plant& plant, const machine::AxisArray& goal, double duration) {
-  const machine::AxisArray start = plant.displacement();
+void drive_to(Plant& plant, const kinematics::AxisVector& goal, double duration) {
+  const kinematics::AxisVector start = plant.displacement();
   const int steps = steps_for(plant, duration), rest = steps_for(plant, 0.03);
   for (int k = 0; k < steps + rest; ++k) {
     const double s = std::min(1.0, static_cast<double>(k) / steps);
@@ -143,7 +144,7 @@ TEST(MujocoPlant, ResetStartsTheClockAtRestAtTheDisplacements) {
 // coupled kinematics puts it, and visibly not where guided screws would have it.
 TEST(MujocoPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
   auto machine = machine_g4();
-  machine.hexapod.screw_rotation = machine::ScrewRotation::free;
+  machine.hexapod().screw_rotation = machine::ScrewRotation::free;
   for (machine::Drive& drive : machine.drives) drive.lead = from_mm(1.5875);
   const AsBuilt built = make_as_built(machine, "nominal", 1);
   Pose X_BT = machine.X_BT_home;
@@ -152,7 +153,7 @@ TEST(MujocoPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
   kinematics::StrutLengths lengths{};
   ASSERT_EQ(kinematics::inverse(built.hexapod, machine.screw_coupling(), X_BT, lengths),
             kinematics::SolveStatus::ok);
-  machine::AxisArray displacement{};
+  kinematics::AxisVector displacement{};
   for (std::size_t i = 0; i < lengths.size(); ++i)
     displacement[i] = lengths[i] - built.hexapod.length_offset[i];
   const Vec3 due = machine.X_WB * X_BT.translation();
@@ -161,7 +162,7 @@ TEST(MujocoPlant, TurningScrewsMoveTheTipAsKinematicsSays) {
   EXPECT_LE((plant->tool_pose().translation() - due).norm(), kTipError);
   for (std::size_t i = 0; i < lengths.size(); ++i)
     EXPECT_NEAR(plant->displacement()[i], displacement[i], kTipError);
-  machine.hexapod.screw_rotation = machine::ScrewRotation::guided;
+  machine.hexapod().screw_rotation = machine::ScrewRotation::guided;
   const auto guided = make_mujoco_plant(machine, built, without_play());
   guided->reset(displacement);
   EXPECT_GT((guided->tool_pose().translation() - due).norm(), 20e-6);

@@ -13,7 +13,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 using machine::Setpoint;
 using machine::Status;
 
@@ -49,7 +49,7 @@ class PortCycle : public testing::TestWithParam<Case> {
   }
 
   /// Every axis swings about home, a setpoint a millisecond.
-  std::vector<Setpoint> swing(const AxisArray& home, double from, double until) const {
+  std::vector<Setpoint> swing(const AxisVector& home, double from, double until) const {
     std::vector<Setpoint> setpoints;
     const double rate = 2 * std::numbers::pi / 0.5, amplitude = 0.5e-3;  // [rad/s], [m] or [rad]
     for (double t = from + 1e-3; t < until; t += 1e-3) {

@@ -12,7 +12,7 @@
 namespace understudy::sim {
 namespace {
 
-using machine::AxisArray;
+using kinematics::AxisVector;
 using machine::Fault;
 using machine::Setpoint;
 using machine::Status;
@@ -23,7 +23,7 @@ class RigidPlant : public Plant {
   std::string engine() const override { return "rigid 1"; }
   double timestep() const override { return 0.5e-3; }
   double time() const override { return time_; }
-  void reset(const AxisArray& displacement) override { displacement_ = displacement; }
+  void reset(const AxisVector& displacement) override { displacement_ = displacement; }
   void step(const DriveCommand& command) override {
     if (time_ > diverge_at) throw MachineError("diverged");
     displacement_ = command.position;
@@ -34,8 +34,8 @@ class RigidPlant : public Plant {
     conditions.emplace_back(axis, condition);
   }
   Pose tool_pose() const override { return Pose(Eigen::Translation3d(time_, displacement_[0], 0)); }
-  AxisArray displacement() const override { return displacement_; }
-  AxisArray drive_force() const override { return {}; }
+  AxisVector displacement() const override { return displacement_; }
+  AxisVector drive_force() const override { return {}; }
   double closure_error() const override { return 0; }
 
   std::vector<DriveCommand> commands;
@@ -44,7 +44,7 @@ class RigidPlant : public Plant {
 
  private:
   double time_ = 0;
-  AxisArray displacement_{};
+  AxisVector displacement_{};
 };
 
 class SimulatedPortTest : public ::testing::Test {
@@ -80,13 +80,13 @@ class SimulatedPortTest : public ::testing::Test {
   machine::MachineDescription machine_;
   RigidPlant plant_;
   SimulatedPort port_;
-  AxisArray home_{};
+  AxisVector home_{};
   double exposed_at_ = -1;
 };
 
 TEST_F(SimulatedPortTest, StartsAtRestAtHome) {
   kinematics::StrutLengths lengths{};
-  ASSERT_EQ(kinematics::inverse(machine_.hexapod.geometry, machine_.X_BT_home, lengths),
+  ASSERT_EQ(kinematics::inverse(machine_.hexapod().geometry, machine_.X_BT_home, lengths),
             kinematics::SolveStatus::ok);
   for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_NEAR(home_[i], lengths[i], 1e-12);
   EXPECT_FALSE(port_.state().moving);
@@ -121,7 +121,7 @@ TEST_F(SimulatedPortTest, RefusesWhatCannotBe) {
   nan[2].position[4] = std::nan("");
   EXPECT_EQ(port_.submit(nan, 1), Status::rejected);
   auto far = ramp(0.01, 3, true);
-  far[2].position[4] = machine_.hexapod.limits.strut_max + 1e-6;
+  far[2].position[4] = machine_.hexapod().limits.strut_max + 1e-6;
   EXPECT_EQ(port_.submit(far, 1), Status::rejected);
   EXPECT_EQ(port_.submit(ramp(0.0, 5000, true), 10), Status::queue_full);
   EXPECT_EQ(port_.submit(ramp(0.01, 3, true), -1), Status::deadline_exceeded);
@@ -223,7 +223,7 @@ TEST(SimulatedPort, SwitchingAnObserverOffLeavesTheTrajectoryBitIdentical) {
     if (watched) observers.push_back(&recorder);
     SimulatedPort port(machine, *plant, {}, observers);
     std::vector<Setpoint> setpoints;
-    const AxisArray start = port.state().position;
+    const AxisVector start = port.state().position;
     for (int i = 1; i <= 300; ++i) {
       Setpoint s;
       s.time = port.now() + 1e-3 * i;

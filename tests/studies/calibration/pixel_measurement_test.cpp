@@ -44,7 +44,7 @@ TEST(PixelMeasurement, PosesShowEveryTargetInBothCameras) {
 // of freedom, and the boards' share is common to all: below 22.5 in 999 of 1000.
 TEST(PixelMeasurement, FindsAnAsBuiltMachineWithinItsCovariance) {
   const auto mechanism = hexapod().make_mechanism();
-  const auto& nominal = hexapod().hexapod.geometry;
+  const auto& nominal = hexapod().hexapod().geometry;
   const auto built = sim::make_as_built(hexapod(), "manufactured", 5).hexapod;
   Random random(2, "pixel poses");
   renderer::CalibrationView view;
