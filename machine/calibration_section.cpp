@@ -14,11 +14,12 @@ constexpr Bounds kPlace{-5000, 5000};
 constexpr double kUnitTolerance = 1e-6;  // of a direction or quaternion, as the file's digits leave it
 
 void read_record(YamlMap& map, CalibrationRecord& record) {
-  record.estimator = map.text("estimator");
-  record.measurements = map.text("measurements");
-  record.measurements_sha256 = map.text("measurements_sha256");
-  record.poses = map.integer("poses", 1, 1000000);
-  record.tip_sigma = map.quantity("tip_sigma_um", {0, 1e5});
+  record.estimator = map.text("estimator", "the one that found it");
+  record.measurements = map.text("measurements", "name of the table of measured poses");
+  record.measurements_sha256 = map.text("measurements_sha256", "checksum of its bytes");
+  record.poses = map.integer("poses", 1, 1000000, "rows of that table");
+  record.tip_sigma =
+      map.quantity("tip_sigma_um", {0, 1e5}, "3D uncertainty of the tip, 1 sigma, RMS over the work space");
 }
 
 void check_near(const YamlMap& map, const std::string& key, const std::string& what, double apart) {
@@ -32,16 +33,17 @@ void check_near(const YamlMap& map, const std::string& key, const std::string& w
 void read_struts(YamlMap& map, HexapodModel& hexapod) {
   kinematics::HexapodGeometry& g = hexapod.geometry;
   const kinematics::HexapodGeometry& drawn = hexapod.design;
-  g.deviation = map.quantity("deviation_mm", {0, 500});
+  g.deviation = map.quantity("deviation_mm", {0, 500}, "distance of a screw's axis from its base joint");
   const Place place = map.place("struts");
   std::size_t count = 0;
-  map.list("struts", [&](YamlMap& strut) {
-    if (count == kinematics::kStruts)
-      throw InputError(strut.place(), fmt::format("{} lists more than {} struts", map.path("struts"), count));
-    const std::size_t i = count++;
-    g.base_joint[i] = strut.vector("base_joint_mm", kPlace);
-    g.platform_joint[i] = strut.vector("platform_joint_mm", kPlace);
-    g.length_offset[i] = strut.quantity("length_offset_mm", {0, 5000});
+  map.list("struts", kinematics::kStruts, "all six, in their order", [&](YamlMap& strut, std::size_t i) {
+    if (i == kinematics::kStruts)
+      throw InputError(strut.place(), fmt::format("{} lists more than {} struts", map.path("struts"), i));
+    count = i + 1;
+    g.base_joint[i] = strut.vector("base_joint_mm", kPlace, "b_i in B");
+    g.platform_joint[i] = strut.vector("platform_joint_mm", kPlace, "a_i in T");
+    g.length_offset[i] =
+        strut.quantity("length_offset_mm", {0, 5000}, "strut length at drive displacement 0");
     if (!strut.complete()) return;
     const auto part = [&](const char* what) { return fmt::format("{} {}", what, i + 1); };
     check_near(strut, "base_joint_mm", part("base joint"), (g.base_joint[i] - drawn.base_joint[i]).norm());
@@ -57,8 +59,8 @@ void read_struts(YamlMap& map, HexapodModel& hexapod) {
 
 Pose read_mount(YamlMap& map, const std::string& body, const Pose& drawn) {
   const std::string quaternion = body + "_quaternion", place = body + "_mm";
-  const auto q = map.quantities(quaternion, 4, {-1, 1});
-  const Vec3 p = map.vector(place, kPlace);
+  const auto q = map.quantities(quaternion, 4, {-1, 1}, "its rotation in O: w, x, y, z, of unit length");
+  const Vec3 p = map.vector(place, kPlace, "its origin in O with all axes at 0");
   if (!map.complete()) return drawn;
   const Quat turn(q[0], q[1], q[2], q[3]);
   if (std::abs(turn.norm() - 1) > kUnitTolerance)
@@ -69,9 +71,9 @@ Pose read_mount(YamlMap& map, const std::string& body, const Pose& drawn) {
 }
 
 void read_axis(YamlMap& map, const kinematics::ChainAxis& drawn, kinematics::ChainAxis& axis) {
-  const std::string name = map.text("axis");
-  axis.direction = map.vector("direction", {-1, 1});
-  if (drawn.angle) axis.point = map.vector("point_mm", kPlace);
+  const std::string name = map.text("axis", "its name");
+  axis.direction = map.vector("direction", {-1, 1}, "unit vector in O at drive readings 0");
+  if (drawn.angle) axis.point = map.vector("point_mm", kPlace, "a point on the axis, in O");
   if (!map.complete()) return;
   if (name != drawn.name)
     throw InputError(map.place("axis"),
@@ -92,22 +94,22 @@ void read_axis(YamlMap& map, const kinematics::ChainAxis& drawn, kinematics::Cha
 
 void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
   ChainModel& model = machine.chain();
-  if (machine.mechanism != "arm" && machine.mechanism != "chain")
-    throw InputError(map.place(),
-                     fmt::format("a calibrated '{}' has no inverse kinematics here: only hexapod, "
-                                 "arm and chain can have a calibration",
-                                 machine.mechanism));
   kinematics::Chain& chain = model.kinematics.chain;
   const kinematics::Chain drawn = chain;
   chain.X_OT_zero = read_mount(map, "tool", drawn.X_OT_zero);
   chain.X_OS_zero = read_mount(map, "work", drawn.X_OS_zero);
   const Place place = map.place("axes");
   std::size_t count = 0;
-  map.list("axes", [&](YamlMap& axis) {
-    const std::size_t i = count++;
-    if (i < chain.axes.size()) return read_axis(axis, drawn.axes[i], chain.axes[i]);
-    throw InputError(axis.place(), fmt::format("{} lists more than {} axes", map.path("axes"), i));
-  });
+  const bool named = !model.kinematics.parameters.empty();
+  map.list("axes", named ? chain.axes.size() : 0, "in the order of the section axes",
+           [&](YamlMap& axis, std::size_t i) {
+             if (i >= chain.axes.size())
+               throw InputError(axis.place(), fmt::format("{} lists more than {} axes", map.path("axes"), i));
+             count = i + 1;
+             kinematics::ChainAxis as_drawn = drawn.axes[i];
+             if (!named) as_drawn.angle = axis.either("the axis turns", as_drawn.angle);
+             read_axis(axis, as_drawn, chain.axes[i]);
+           });
   if (count > 0 && count < chain.axes.size())
     throw InputError(place, fmt::format("{} lists {} axes, the machine has {}", map.path("axes"), count,
                                         chain.axes.size()));
@@ -119,17 +121,21 @@ void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
 }  // namespace
 
 void read_calibration(YamlMap& root, MachineDescription& machine) {
-  if (!root.complete()) {  // without the geometry there is nothing to compare with
-    root.has("calibration");
-    return;
-  }
-  root.section("calibration", [&](YamlMap& map) {
-    read_record(map, machine.calibration.emplace());
-    if (machine.is_chain())
-      read_chain_calibration(map, machine);
-    else
-      read_struts(map, machine.hexapod);
-  });
+  if (machine.is_chain() && machine.mechanism != "arm" && machine.mechanism != "chain")
+    return root.refuse("calibration",
+                       fmt::format("a calibrated '{}' has no inverse kinematics here: only hexapod, "
+                                   "arm and chain can have a calibration",
+                                   machine.mechanism));
+  if (!root.has("calibration")) return;
+  if (!root.complete() && !root.recording()) return;  // without the geometry there is nothing to compare with
+  root.section("calibration", "measured geometry, which the controller uses in place of the drawn one",
+               [&](YamlMap& map) {
+                 read_record(map, machine.calibration.emplace());
+                 if (machine.is_chain())
+                   read_chain_calibration(map, machine);
+                 else
+                   read_struts(map, machine.hexapod());
+               });
 }
 
 }  // namespace understudy::machine

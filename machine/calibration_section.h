@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "core/yaml_map.h"
 #include "machine/description.h"
-#include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 
@@ -13,8 +13,8 @@ namespace understudy::machine {
 constexpr double kFarFromDrawing = 25e-3;    // [m]
 constexpr double kTurnedFromDrawing = 0.17;  // [rad], 10 deg
 
-/// After the geometry and the axes. Throws InputError for a part that is missing, told twice, or far from
-/// what is drawn.
+/// Where the file has one; after the geometry and the axes. Throws InputError for a part that is missing,
+/// told twice, or far from what is drawn.
 void read_calibration(YamlMap& root, MachineDescription& machine);
 
 /// The section for `machine`, whose geometry (or chain) and calibration record are the calibrated ones.

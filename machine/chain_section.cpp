@@ -22,8 +22,8 @@ using kinematics::ChainKind;
 constexpr Bounds kPlace{-5000, 5000};
 constexpr double kSameLine = 1e-6;  // [m] or [rad]; two turning axes nearer than this are one
 
-Vec3 read_direction(YamlMap& map, const std::string& key) {
-  const Vec3 direction = map.vector(key, {-1, 1});
+Vec3 read_direction(YamlMap& map, const std::string& key, const char* about) {
+  const Vec3 direction = map.vector(key, {-1, 1}, about);
   if (!map.complete()) return Vec3::UnitZ();
   if (direction.norm() < 0.1)
     throw InputError(map.place(key),
@@ -37,8 +37,8 @@ struct Carrier {
   Place place;
 };
 
-Carrier read_carrier(YamlMap& map, const std::string& key) {
-  return {map.text(key), map.path(key), map.place(key)};
+Carrier read_carrier(YamlMap& map, const std::string& key, const char* about) {
+  return {map.text(key, about), map.path(key), map.place(key)};
 }
 
 int find_axis(const Chain& chain, const Carrier& carrier) {
@@ -70,12 +70,12 @@ void check_name(const YamlMap& map, const Chain& chain, const std::string& name)
 /// Of a kind whose file lists its axes: where the axis is.
 ChainAxis read_line(YamlMap& map, const Chain& chain) {
   ChainAxis axis;
-  axis.name = map.text("name");
-  check_name(map, chain, axis.name);
-  axis.angle = map.word("moves", {"turns", "slides"}) == "turns";
-  axis.direction = read_direction(map, "direction");
-  if (axis.angle) axis.point = map.vector("point_mm", kPlace);
-  axis.parent = find_axis(chain, read_carrier(map, "carried_by"));
+  axis.name = map.text("name", "letters, digits, spaces, - and _");
+  if (map.complete()) check_name(map, chain, axis.name);
+  axis.angle = map.word("moves", {"turns", "slides"}, "turns or slides") == "turns";
+  axis.direction = read_direction(map, "direction", "in O; a turn is right-handed about it");
+  if (axis.angle) axis.point = map.vector("point_mm", kPlace, "a point on the axis, in O");
+  axis.parent = find_axis(chain, read_carrier(map, "carried_by", "an axis further up in the list, or frame"));
   return axis;
 }
 
@@ -83,10 +83,11 @@ void read_range(YamlMap& map, ChainAxis& axis) {
   const bool given = std::isfinite(axis.lower) && std::isfinite(axis.upper);  // by a URDF
   if (given && !map.has(axis.angle ? "range_deg" : "range_mm")) return;
   if (axis.angle && map.has("endless")) {
-    if (map.word("endless", {"yes", "no"}) == "yes") return;
+    if (map.word("endless", {"yes", "no"}, "yes: no range") == "yes") return;
   }
   const std::string key = axis.angle ? "range_deg" : "range_mm";
-  const auto range = map.quantities(key, 2, axis.angle ? Bounds{-3600, 3600} : kPlace);
+  const auto range =
+      map.quantities(key, 2, axis.angle ? Bounds{-3600, 3600} : kPlace, "lowest and highest position");
   if (!map.complete()) return;
   axis.lower = range[0];
   axis.upper = range[1];
@@ -99,7 +100,8 @@ void read_range(YamlMap& map, ChainAxis& axis) {
 
 double read_home(YamlMap& map, const ChainAxis& axis) {
   const std::string key = axis.angle ? "home_deg" : "home_mm";
-  const double home = map.quantity(key, axis.angle ? Bounds{-3600, 3600} : kPlace);
+  const double home =
+      map.quantity(key, axis.angle ? Bounds{-3600, 3600} : kPlace, "where the machine starts");
   if (!map.complete() || (home >= axis.lower && home <= axis.upper)) return home;
   const double unit = axis.angle ? kDegree : kMillimetre;
   throw InputError(map.place(key),
@@ -109,9 +111,9 @@ double read_home(YamlMap& map, const ChainAxis& axis) {
 
 Link read_link(YamlMap& map) {
   Link link;
-  link.mass = map.quantity("mass_kg", {1e-4, 1e4});
-  link.centre_O = map.vector("centre_mm", kPlace);
-  link.inertia_O = read_inertia(map, "inertia_kg_mm2").asDiagonal();
+  link.mass = map.quantity("mass_kg", {1e-4, 1e4}, "of the body between this axis and the next");
+  link.centre_O = map.vector("centre_mm", kPlace, "centre of mass in O, all axes at 0");
+  link.inertia_O = read_inertia(map, "inertia_kg_mm2", "about the centre along O's axes").asDiagonal();
   if (map.has("bodies")) read_bodies(map, link.bodies);
   return link;
 }
@@ -128,41 +130,59 @@ void check_apart(const YamlMap& map, const Chain& chain, std::size_t index) {
                                               parent.name, axis.name, to_mm(distance)));
 }
 
+/// For the schema, which reads no URDF: every axis that one may have.
+ChainAxis any_urdf_axis(YamlMap& map) {
+  ChainAxis axis;
+  axis.angle = map.either("the axis turns", true);
+  if (map.either("the URDF gives its range", true)) axis.lower = axis.upper = 0;
+  return axis;
+}
+
 void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription& machine) {
   ChainModel& model = machine.chain();
   Chain& chain = model.kinematics.chain;
   if (listed) {
     if (index >= kinematics::kMaxAxes)
       throw InputError(map.place(), fmt::format("more than {} axes", kinematics::kMaxAxes));
+    chain.axes.resize(index);
     chain.axes.push_back(read_line(map, chain));
   } else if (index >= chain.axes.size()) {
     throw InputError(map.place(), fmt::format("{} axes are given, '{}' has {}", index + 1,
                                               model.kinematics.kind, chain.axes.size()));
-  } else if (const std::string name = map.text("name"); name != chain.axes[index].name && map.complete()) {
+  } else if (const std::string name = map.text("name", "letters, digits, spaces, - and _");
+             name != chain.axes[index].name && map.complete()) {
     throw InputError(map.place("name"),
                      fmt::format("{} is '{}', where axis {} of '{}' is '{}'", map.path("name"), name,
                                  index + 1, model.kinematics.kind, chain.axes[index].name));
   }
   ChainAxis& axis = chain.axes[index];
+  if (map.recording() && !listed && model.kinematics.parameters.empty()) axis = any_urdf_axis(map);
   read_range(map, axis);
   model.kinematics.home.push_back(read_home(map, axis));
-  map.section("drive", [&](YamlMap& drive) { read_drive(drive, axis.angle, machine.drives[index]); });
-  model.play.push_back(axis.angle ? map.quantity("play_arcmin", {0, 600})
-                                  : map.quantity("play_um", {0, 2000}));
+  map.section("drive", "motor and gear",
+              [&](YamlMap& drive) { read_drive(drive, axis.angle, machine.drives[index]); });
+  model.play.push_back(axis.angle ? map.quantity("play_arcmin", {0, 600}, "total free travel")
+                                  : map.quantity("play_um", {0, 2000}, "total free travel"));
   const std::string friction = axis.angle ? "friction_newton_metre" : "friction_n";
-  model.friction.push_back(map.has(friction) ? map.quantity(friction, {0, 1000}) : 0.0);
+  model.friction.push_back(
+      map.has(friction)
+          ? map.quantity(friction, {0, 1000}, "a smaller load leaves the axis where it is within its play")
+          : 0.0);
   // A link that a URDF has told may be told anew.
   const bool told = index < model.links.size() && model.links[index].mass > 0;
   if (index >= model.links.size()) model.links.emplace_back();
   if (!told || map.has("link"))
-    map.section("link", [&](YamlMap& link) { model.links[index] = read_link(link); });
+    map.section("link", "what the axis carries, told in O with all axes at 0",
+                [&](YamlMap& link) { model.links[index] = read_link(link); });
   if (map.complete()) check_apart(map, chain, index);
 }
 
 /// The tool at zero, for chains that list their axes.
 Pose read_tool_mount(YamlMap& map) {
-  const Vec3 tip = map.vector("tip_mm", kPlace);
-  return make_pose(shortest_arc_from_z(read_direction(map, "tool_direction")), tip);
+  const Vec3 tip =
+      map.vector("tip_mm", kPlace, "the tip, in O with all axes at 0; with a URDF, on its tool_link");
+  return make_pose(shortest_arc_from_z(read_direction(map, "tool_direction", "from the tip into the tool")),
+                   tip);
 }
 
 /// The body that a URDF's links on one axis make together.
@@ -187,8 +207,15 @@ Link rigid_body(const UrdfArm& arm, int axis) {
 /// Axes, links and the tool's mount from a URDF beside the machine file.
 void read_urdf_chain(YamlMap& map, MachineDescription& machine) {
   ChainModel& model = machine.chain();
-  const std::string file = map.text("urdf"), base = map.text("base_link"), tool = map.text("tool_link");
+  const std::string file = map.text("urdf", "file with axes, ranges and masses, relative to this one"),
+                    base = map.text("base_link", "the link that carries the work"),
+                    tool = map.text("tool_link", "the link that carries the tool");
   const Pose X_LT = read_tool_mount(map);
+  if (map.recording()) {  // one axis for all, whose link the URDF tells
+    model.kinematics.chain.axes.resize(1);
+    model.links.resize(1);
+    model.links[0].mass = 1;
+  }
   if (!map.complete()) return;
   const auto path = machine.file.parent_path() / file;
   const UrdfArm arm = read_urdf(path, base, tool);
@@ -199,8 +226,8 @@ void read_urdf_chain(YamlMap& map, MachineDescription& machine) {
 }
 
 void read_base(YamlMap& map, MachineDescription& machine) {
-  const Vec3 base = map.vector("base_mm", kPlace);
-  const double turn = map.quantity("base_turn_deg", {-360, 360});
+  const Vec3 base = map.vector("base_mm", kPlace, "B in W");
+  const double turn = map.quantity("base_turn_deg", {-360, 360}, "turn of B about z of W");
   machine.X_WB = make_pose(Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ())), base);
 }
 
@@ -211,39 +238,45 @@ void read_chain(YamlMap& root, MachineDescription& machine) {
   model.kinematics.kind = machine.mechanism;
   const ChainKind& kind = *kinematics::find_chain_kind(machine.mechanism);
   Chain& chain = model.kinematics.chain;
-  bool listed = kind.chain == nullptr;
+  const bool from_urdf = kind.chain == nullptr && root.has("geometry.urdf");
+  const bool listed = kind.chain == nullptr && !from_urdf;
   Carrier tool, work;
   Place base;
   bool based = false;
-  root.section("geometry", [&](YamlMap& map) {
+  root.section("geometry", "the mechanism as drawn", [&](YamlMap& map) {
+    model.kinematics.parameters.clear();
     for (const auto& parameter : kind.parameters)
-      model.kinematics.parameters.push_back(map.quantity(parameter.key, {parameter.low, parameter.high}));
+      model.kinematics.parameters.push_back(
+          map.quantity(parameter.key, {parameter.low, parameter.high}, parameter.about));
     base = map.place("base_mm");
     if (map.has("base_mm")) read_base(map, machine);
     based = map.has("base_mm");
-    if (!listed) {
-      if (map.complete()) chain = kind.chain(model.kinematics.parameters);
+    if (kind.chain) {
+      chain = kind.chain(model.kinematics.parameters);
       return;
     }
-    if (map.has("urdf")) {
-      read_urdf_chain(map, machine);
-      listed = false;
-      return;
-    }
-    tool = read_carrier(map, "tool_carried_by");
-    work = read_carrier(map, "work_carried_by");
+    if (from_urdf) return read_urdf_chain(map, machine);
+    tool = read_carrier(map, "tool_carried_by", "name of an axis, or frame");
+    work = read_carrier(map, "work_carried_by", "name of an axis, or frame");
     chain.X_OT_zero = read_tool_mount(map);
   });
-  root.section("conditioning", [&](YamlMap& map) {
-    model.kinematics.length_scale = map.quantity("length_scale_mm", {1, 5000});
-    if (map.has("condition_max")) model.kinematics.condition_max = map.quantity("condition_max", {1, 1e6});
+  root.section("conditioning", "how axes are weighed against each other", [&](YamlMap& map) {
+    model.kinematics.length_scale =
+        map.quantity("length_scale_mm", {1, 5000}, "a radian weighs as much as this");
+    if (map.has("condition_max"))
+      model.kinematics.condition_max = map.quantity("condition_max", {1, 1e6}, "of the Jacobian");
   });
-  std::size_t index = 0;
-  root.list("axes", [&](YamlMap& map) { read_axis(map, listed, index++, machine); });
-  if (root.has("frame")) root.section("frame", [&](YamlMap& map) { read_bodies(map, model.frame_bodies); });
+  std::size_t count = 0;
+  root.list("axes", kind.chain ? chain.axes.size() : 0, "range, drive, play and body of each axis",
+            [&](YamlMap& map, std::size_t index) {
+              read_axis(map, listed, index, machine);
+              count = index + 1;
+            });
+  if (root.has("frame"))
+    root.section("frame", "what stands still", [&](YamlMap& map) { read_bodies(map, model.frame_bodies); });
   if (!root.complete()) return;
-  if (index < chain.axes.size())
-    throw InputError(root.place("axes"), fmt::format("axes lists {}, '{}' has {}", index,
+  if (count < chain.axes.size())
+    throw InputError(root.place("axes"), fmt::format("axes lists {}, '{}' has {}", count,
                                                      model.kinematics.kind, chain.axes.size()));
   if (listed) {
     chain.tool_axis = find_axis(chain, tool);

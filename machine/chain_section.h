@@ -2,8 +2,8 @@
 // with its range, drive, play and the body that it carries.
 #pragma once
 
+#include "core/yaml_map.h"
 #include "machine/description.h"
-#include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 

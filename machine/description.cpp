@@ -5,6 +5,7 @@
 #include "core/digest.h"
 #include "core/output_file.h"
 #include "core/units.h"
+#include "core/yaml_map.h"
 #include "kinematics/chain/chain_kind.h"
 #include "machine/calibration_section.h"
 #include "machine/chain_section.h"
@@ -12,7 +13,6 @@
 #include "machine/model_files.h"
 #include "machine/optics_section.h"
 #include "machine/tool_section.h"
-#include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 namespace {
@@ -20,30 +20,33 @@ namespace {
 ToleranceSet read_tolerance_set(YamlMap& map, bool chain) {
   ToleranceSet set;
   if (chain) {
-    set.axis_position = map.quantity("axis_position_mm", {0, 20});
-    set.axis_direction = map.quantity("axis_direction_deg", {0, 5});
-    set.zero_length = map.quantity("zero_mm", {0, 20});
-    set.zero_angle = map.quantity("zero_deg", {0, 5});
+    set.axis_position = map.quantity("axis_position_mm", {0, 20},
+                                     "each coordinate of a turning axis' point, and of the tool's mount");
+    set.axis_direction =
+        map.quantity("axis_direction_deg", {0, 5}, "tilt of an axis, about both directions across it");
+    set.zero_length = map.quantity("zero_mm", {0, 20}, "zero of a sliding axis");
+    set.zero_angle = map.quantity("zero_deg", {0, 5}, "zero of a turning axis");
   } else {
-    set.joint_position = map.quantity("joint_position_mm", {0, 20});
-    set.length_offset = map.quantity("length_offset_mm", {0, 20});
+    set.joint_position = map.quantity("joint_position_mm", {0, 20}, "each coordinate of a joint");
+    set.length_offset = map.quantity("length_offset_mm", {0, 20}, "of a strut");
   }
   return set;
 }
 
 void read_tolerances(YamlMap& map, bool chain, Tolerances& tolerances) {
-  map.section("manufactured",
+  map.section("manufactured", "before any calibration",
               [&](YamlMap& set) { tolerances.manufactured = read_tolerance_set(set, chain); });
-  map.section("after_calibration",
+  map.section("after_calibration", "left after a calibration",
               [&](YamlMap& set) { tolerances.after_calibration = read_tolerance_set(set, chain); });
 }
 
 void read_gap(YamlMap& map, GapLimits& gap) {
   constexpr Bounds kGap{0.001, 10};
-  gap.accepted_min = map.quantity("accepted_min_mm", kGap);
-  gap.accepted_max = map.quantity("accepted_max_mm", kGap);
-  gap.aim = map.quantity("aim_mm", kGap);
-  gap.standoff = map.quantity("standoff_mm", {0.01, 50});
+  gap.accepted_min = map.quantity("accepted_min_mm", kGap, "smallest gap that is good");
+  gap.accepted_max = map.quantity("accepted_max_mm", kGap, "largest gap at which a bead sticks");
+  gap.aim = map.quantity("aim_mm", kGap, "gap that the controller makes");
+  gap.standoff =
+      map.quantity("standoff_mm", {0.01, 50}, "distance from the surface at which an approach begins");
   if (!map.complete()) return;
   if (gap.accepted_min >= gap.accepted_max)
     throw InputError(
@@ -62,15 +65,16 @@ void read_gap(YamlMap& map, GapLimits& gap) {
 }
 
 void read_table(YamlMap& map, geometry::Shape& table) {
-  const Vec3 size = map.vector("size_mm", {1, 5000});
+  const Vec3 size = map.vector("size_mm", {1, 5000}, "its top is z = 0 of W");
   table = {"table", geometry::Box{size}, make_pose(Quat::Identity(), Vec3(0, 0, -size.z() / 2))};
 }
 
 void read_motion(YamlMap& map, MachineDescription& machine) {
-  machine.cycle_time = map.quantity("cycle_ms", {0.05, 100});
-  machine.travel_velocity = map.quantity("travel_mm_per_s", {0.1, 5000});
-  machine.orientation_velocity = map.quantity("orientation_deg_per_s", {0.1, 5000});
-  machine.acceleration = map.quantity("acceleration_mm_per_s2", {1, 1e6});
+  machine.cycle_time = map.quantity("cycle_ms", {0.05, 100}, "period of the setpoints");
+  machine.travel_velocity = map.quantity("travel_mm_per_s", {0.1, 5000}, "of the tip in G0");
+  machine.orientation_velocity =
+      map.quantity("orientation_deg_per_s", {0.1, 5000}, "limit of the tool's angular speed");
+  machine.acceleration = map.quantity("acceleration_mm_per_s2", {1, 1e6}, "of the tip along the path");
 }
 
 std::vector<std::string> mechanism_words() {
@@ -80,25 +84,33 @@ std::vector<std::string> mechanism_words() {
 }
 
 void read_machine(YamlMap& root, MachineDescription& m) {
-  m.name = root.text("name");
-  m.mechanism = root.word("mechanism", mechanism_words());
+  m.name = root.text("name", "shown in reports");
+  m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
+  root.require("mechanism");
   const bool chain = m.mechanism != "hexapod";
   if (chain)
     read_chain(root, m);
   else
     read_hexapod(root, m);
-  if (root.has("calibration")) read_calibration(root, m);
-  root.section("tool", [&](YamlMap& map) { read_tool(map, m.tool); });
-  if (root.has("process")) root.section("process", [&](YamlMap& map) { read_process(map, m.process); });
+  read_calibration(root, m);
+  root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool); });
+  if (root.has("process"))
+    root.section("process", "the filament between drive and part",
+                 [&](YamlMap& map) { read_process(map, m.process); });
   m.has_microscope = !chain || root.has("laser") || root.has("microscope");
   if (m.has_microscope) {
-    root.section("laser", [&](YamlMap& map) { read_laser(map, m.laser); });
-    root.section("microscope", [&](YamlMap& map) { read_microscope(map, m.microscope); });
+    root.section("laser", "the beam whose dot measures the gap",
+                 [&](YamlMap& map) { read_laser(map, m.laser); });
+    root.section("microscope", "the camera that sees the dot",
+                 [&](YamlMap& map) { read_microscope(map, m.microscope); });
   }
-  root.section("tolerances", [&](YamlMap& map) { read_tolerances(map, chain, m.tolerances); });
-  if (m.tool.prints() || root.has("gap")) root.section("gap", [&](YamlMap& map) { read_gap(map, m.gap); });
-  root.section("table", [&](YamlMap& map) { read_table(map, m.table); });
-  root.section("motion", [&](YamlMap& map) { read_motion(map, m); });
+  root.section("tolerances", "1 sigma of a built machine about this description",
+               [&](YamlMap& map) { read_tolerances(map, chain, m.tolerances); });
+  // A tool without a nozzle lays nothing that a gap would matter to.
+  if (!root.has("tool.end_mill_diameter_mm") || root.has("gap"))
+    root.section("gap", "between tip and surface", [&](YamlMap& map) { read_gap(map, m.gap); });
+  root.section("table", "what the work stands on", [&](YamlMap& map) { read_table(map, m.table); });
+  root.section("motion", "speeds of the tip, and the cycle", [&](YamlMap& map) { read_motion(map, m); });
   if (!root.complete()) return;
   if (!chain) settle_home(root.place(m.calibration ? "calibration" : "geometry"), m);
   if (m.has_microscope) check_optics(root, m);
@@ -114,6 +126,13 @@ MachineDescription load_machine(const std::string& name_or_path) {
   YamlMap::read_text(bytes, machine.file.string(),
                      [&machine](YamlMap& root) { read_machine(root, machine); });
   return machine;
+}
+
+MapSchema machine_schema() {
+  return YamlMap::schema([](YamlMap& root) {
+    MachineDescription machine;
+    read_machine(root, machine);
+  });
 }
 
 }  // namespace understudy::machine

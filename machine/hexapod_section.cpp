@@ -41,16 +41,25 @@ void check_struts_exist(const Place& place, const MachineDescription& machine) {
 }
 
 void read_geometry(YamlMap& map, MachineDescription& machine) {
-  const double base_radius = map.quantity("base_radius_mm", {5, 2000});
-  const double base_half_angle = map.quantity("base_pair_half_angle_deg", {0, 60});
-  const double base_height = map.quantity("base_height_mm", {5, 5000});
-  const double platform_radius = map.quantity("platform_radius_mm", {5, 2000});
-  const double platform_half_angle = map.quantity("platform_pair_half_angle_deg", {0, 60});
-  const double platform_height = map.quantity("platform_height_mm", {0, 1000});
-  const Vec3 home_tip = map.vector("home_tip_mm", {-5000, 5000});
-  const double length_offset = map.quantity("length_offset_mm", {0, 5000});
-  machine.hexapod().geometry.deviation = map.quantity("deviation_mm", {0, 500});
-  machine.hexapod().strut_radius = map.quantity("strut_body_radius_mm", {0.1, 100});
+  const double base_radius = map.quantity("base_radius_mm", {5, 2000}, "base joints, from the axis");
+  const double base_half_angle =
+      map.quantity("base_pair_half_angle_deg", {0, 60}, "base joints stand at azimuth 120 k -+ this");
+  const double base_height =
+      map.quantity("base_height_mm", {5, 5000}, "plane of the base joints above the table's top");
+  const double platform_radius =
+      map.quantity("platform_radius_mm", {5, 2000}, "ball joints, from the tool's axis");
+  const double platform_half_angle = map.quantity("platform_pair_half_angle_deg", {0, 60},
+                                                  "ball joints stand at azimuth 120 k -+ (60 - this)");
+  const double platform_height =
+      map.quantity("platform_height_mm", {0, 1000}, "plane of the ball joints above the tip");
+  const Vec3 home_tip =
+      map.vector("home_tip_mm", {-5000, 5000}, "tip in W at home, where the tool is upright");
+  const double length_offset =
+      map.quantity("length_offset_mm", {0, 5000}, "strut length at drive displacement 0");
+  machine.hexapod().geometry.deviation = map.quantity(
+      "deviation_mm", {0, 500}, "distance of a screw's axis from its base joint (Song 2015, eq 4)");
+  machine.hexapod().strut_radius =
+      map.quantity("strut_body_radius_mm", {0.1, 100}, "of a strut in collision checks and pictures");
 
   for (int i = 0; i < kinematics::kStruts; ++i) {
     const auto strut = static_cast<std::size_t>(i);
@@ -68,15 +77,17 @@ void read_geometry(YamlMap& map, MachineDescription& machine) {
 
 void read_limits(YamlMap& map, MachineDescription& machine) {
   kinematics::HexapodLimits& limits = machine.hexapod().limits;
-  limits.strut_min = map.quantity("strut_min_mm", {1, 5000});
-  limits.strut_max = map.quantity("strut_max_mm", {1, 5000});
-  limits.base_alpha_min = map.quantity("base_joint_alpha_min_deg", {-90, 90});
-  limits.base_alpha_max = map.quantity("base_joint_alpha_max_deg", {-90, 90});
-  limits.base_beta_max = map.quantity("base_joint_beta_max_deg", {1, 90});
-  limits.ball_min = map.quantity("ball_joint_min_deg", {0, 180});
-  limits.ball_max = map.quantity("ball_joint_max_deg", {0, 180});
-  limits.screw_distance_min = map.quantity("screw_distance_min_mm", {0, 500});
-  limits.condition_max = map.quantity("condition_max", {1, 1e6});
+  limits.strut_min = map.quantity("strut_min_mm", {1, 5000}, "shortest strut");
+  limits.strut_max = map.quantity("strut_max_mm", {1, 5000}, "longest strut");
+  limits.base_alpha_min = map.quantity("base_joint_alpha_min_deg", {-90, 90}, "base joint, positive inward");
+  limits.base_alpha_max = map.quantity("base_joint_alpha_max_deg", {-90, 90}, "base joint, positive inward");
+  limits.base_beta_max = map.quantity("base_joint_beta_max_deg", {1, 90}, "base joint to either side");
+  limits.ball_min = map.quantity("ball_joint_min_deg", {0, 180}, "ball joint, from the stud's axis");
+  limits.ball_max = map.quantity("ball_joint_max_deg", {0, 180}, "ball joint, from the stud's axis");
+  limits.screw_distance_min =
+      map.quantity("screw_distance_min_mm", {0, 500}, "least distance of the axes of two screws");
+  limits.condition_max =
+      map.quantity("condition_max", {1, 1e6}, "of the Jacobian, with lengths scaled by the platform radius");
   if (!map.complete()) return;
   const auto ordered = [&map](const char* low_key, double low, const char* high_key, double high, double unit,
                               const char* unit_name) {
@@ -94,21 +105,25 @@ void read_limits(YamlMap& map, MachineDescription& machine) {
 }  // namespace
 
 void read_hexapod(YamlMap& root, MachineDescription& machine) {
-  root.section("geometry", [&](YamlMap& map) { read_geometry(map, machine); });
-  root.section("limits", [&](YamlMap& map) { read_limits(map, machine); });
+  root.section("geometry", "the mechanism as drawn", [&](YamlMap& map) { read_geometry(map, machine); });
+  root.section("limits", "what struts and joints allow", [&](YamlMap& map) { read_limits(map, machine); });
   Drive drive;
-  root.section("drive", [&](YamlMap& map) {
+  root.section("drive", "motor and screw of every strut", [&](YamlMap& map) {
     read_drive(map, false, drive);
     if (map.has("screw_rotation")) {
-      const std::string word = map.word("screw_rotation", {"guided", "free", "compensated"});
+      const std::string word =
+          map.word("screw_rotation", {"guided", "free", "compensated"},
+                   "whether the joints turn the screws in their nuts, and whether the controller has it");
       machine.hexapod().screw_rotation = word == "free"          ? ScrewRotation::free
-                                         : word == "compensated" ? ScrewRotation::compensated
-                                                                 : ScrewRotation::guided;
+                                       : word == "compensated" ? ScrewRotation::compensated
+                                                               : ScrewRotation::guided;
     }
   });
   std::fill_n(machine.drives.begin(), kinematics::kStruts, drive);
-  root.section("play", [&](YamlMap& map) { read_play(map, machine.hexapod().play); });
-  root.section("masses", [&](YamlMap& map) { read_masses(map, machine.hexapod().masses); });
+  root.section("play", "total free travel between both ends",
+               [&](YamlMap& map) { read_play(map, machine.hexapod().play); });
+  root.section("masses", "of platform, struts and motors",
+               [&](YamlMap& map) { read_masses(map, machine.hexapod().masses); });
 }
 
 void settle_home(const Place& place, MachineDescription& machine) {

@@ -1,8 +1,8 @@
 // The hexapod's part of machine.yaml: geometry of three-fold symmetry, and what struts and joints allow.
 #pragma once
 
+#include "core/yaml_map.h"
 #include "machine/description.h"
-#include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 

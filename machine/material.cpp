@@ -13,9 +13,9 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "core/yaml_map.h"
 #include "machine/description.h"
 #include "machine/model_files.h"
-#include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 namespace fs = std::filesystem;
@@ -45,8 +45,8 @@ fs::path find_material(const std::string& name_or_path) {
                                fmt::join(names, ", ")));
 }
 
-double celsius(YamlMap& map, const std::string& key, Bounds bounds) {
-  return kCelsiusZero + map.quantity(key, bounds);
+double celsius(YamlMap& map, const std::string& key, Bounds bounds, const char* about) {
+  return kCelsiusZero + map.quantity(key, bounds, about);
 }
 
 void check_temperatures(const YamlMap& map, const Material& m) {
@@ -68,19 +68,19 @@ void check_temperatures(const YamlMap& map, const Material& m) {
 }
 
 void read_material(YamlMap& map, Material& m) {
-  m.name = map.text("name");
-  m.density = map.quantity("density_kg_per_m3", {100, 20000});
-  m.specific_heat = map.quantity("specific_heat_j_per_kg_k", {100, 10000});
-  m.conductivity = map.quantity("conductivity_w_per_m_k", {0.01, 500});
-  m.emissivity = map.quantity("emissivity", {0, 1});
-  m.youngs_modulus = map.quantity("youngs_modulus_gpa", {0.001, 500});
-  m.poisson_ratio = map.quantity("poisson_ratio", {0, 0.5});
-  m.glass_transition = celsius(map, "glass_transition_c", {-100, 400});
-  m.wlf_c1 = map.quantity("wlf_c1", {1, 40});
-  m.wlf_c2 = map.quantity("wlf_c2_k", {1, 500});
-  m.nozzle_temperature = celsius(map, "nozzle_c", {20, 500});
-  m.nozzle_temperature_min = celsius(map, "nozzle_min_c", {20, 500});
-  m.nozzle_temperature_max = celsius(map, "nozzle_max_c", {20, 500});
+  m.name = map.text("name", "shown in reports");
+  m.density = map.quantity("density_kg_per_m3", {100, 20000}, "of the solid");
+  m.specific_heat = map.quantity("specific_heat_j_per_kg_k", {100, 10000}, "of the solid");
+  m.conductivity = map.quantity("conductivity_w_per_m_k", {0.01, 500}, "of heat");
+  m.emissivity = map.quantity("emissivity", {0, 1}, "of the surface");
+  m.youngs_modulus = map.quantity("youngs_modulus_gpa", {0.001, 500}, "below the glass transition");
+  m.poisson_ratio = map.quantity("poisson_ratio", {0, 0.5}, "below the glass transition");
+  m.glass_transition = celsius(map, "glass_transition_c", {-100, 400}, "where it hardens");
+  m.wlf_c1 = map.quantity("wlf_c1", {1, 40}, "Williams-Landel-Ferry, first constant");
+  m.wlf_c2 = map.quantity("wlf_c2_k", {1, 500}, "Williams-Landel-Ferry, second constant");
+  m.nozzle_temperature = celsius(map, "nozzle_c", {20, 500}, "usual nozzle temperature");
+  m.nozzle_temperature_min = celsius(map, "nozzle_min_c", {20, 500}, "lowest nozzle temperature");
+  m.nozzle_temperature_max = celsius(map, "nozzle_max_c", {20, 500}, "highest nozzle temperature");
   if (map.complete()) check_temperatures(map, m);
 }
 
@@ -109,6 +109,13 @@ Material load_material(const std::string& name_or_path) {
   Material material;
   YamlMap::read_text(text.str(), path.string(), [&](YamlMap& map) { read_material(map, material); });
   return material;
+}
+
+MapSchema material_schema() {
+  return YamlMap::schema([](YamlMap& map) {
+    Material material;
+    read_material(map, material);
+  });
 }
 
 double viscosity(const Material& material, double temperature) {

@@ -1,8 +1,10 @@
-// Where machine descriptions lie.
+// Where the files of machines and materials lie, and which keys they have.
 #pragma once
 
 #include <filesystem>
 #include <string>
+
+#include "core/map_schema.h"
 
 namespace understudy::machine {
 
@@ -11,5 +13,11 @@ std::filesystem::path find_model(const std::string& name_or_path);
 
 /// The source tree's or the installed models, whatever $UNDERSTUDY_MODELS says.
 std::filesystem::path shipped_models_folder();
+
+/// The keys of a machine.yaml, as load_machine() asks for them.
+MapSchema machine_schema();
+
+/// The keys of a material file, as load_material() asks for them.
+MapSchema material_schema();
 
 }  // namespace understudy::machine

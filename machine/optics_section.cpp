@@ -23,42 +23,49 @@ Pose aimed(double azimuth, double angle, const Vec3& target, double distance) {
 }  // namespace
 
 void read_laser(YamlMap& map, Laser& laser) {
-  const double azimuth = map.quantity("azimuth_deg", {-360, 360});
-  const double angle = map.quantity("angle_deg", {5, 80});
-  const double crossing = map.quantity("crosses_tip_plane_mm", {0, 50});
-  const double distance = map.quantity("distance_mm", {1, 1000});
+  const double azimuth =
+      map.quantity("azimuth_deg", {-360, 360}, "where it stands, about the tool's axis from +x towards +y");
+  const double angle = map.quantity("angle_deg", {5, 80}, "between its line of sight and the tool's axis");
+  const double crossing = map.quantity("crosses_tip_plane_mm", {0, 50},
+                                       "where the beam meets the plane of the tip, from the tool's axis");
+  const double distance = map.quantity("distance_mm", {1, 1000}, "from that point to the device");
   laser.X_TL = aimed(azimuth, angle, crossing * Vec3(std::cos(azimuth), std::sin(azimuth), 0), distance);
-  laser.waist_diameter = map.quantity("waist_diameter_mm", {0.005, 5});
-  laser.wavelength = map.quantity("wavelength_nm", {300, 1100});
-  laser.peak_level = map.quantity("peak_levels", {1, 255});
+  laser.waist_diameter = map.quantity("waist_diameter_mm", {0.005, 5}, "1/e^2 diameter at the surface");
+  laser.wavelength = map.quantity("wavelength_nm", {300, 1100}, "of the laser's light");
+  laser.peak_level = map.quantity("peak_levels", {1, 255},
+                                  "grey levels of the spot's centre on a matt surface facing the beam");
 }
 
 void read_microscope(YamlMap& map, Microscope& microscope) {
-  const double azimuth = map.quantity("azimuth_deg", {-360, 360});
-  const double angle = map.quantity("angle_deg", {0, 80});
-  const Vec3 target = map.vector("looks_at_mm", {-50, 50});
-  const double distance = map.quantity("distance_mm", {1, 1000});
+  const double azimuth =
+      map.quantity("azimuth_deg", {-360, 360}, "where it stands, about the tool's axis from +x towards +y");
+  const double angle = map.quantity("angle_deg", {0, 80}, "between its line of sight and the tool's axis");
+  const Vec3 target = map.vector("looks_at_mm", {-50, 50}, "point in T");
+  const double distance = map.quantity("distance_mm", {1, 1000}, "from that point to the device");
   microscope.X_TC = aimed(azimuth, angle, target, distance);
 
   Camera& camera = microscope.camera;
-  camera.width = map.integer("width_px", 16, 10000);
-  camera.height = map.integer("height_px", 16, 10000);
-  camera.focal_px = map.quantity("scale_px_per_mm", {0.1, 10000}) * distance;
-  const std::vector<double> centre = map.quantities("centre_px", 2, {-10000, 20000});
+  camera.width = map.integer("width_px", 16, 10000, "of the sensor");
+  camera.height = map.integer("height_px", 16, 10000, "of the sensor");
+  camera.focal_px = map.quantity("scale_px_per_mm", {0.1, 10000}, "at the point looked at") * distance;
+  const std::vector<double> centre = map.quantities("centre_px", 2, {-10000, 20000}, "principal point");
   camera.centre_px = {centre[0], centre[1]};
-  const std::vector<double> distortion = map.quantities("distortion", 4, {-10, 10});
+  const std::vector<double> distortion =
+      map.quantities("distortion", 4, {-10, 10}, "of the lens: k1, k2, p1, p2 (Brown)");
   camera.k1 = distortion[0];
   camera.k2 = distortion[1];
   camera.p1 = distortion[2];
   camera.p2 = distortion[3];
 
-  microscope.exposure = map.quantity("exposure_ms", {0.001, 10000});
-  microscope.transfer = map.quantity("transfer_ms", {0, 10000});
-  microscope.aperture_sine = map.quantity("aperture_sine", {0.001, 1});
-  microscope.blur_px = map.quantity("blur_px", {0, 50});
-  microscope.full_well = map.quantity("full_well_electrons", {100, 1e7});
-  microscope.read_noise = map.quantity("read_noise_electrons", {0, 1e4});
-  microscope.ambient_level = map.quantity("ambient_levels", {0, 254});
+  microscope.exposure = map.quantity("exposure_ms", {0.001, 10000}, "of a frame");
+  microscope.transfer =
+      map.quantity("transfer_ms", {0, 10000}, "from the end of exposure until the controller has the frame");
+  microscope.aperture_sine =
+      map.quantity("aperture_sine", {0.001, 1}, "sin u on the object side: speckle and depth noise");
+  microscope.blur_px = map.quantity("blur_px", {0, 50}, "of the optics, 1 sigma");
+  microscope.full_well = map.quantity("full_well_electrons", {100, 1e7}, "at 255 grey levels");
+  microscope.read_noise = map.quantity("read_noise_electrons", {0, 1e4}, "1 sigma");
+  microscope.ambient_level = map.quantity("ambient_levels", {0, 254}, "grey levels without the laser");
 }
 
 void check_optics(const YamlMap& root, const MachineDescription& machine) {

@@ -1,8 +1,8 @@
 // The parts of machine.yaml about seeing the gap: laser and microscope, and whether they see the dot at all.
 #pragma once
 
+#include "core/yaml_map.h"
 #include "machine/description.h"
-#include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 

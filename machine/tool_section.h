@@ -1,8 +1,8 @@
 // The parts of machine.yaml about what moves and what it weighs: drives, play, masses, the tool's bodies.
 #pragma once
 
+#include "core/yaml_map.h"
 #include "machine/description.h"
-#include "machine/yaml_reader.h"
 
 namespace understudy::machine {
 
@@ -13,7 +13,7 @@ void read_masses(YamlMap& map, Masses& masses);
 /// Bodies of a tool or a link; poses in the frame that the file tells them in.
 void read_bodies(YamlMap& map, std::vector<geometry::Shape>& bodies);
 /// [kg m^2] along the axes of a frame; refuses moments that no body has.
-Vec3 read_inertia(YamlMap& map, const std::string& key);
+Vec3 read_inertia(YamlMap& map, const std::string& key, const char* about);
 void read_tool(YamlMap& map, Tool& tool);
 void read_process(YamlMap& map, Process& process);
 

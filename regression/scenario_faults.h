@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "core/strict_yaml.h"
+#include "core/yaml_map.h"
 #include "rehearsal/fault_request.h"
 
 namespace understudy::regression {
 
 /// The list under `faults`. Throws InputError with file and line.
-std::vector<rehearsal::FaultRequest> read_faults(rehearsal::StrictMap& scenario);
+std::vector<rehearsal::FaultRequest> read_faults(YamlMap& scenario);
 
 }  // namespace understudy::regression

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/output_file.h"
-#include "core/strict_yaml.h"
+#include "core/yaml_map.h"
 #include "regression/scenario_faults.h"
 #include "rehearsal/run_twin.h"
 
@@ -22,21 +22,23 @@ const std::vector<std::string> kGapControls{"off", "start", "continuous"};
 const std::vector<std::string> kStatistics{"min", "max", "mean", "median", "p95", "fraction_within"};
 constexpr std::uint64_t kMachinesMax = 1'000'000;  // beyond it a range of seeds is a slip of the pen
 
-fs::path existing_file(StrictMap& map, const std::string& key, const fs::path& folder) {
-  const fs::path path = (folder / map.text(key)).lexically_normal();
+bool is_path(const std::string& text, const std::string& extension) {
+  return text.find('/') != std::string::npos || text.ends_with(extension);
+}
+
+fs::path existing_file(YamlMap& map, const std::string& key, const fs::path& folder, const char* about) {
+  const std::string text = map.text(key, about);
+  if (text.empty()) return {};
+  const fs::path path = (folder / text).lexically_normal();
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored))
     map.fail(key, key + " " + path.string() + " does not exist or is not a file");
   return path;
 }
 
-bool is_path(const std::string& text, const std::string& extension) {
-  return text.find('/') != std::string::npos || text.ends_with(extension);
-}
-
-std::string name_or_path(StrictMap& map, const std::string& key, const fs::path& folder,
-                         const std::string& extension) {
-  const std::string text = map.text(key);
+std::string name_or_path(YamlMap& map, const std::string& key, const fs::path& folder,
+                         const std::string& extension, const char* about) {
+  const std::string text = map.text(key, about);
   if (!is_path(text, extension)) return text;
   const fs::path path = (folder / text).lexically_normal();
   std::error_code ignored;
@@ -44,109 +46,110 @@ std::string name_or_path(StrictMap& map, const std::string& key, const fs::path&
   return path.string();
 }
 
-std::string read_metric(StrictMap& map) {
-  const std::string metric = map.text("metric");
-  const std::vector<std::string>& known = metric_names();
-  if (std::find(known.begin(), known.end(), metric) != known.end()) return metric;
-  const std::string nearest = nearest_word(metric, known);
-  map.fail("metric",
-           "unknown metric '" + metric + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+/// A word, or the path of an as-built file.
+std::string read_as_built(YamlMap& map, const fs::path& folder) {
+  const std::string text = name_or_path(map, "as_built", folder, ".yaml",
+                                        "nominal, sampled, manufactured, or the path of an as-built file");
+  if (!text.empty() && !is_path(text, ".yaml")) map.check_word("as_built", text, kAsBuilt);
+  return text;
 }
 
-void read_unit(StrictMap& map, Expectation& expectation) {
+std::string read_metric(YamlMap& map, bool over_machines) {
+  std::vector<std::string> words;
+  for (const std::string& name : metric_names()) {
+    // The others are refused below, with a reason.
+    const bool fits = over_machines ? !metric_is_text(name) : !metric_is_of_series(name);
+    if (fits || !map.recording()) words.push_back(name);
+  }
+  const std::string metric = map.word("metric", words, "figure of the run");
+  map.require("metric");
+  if (!over_machines && metric_is_of_series(metric))
+    map.fail("metric", metric + " exists under 'machines' only");
+  return metric;
+}
+
+void read_unit(YamlMap& map, Expectation& expectation) {
+  constexpr const char* kAbout = "that of the metric; 1 of counts and fractions";
   const std::string of_metric = metric_unit(expectation.metric);
-  if (!map.has("unit")) {
-    if (of_metric != "1")
-      map.fail("metric", "the bound on " + expectation.metric + " lacks its unit: " + of_metric);
-    expectation.unit = "1";
-    return;
-  }
-  expectation.unit = map.text("unit");
-  if (expectation.unit != of_metric)
+  expectation.unit = of_metric;
+  if (of_metric == "1" && !map.has("unit")) return;
+  const std::string unit = map.recording() ? map.word("unit", {of_metric}, kAbout) : map.text("unit", kAbout);
+  if (unit.empty())
+    map.fail("metric", "the bound on " + expectation.metric + " lacks its unit: " + of_metric);
+  if (unit != of_metric)
     map.fail("unit", fmt::format("{} is in {}, not in {}", expectation.metric,
-                                 of_metric == "1" ? "1 (no unit)" : of_metric, expectation.unit));
+                                 of_metric == "1" ? "1 (no unit)" : of_metric, unit));
 }
 
-void read_text_bound(StrictMap& map, Expectation& expectation) {
+void read_text_bound(YamlMap& map, Expectation& expectation) {
   for (const char* key : {"min", "max", "tolerance", "unit"})
-    if (map.has(key)) map.fail(key, fmt::format("{} is a word; it has no '{}'", expectation.metric, key));
+    map.refuse(key, fmt::format("{} is a word; it has no '{}'", expectation.metric, key));
+  const std::vector<std::string> verdicts{"go", "no-go"};
   expectation.equals =
-      expectation.metric == "verdict" ? map.word("equals", {"go", "no-go"}) : map.text("equals");
+      map.word("equals", expectation.metric == "verdict" ? verdicts : std::vector<std::string>(),
+               "the word that it must be");
 }
 
-void read_number_bounds(StrictMap& map, Expectation& expectation) {
-  if (map.has("min")) expectation.min = map.number("min");
-  if (map.has("max")) expectation.max = map.number("max");
-  if (map.has("equals")) expectation.equals = map.number("equals");
-  if (map.has("tolerance")) {
-    if (!expectation.equals) map.fail("tolerance", "'tolerance' goes with 'equals' only");
-    expectation.tolerance = map.number("tolerance");
-    if (expectation.tolerance < 0)
-      map.fail("tolerance", fmt::format("tolerance {} is below 0", expectation.tolerance));
+void read_number_bounds(YamlMap& map, Expectation& expectation) {
+  const Bounds any = expectation.statistic == Statistic::fraction_within ? Bounds{0, 1} : Bounds{};
+  if (map.has("equals")) {
+    for (const char* key : {"min", "max"}) map.refuse(key, "'equals' excludes 'min' and 'max'");
+    expectation.equals = map.number("equals", any, "the value that it must have, but for the tolerance");
+    if (map.has("tolerance")) expectation.tolerance = map.number("tolerance", {0}, "either way of equals");
+  } else {
+    map.refuse("tolerance", "'tolerance' goes with 'equals' only");
+    if (map.has("min")) expectation.min = map.number("min", any, "least good value");
+    if (map.has("max")) expectation.max = map.number("max", any, "greatest good value");
+    if (!expectation.min && !expectation.max)
+      map.fail("metric", "the expectation of " + expectation.metric + " has no bound: min, max or equals");
   }
-  const bool range = expectation.min || expectation.max;
-  if (!range && !expectation.equals)
-    map.fail("metric", "the expectation of " + expectation.metric + " has no bound: min, max or equals");
-  if (range && expectation.equals) map.fail("equals", "'equals' excludes 'min' and 'max'");
   if (expectation.min && expectation.max && *expectation.min > *expectation.max)
     map.fail("min", fmt::format("min {} is above max {}", *expectation.min, *expectation.max));
   read_unit(map, expectation);
 }
 
-void read_statistic(StrictMap& map, Expectation& expectation) {
+void read_statistic(YamlMap& map, Expectation& expectation) {
   if (metric_is_text(expectation.metric))
     map.fail("metric", expectation.metric + " is a word; it has no statistic");
-  const std::string word = map.word("statistic", kStatistics);
+  const std::string word = map.word("statistic", kStatistics, "over all machines");
   for (const Statistic s : {Statistic::min, Statistic::max, Statistic::mean, Statistic::median,
                             Statistic::p95, Statistic::fraction_within})
     if (word == to_string(s)) expectation.statistic = s;
-  if (expectation.statistic != Statistic::fraction_within) {
-    if (map.has("within")) map.fail("within", "'within' goes with the statistic fraction_within only");
-    return;
-  }
-  const std::vector<double> within = map.numbers("within", 2);
+  if (expectation.statistic != Statistic::fraction_within)
+    return map.refuse("within", "'within' goes with the statistic fraction_within only");
+  const std::vector<double> within = map.numbers("within", 2, {}, "ends of the range, included");
   if (within[0] > within[1]) map.fail("within", fmt::format("within: {} is above {}", within[0], within[1]));
   expectation.within_min = within[0];
   expectation.within_max = within[1];
 }
 
-void require_fraction_bounds(const StrictMap& map, const Expectation& expectation) {
-  const auto check = [&](const char* key, const std::optional<double>& bound) {
-    if (bound && (*bound < 0 || *bound > 1))
-      map.fail(key, fmt::format("{} {} is not a fraction from 0 to 1", key, *bound));
-  };
-  check("min", expectation.min);
-  check("max", expectation.max);
-  if (expectation.equals) check("equals", std::get<double>(*expectation.equals));
+Expectation read_expectation(YamlMap& map, bool over_machines) {
+  Expectation expectation;
+  expectation.line = map.place().line;
+  expectation.metric = read_metric(map, over_machines);
+  if (over_machines)
+    read_statistic(map, expectation);
+  else
+    map.refuse("statistic", "'statistic' is for expectations under 'machines'");
+  if (metric_is_text(expectation.metric))
+    read_text_bound(map, expectation);
+  else
+    read_number_bounds(map, expectation);
+  expectation.source = map.text("source", "where the bound comes from");
+  return expectation;
 }
 
-std::vector<Expectation> read_expectations(StrictMap& parent, bool over_machines) {
+std::vector<Expectation> read_expectations(YamlMap& parent, bool over_machines) {
   std::vector<Expectation> expectations;
-  for (StrictMap& map : parent.list_of_maps("expect", "an expectation")) {
-    Expectation expectation;
-    expectation.line = map.line();
-    expectation.metric = read_metric(map);
-    if (over_machines)
-      read_statistic(map, expectation);
-    else if (metric_is_of_series(expectation.metric))
-      map.fail("metric", expectation.metric + " exists under 'machines' only");
-    else if (map.has("statistic"))
-      map.fail("statistic", "'statistic' is for expectations under 'machines'");
-    if (metric_is_text(expectation.metric))
-      read_text_bound(map, expectation);
-    else
-      read_number_bounds(map, expectation);
-    if (expectation.statistic == Statistic::fraction_within) require_fraction_bounds(map, expectation);
-    expectation.source = map.text("source");
-    map.close();
-    expectations.push_back(std::move(expectation));
-  }
+  parent.list("expect", 0, "what the figures must be", [&](YamlMap& map, std::size_t) {
+    expectations.push_back(read_expectation(map, over_machines));
+  });
   return expectations;
 }
 
-MachineSeries read_machines(StrictMap map) {
-  MachineSeries series;
-  const std::string text = map.text("seeds");
+void read_seeds(YamlMap& map, MachineSeries& series) {
+  const std::string text = map.text("seeds", "a range like 1-200");
+  if (text.empty()) return;
   const char* const end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, series.seed_first);
   const bool dash = first.ec == std::errc() && first.ptr != end && *first.ptr == '-';
@@ -156,53 +159,78 @@ MachineSeries read_machines(StrictMap map) {
   if (series.seed_last < series.seed_first) map.fail("seeds", "seeds " + text + " run backwards");
   if (series.seed_last - series.seed_first >= kMachinesMax)
     map.fail("seeds", fmt::format("seeds {} are more than {} machines", text, kMachinesMax));
-  series.expect = read_expectations(map, true);
-  map.close();
-  return series;
 }
 
-// How the program is read, what it prints with, and what is asked about the surface; all may be left out.
-void read_program_options(StrictMap& map, const fs::path& folder, Scenario& scenario) {
-  if (map.has("material")) scenario.material = name_or_path(map, "material", folder, ".yaml");
-  DialectRequest& dialect = scenario.dialect;
+/// How lines of the program are read.
+void read_dialect(YamlMap& map, DialectRequest& dialect) {
   if (map.has("place_mm")) {
-    const auto place = map.numbers("place_mm", 3);
+    const auto place = map.numbers("place_mm", 3, {}, "where the program's origin stands in W");
     std::copy(place.begin(), place.end(), dialect.place_mm.begin());
   }
-  if (map.has("extruder_letter")) dialect.extruder_letter = map.word("extruder_letter", {"E", "A"});
-  if (map.has("b_sign")) dialect.b_sign = map.number("b_sign") < 0 ? -1 : 1;
-  if (map.has("c_sign")) dialect.c_sign = map.number("c_sign") < 0 ? -1 : 1;
-  if (map.has("coordinates")) dialect.coordinates = map.word("coordinates", {"tip", "machine", "crossing"});
-  SurfaceRequest& surface = scenario.surface;
-  if (map.has("intended")) surface.intended = name_or_path(map, "intended", folder, ".stl");
-  if (map.has("profile_mm")) surface.profile_mm = map.numbers("profile_mm", 6);
-  if (map.has("probe")) surface.probe = map.numbers("probe", 3);
+  if (map.has("extruder_letter"))
+    dialect.extruder_letter = map.word("extruder_letter", {"E", "A"}, "the word of the filament");
+  const auto sign = [&map](const char* key, const char* about) {
+    return map.number(key, {}, about) < 0 ? -1 : 1;
+  };
+  if (map.has("b_sign")) dialect.b_sign = sign("b_sign", "1 or -1, sense of the word B");
+  if (map.has("c_sign")) dialect.c_sign = sign("c_sign", "1 or -1, sense of the word C");
+  if (map.has("coordinates"))
+    dialect.coordinates =
+        map.word("coordinates", {"tip", "machine", "crossing"}, "the point that X, Y and Z place");
+}
+
+void read_surface(YamlMap& map, const fs::path& folder, SurfaceRequest& surface) {
+  if (map.has("intended"))
+    surface.intended = name_or_path(map, "intended", folder, ".stl", "the part that the print should be");
+  if (map.has("profile_mm"))
+    surface.profile_mm = map.numbers("profile_mm", 6, {}, "ends of the profile: x, y, z, x, y, z");
+  if (map.has("probe"))
+    surface.probe = map.numbers("probe", 3, {}, "direction from which the surface is felt");
+}
+
+void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
+  scenario.name = map.text("name", "of the scenario, in reports");
+  scenario.description = map.text("description", "what it shows");
+  scenario.source = map.text("source", "where the case comes from");
+  scenario.machine = name_or_path(map, "machine", folder, ".yaml", "name of a model, or a path");
+  scenario.program = existing_file(map, "program", folder, "path of the G-code file");
+  if (map.has("fixture"))
+    scenario.fixture =
+        name_or_path(map, "fixture", folder, ".stl", "part that is printed on: a name or an STL");
+  scenario.as_built = read_as_built(map, folder);
+  scenario.seed = map.seed("seed", "of the built machine and of all noise");
+  scenario.gap_control = map.word("gap_control", kGapControls, "whether the gap is measured");
+  scenario.engine = map.word("engine", engine_names(), "the plant");
+  if (map.has("material"))
+    scenario.material =
+        name_or_path(map, "material", folder, ".yaml", "a name or a path; else the machine's");
+  read_dialect(map, scenario.dialect);
+  read_surface(map, folder, scenario.surface);
+  scenario.faults = read_faults(map);
+  scenario.expect = read_expectations(map, false);
+  if (!map.has("machines")) return;
+  map.section("machines", "the same program on machines of many seeds", [&](YamlMap& machines) {
+    MachineSeries& series = scenario.machines.emplace();
+    read_seeds(machines, series);
+    series.expect = read_expectations(machines, true);
+  });
 }
 
 }  // namespace
 
 Scenario load_scenario(const fs::path& path) {
-  StrictMap map(parse_yaml(read_file(path), path.string()), path.string(), "the scenario");
-  const fs::path folder = path.parent_path();
   Scenario scenario;
   scenario.file = path;
-  scenario.name = map.text("name");
-  scenario.description = map.text("description");
-  scenario.source = map.text("source");
-  scenario.machine = name_or_path(map, "machine", folder, ".yaml");
-  scenario.program = existing_file(map, "program", folder);
-  if (map.has("fixture")) scenario.fixture = name_or_path(map, "fixture", folder, ".stl");
-  scenario.as_built = is_path(map.text("as_built"), ".yaml") ? name_or_path(map, "as_built", folder, ".yaml")
-                                                             : map.word("as_built", kAsBuilt);
-  scenario.seed = map.whole_number("seed");
-  scenario.gap_control = map.word("gap_control", kGapControls);
-  scenario.engine = map.word("engine", engine_names());
-  read_program_options(map, folder, scenario);
-  scenario.faults = read_faults(map);
-  scenario.expect = read_expectations(map, false);
-  if (map.has("machines")) scenario.machines = read_machines(map.map("machines", "machines"));
-  map.close();
+  YamlMap::read_text(read_file(path), path.string(),
+                     [&](YamlMap& map) { read_scenario(map, path.parent_path(), scenario); });
   return scenario;
+}
+
+MapSchema scenario_schema() {
+  return YamlMap::schema([](YamlMap& map) {
+    Scenario scenario;
+    read_scenario(map, {}, scenario);
+  });
 }
 
 std::vector<fs::path> find_scenarios(std::span<const fs::path> paths) {

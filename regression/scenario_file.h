@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/map_schema.h"
 #include "regression/scenario.h"
 
 namespace understudy::regression {
@@ -13,6 +14,9 @@ namespace understudy::regression {
 /// an unknown key or word (naming the nearest known one), a missing key, a wrong type, a file that is not
 /// there, an expectation without a bound, and a unit that is not the metric's.
 Scenario load_scenario(const std::filesystem::path& path);
+
+/// The keys of a scenario file, as load_scenario() asks for them.
+MapSchema scenario_schema();
 
 /// Scenario files among `paths`: files as they are, folders by their *.yaml, sorted. Throws InputError for a
 /// path that does not exist and a folder without scenarios.

@@ -112,10 +112,18 @@ ChainKind arm_kind() {
   // Beyond these an arm is no printer's, or a slip of the unit.
   ChainKind kind;
   kind.name = "arm";
-  kind.parameters = {{"d1_mm", 0, 5000},          {"a1_mm", -2000, 2000},     {"a2_mm", 10, 5000},
-                     {"a3_mm", -2000, 2000},      {"d4_mm", 10, 5000},        {"d6_mm", 0, 2000},
-                     {"tool_x_mm", -2000, 2000},  {"tool_y_mm", -2000, 2000}, {"tool_z_mm", -2000, 2000},
-                     {"tool_tilt_deg", -180, 180}};
+  kind.parameters = {
+      {"d1_mm", 0, 5000, "height of axis 2 above the base"},
+      {"a1_mm", -2000, 2000, "axis 2 before axis 1"},
+      {"a2_mm", 10, 5000, "upper arm, axis 2 to axis 3"},
+      {"a3_mm", -2000, 2000, "wrist centre above axis 3"},
+      {"d4_mm", 10, 5000, "wrist centre before axis 3"},
+      {"d6_mm", 0, 2000, "wrist centre to the flange"},
+      {"tool_x_mm", -2000, 2000, "tip on the flange; up at zero"},
+      {"tool_y_mm", -2000, 2000, "tip on the flange"},
+      {"tool_z_mm", -2000, 2000, "tip on the flange, along its axis"},
+      {"tool_tilt_deg", -180, 180,
+       "0: the nozzle points along the flange's axis; positive leans it towards the flange's x"}};
   kind.chain = [](std::span<const double> parameters) { return arm_chain(arm_geometry(parameters)); };
   kind.make = [](const ChainDescription& description) -> std::unique_ptr<Mechanism> {
     return std::make_unique<Arm>(description);

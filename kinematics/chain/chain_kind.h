@@ -15,6 +15,7 @@ namespace understudy::kinematics {
 struct Parameter {
   std::string key;  ///< "upper_arm_mm"
   double low, high;
+  const char* about;
 };
 
 struct ChainKind {

@@ -133,7 +133,8 @@ SolveStatus finishing_at_bed_turn(const FinishingGeometry& geometry, const Pose&
 ChainKind finishing_kind() {
   ChainKind kind;
   kind.name = "finishing";
-  kind.parameters = {{"l3_mm", 1, 10'000}, {"le_mm", 1, 2'000}};
+  kind.parameters = {{"l3_mm", 1, 10'000, "the bed's turning axis to the wrist at home"},
+                     {"le_mm", 1, 2'000, "wrist to the end mill's tip"}};
   kind.chain = [](std::span<const double> p) { return finishing_chain({p[0], p[1]}); };
   kind.make = [](const ChainDescription& description) -> std::unique_ptr<Mechanism> {
     return std::make_unique<Finishing>(description);

@@ -176,7 +176,8 @@ ChainKind five_axis_kind() {
   ChainKind kind;
   kind.name = "five-axis";
   for (const char* key : {"b_axis_x_mm", "b_axis_z_mm", "c_axis_x_mm", "c_axis_y_mm"})
-    kind.parameters.push_back({key, -10'000, 10'000});
+    kind.parameters.push_back(
+        {key, -10'000, 10'000, "line of the turning axis, seen from the work's origin"});
   kind.chain = [](std::span<const double> parameters) { return five_axis_chain(geometry_of(parameters)); };
   kind.make = [](const ChainDescription& description) -> std::unique_ptr<Mechanism> {
     return std::make_unique<FiveAxis>(description);

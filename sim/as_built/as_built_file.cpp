@@ -8,73 +8,88 @@
 
 #include "core/output_file.h"
 #include "core/units.h"
-#include "machine/yaml_reader.h"
+#include "core/yaml_map.h"
 
 namespace understudy::sim {
 namespace {
 
-using machine::Bounds;
-using machine::YamlMap;
-
 constexpr Bounds kPlace{-5000, 5000};
+constexpr Bounds kPlay{0, 2000};
 constexpr double kUnitTolerance = 1e-6;  // of a direction's length, as the file's digits leave it
 
 template <typename Value>
-void read_if_given(YamlMap& map, const std::string& key, Bounds bounds, Value& value) {
+void read_if_given(YamlMap& map, const std::string& key, Bounds bounds, const char* about, Value& value) {
   if (!map.has(key)) return;
   if constexpr (std::is_same_v<Value, Vec3>)
-    value = map.vector(key, bounds);
+    value = map.vector(key, bounds, about);
   else
-    value = map.quantity(key, bounds);
-}
-
-/// Without the part's name nothing else can be read.
-void require(const YamlMap& map, const std::string& key) {
-  if (!map.complete()) throw InputError(map.place(), fmt::format("key '{}' is missing", map.path(key)));
+    value = map.quantity(key, bounds, about);
 }
 
 /// A part of the machine may be told once.
 using Told = kinematics::PerAxis<bool>;
 
 void tell(const YamlMap& map, const std::string& key, std::size_t index, Told& told) {
-  if (told[index])
+  if (told[index] && !map.recording())
     throw InputError(map.place(key), fmt::format("{} names a part that was told before", map.path(key)));
   told[index] = true;
 }
 
 void read_strut(YamlMap& map, Told& told, AsBuilt& built) {
-  const int number = map.integer("strut", 1, kinematics::kStruts);
-  require(map, "strut");
+  const int number = map.integer("strut", 1, kinematics::kStruts, "its number");
+  map.require("strut");
   const auto s = static_cast<std::size_t>(number - 1);
   tell(map, "strut", s, told);
-  read_if_given(map, "base_joint_mm", kPlace, built.hexapod.base_joint[s]);
-  read_if_given(map, "platform_joint_mm", kPlace, built.hexapod.platform_joint[s]);
-  read_if_given(map, "length_offset_mm", kPlace, built.hexapod.length_offset[s]);
-  read_if_given(map, "nut_play_um", {0, 2000}, built.nut_play[s]);
-  read_if_given(map, "ball_play_um", {0, 2000}, built.ball_play[s]);
+  read_if_given(map, "base_joint_mm", kPlace, "b_i in B", built.hexapod.base_joint[s]);
+  read_if_given(map, "platform_joint_mm", kPlace, "a_i in T", built.hexapod.platform_joint[s]);
+  read_if_given(map, "length_offset_mm", kPlace, "strut length at drive displacement 0",
+                built.hexapod.length_offset[s]);
+  read_if_given(map, "nut_play_um", kPlay, "total free travel of its nut", built.nut_play[s]);
+  read_if_given(map, "ball_play_um", kPlay, "total free travel of its ball joint", built.ball_play[s]);
 }
 
 void read_axis(YamlMap& map, Told& told, AsBuilt& built) {
   std::vector<std::string> names;
-  for (const auto& axis : built.chain.axes) names.push_back(axis.name);
-  const std::string name = map.word("axis", names);
-  require(map, "axis");
+  if (!map.recording())
+    for (const auto& axis : built.chain.axes) names.push_back(axis.name);
+  const std::string name = map.word("axis", names, "its name in the machine file");
+  map.require("axis");
   const auto i = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   tell(map, "axis", i, told);
   kinematics::ChainAxis& axis = built.chain.axes[i];
-  read_if_given(map, "point_mm", kPlace, axis.point);
-  read_if_given(map, "direction", {-1, 1}, axis.direction);
-  if (std::abs(axis.direction.norm() - 1) > kUnitTolerance)
+  read_if_given(map, "point_mm", kPlace, "a point on the axis, in O", axis.point);
+  read_if_given(map, "direction", {-1, 1}, "unit vector in O", axis.direction);
+  if (std::abs(axis.direction.norm() - 1) > kUnitTolerance && !map.recording())
     throw InputError(map.place("direction"), fmt::format("{} has length {:.7f}, not 1", map.path("direction"),
                                                          axis.direction.norm()));
   axis.direction.normalize();
-  if (axis.angle) {
-    read_if_given(map, "zero_deg", {-360, 360}, built.axis_zero[i]);
-    read_if_given(map, "play_arcmin", {0, 600}, built.axis_play[i]);
+  constexpr const char* kZero = "where the axis truly is when its drive reads 0";
+  constexpr const char* kFree = "total free travel";
+  if (map.either("the axis turns", axis.angle)) {
+    read_if_given(map, "zero_deg", {-360, 360}, kZero, built.axis_zero[i]);
+    read_if_given(map, "play_arcmin", {0, 600}, kFree, built.axis_play[i]);
   } else {
-    read_if_given(map, "zero_mm", kPlace, built.axis_zero[i]);
-    read_if_given(map, "play_um", {0, 2000}, built.axis_play[i]);
+    read_if_given(map, "zero_mm", kPlace, kZero, built.axis_zero[i]);
+    read_if_given(map, "play_um", kPlay, kFree, built.axis_play[i]);
   }
+}
+
+void read_built(YamlMap& root, AsBuilt& built) {
+  Told told{};
+  if (root.either("the machine is a hexapod", built.chain.axes.empty())) {
+    read_if_given(root, "deviation_mm", {0, 500}, "distance of a screw's axis from its base joint",
+                  built.hexapod.deviation);
+    if (root.has("struts"))
+      root.list("struts", 0, "those that differ",
+                [&](YamlMap& strut, std::size_t) { read_strut(strut, told, built); });
+    return;
+  }
+  Vec3 tip = built.chain.X_OT_zero.translation();
+  read_if_given(root, "tip_mm", kPlace, "the tip in O with all axes at 0", tip);
+  built.chain.X_OT_zero.translation() = tip;
+  if (root.has("axes"))
+    root.list("axes", 0, "those that differ",
+              [&](YamlMap& axis, std::size_t) { read_axis(axis, told, built); });
 }
 
 std::string text(const Vec3& v, double unit) {
@@ -87,18 +102,13 @@ void read_as_built(const std::string& file, AsBuilt& built) {
   if (!std::filesystem::is_regular_file(file))
     throw InputError(
         fmt::format("as-built \"{}\" is not one of nominal, sampled, manufactured, nor a file", file));
-  YamlMap::read_text(read_file(file), file, [&built](YamlMap& root) {
-    Told told{};
-    if (built.chain.axes.empty()) {
-      read_if_given(root, "deviation_mm", {0, 500}, built.hexapod.deviation);
-      if (root.has("struts")) root.list("struts", [&](YamlMap& strut) { read_strut(strut, told, built); });
-    } else {
-      Vec3 tip = built.chain.X_OT_zero.translation();
-      read_if_given(root, "tip_mm", kPlace, tip);
-      built.chain.X_OT_zero.translation() = tip;
-      if (root.has("axes")) root.list("axes", [&](YamlMap& axis) { read_axis(axis, told, built); });
-    }
-  });
+  YamlMap::read_text(read_file(file), file, [&built](YamlMap& root) { read_built(root, built); });
+}
+
+MapSchema as_built_schema() {
+  AsBuilt built;
+  built.chain.axes.resize(1);
+  return YamlMap::schema([&built](YamlMap& root) { read_built(root, built); });
 }
 
 std::string write_as_built(const AsBuilt& built) {

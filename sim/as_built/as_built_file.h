@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/map_schema.h"
 #include "sim/as_built/as_built.h"
 
 namespace understudy::sim {
@@ -10,6 +11,9 @@ namespace understudy::sim {
 /// Puts what the file tells into `built`, which holds the machine as drawn. Throws InputError with file,
 /// line, key and limit; a name that is no file is answered with the words that are known.
 void read_as_built(const std::string& file, AsBuilt& built);
+
+/// What such a file may hold, of any machine.
+MapSchema as_built_schema();
 
 /// The same file back: every parameter.
 std::string write_as_built(const AsBuilt& built);

@@ -43,16 +43,16 @@ TEST(ScenarioFaults, AreReadStrictly) {
   EXPECT_THAT(error_of_faults(folder, "faults:\n  - {fault: lost_step, axis: l1, at_s: 1, steps: 8}\n"),
               AllOf(HasSubstr("scenario.yaml:13"), HasSubstr("did you mean 'lost_steps'?")));
   EXPECT_THAT(error_of_faults(folder, "faults:\n  - {fault: lost_steps, axis: l1, at_s: -1, steps: 8}\n"),
-              HasSubstr("at_s is -1, below 0"));
+              HasSubstr("at_s is -1 s, below 0 s"));
   EXPECT_EQ(error_of_faults(folder, "faults:\n  - {fault: lost_steps, axis: l1, at_s: 1, steps: 1000000}\n"),
             "accepted");
   EXPECT_THAT(
       error_of_faults(folder, "faults:\n  - {fault: lost_steps, axis: l1, at_s: 1, steps: 1000004}\n"),
-      AllOf(HasSubstr("scenario.yaml:13"), HasSubstr("steps is 1000004, above 1000000")));
+      AllOf(HasSubstr("scenario.yaml:13"), HasSubstr("steps is 1000004, outside 0 to 1000000")));
   EXPECT_THAT(error_of_faults(folder, "faults:\n  - {fault: stall, axis: l1, at_s: 1}\n"),
-              HasSubstr("'for_s'"));
+              HasSubstr("for_s' is missing"));
   EXPECT_THAT(error_of_faults(folder, "faults:\n  - {fault: power_cut, axis: l1, at_s: 1}\n"),
-              HasSubstr("unknown key 'axis'"));
+              HasSubstr("unknown key 'faults[1].axis'"));
   EXPECT_THAT(error_of_faults(
                   folder, "faults:\n  - {fault: thermal_growth, axis: l1, at_s: 1, over_s: 5, growth: 3}\n"),
               HasSubstr("growth_um"));

@@ -1,0 +1,196 @@
+#include "core/yaml_map.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace understudy {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// What the reader says of the text: "f.yaml:2:1: ...".
+std::string refusal(const std::string& text, const YamlMap::Read& read) {
+  try {
+    YamlMap::read_text(text, "f.yaml", read);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+void read_lead(YamlMap& map) { map.quantity("lead_mm", {0.1, 100}, ""); }
+
+TEST(YamlMap, QuantitiesAreSiByTheSuffixOfTheirKey) {
+  YamlMap::read_text("a_mm: 2\nb_deg: 180\nc_um: [1, 2]\nd_s: 3\ne: 7\n", "f.yaml", [](YamlMap& map) {
+    EXPECT_DOUBLE_EQ(map.quantity("a_mm", {}, ""), 2e-3);
+    EXPECT_DOUBLE_EQ(map.quantity("b_deg", {}, ""), 3.141592653589793);
+    EXPECT_EQ(map.quantities("c_um", 2, {}, ""), (std::vector<double>{1e-6, 2e-6}));
+    EXPECT_EQ(map.quantity("d_s", {}, ""), 3);
+    EXPECT_EQ(map.number("e", {}, ""), 7);
+  });
+}
+
+TEST(YamlMap, NumbersAreAsTheFileHasThem) {
+  YamlMap::read_text("a_mm: +2.5\nb_mm: [1e-3, -.5]\nseed: 18446744073709551615\n", "f.yaml",
+                     [](YamlMap& map) {
+                       EXPECT_EQ(map.number("a_mm", {}, ""), 2.5);
+                       EXPECT_EQ(map.numbers("b_mm", 2, {}, ""), (std::vector<double>{1e-3, -0.5}));
+                       EXPECT_EQ(map.seed("seed", ""), UINT64_MAX);
+                     });
+}
+
+TEST(YamlMap, WhatIsNoFiniteNumberWithinItsBoundsIsRefused) {
+  EXPECT_EQ(refusal("lead_mm: 0\n", read_lead), "f.yaml:1:10: lead_mm is 0 mm, outside 0.1 to 100 mm");
+  EXPECT_EQ(refusal("t_s: -1\n", [](YamlMap& map) { map.number("t_s", {0}, ""); }),
+            "f.yaml:1:6: t_s is -1 s, below 0 s");
+  for (const char* value : {"small", "1mm", "0x10", "1,5", "''", "[1]", "{a: 1}", "", "~"})
+    EXPECT_THAT(refusal("lead_mm: " + std::string(value), read_lead),
+                HasSubstr("where a number in mm is expected"))
+        << value;
+  EXPECT_THAT(refusal("lead_mm: \"1\"", read_lead),
+              HasSubstr("'1' in quotes, where a number in mm is expected"));
+  for (const char* value : {".nan", "nan", ".inf", "-.inf", "inf", "1e999"})
+    EXPECT_THAT(refusal("lead_mm: " + std::string(value), read_lead), HasSubstr("not finite")) << value;
+  for (const char* value : {"-1", "1.5", "18446744073709551616", "x"})
+    EXPECT_THAT(refusal("seed: " + std::string(value), [](YamlMap& map) { map.seed("seed", ""); }),
+                HasSubstr("where a whole number from 0"))
+        << value;
+}
+
+TEST(YamlMap, AKeyThatNobodyAskedForNamesTheNearest) {
+  const auto read = [](YamlMap& map) {
+    map.section("drive", "", [](YamlMap& drive) {
+      read_lead(drive);
+      drive.has("jump");
+    });
+  };
+  EXPECT_EQ(refusal("drive:\n  lead_m: 1\n", read),
+            "f.yaml:2:3: unknown key 'drive.lead_m', did you mean 'lead_mm'?");
+  EXPECT_EQ(refusal("drive: {lead_mm: 1, zzz: 2}\n", read),
+            "f.yaml:1:21: unknown key 'drive.zzz'; known here: lead_mm, jump");
+  EXPECT_EQ(refusal("drive: {jump: 1}\n", read), "f.yaml:1:8: key 'drive.lead_mm' is missing");
+  EXPECT_EQ(refusal("drive: {lead_mm: 1, jump: 1, jump: 2}\n", read),
+            "f.yaml:1:30: drive.jump is given twice, first in line 1");
+}
+
+TEST(YamlMap, ARequiredKeyIsMissedAtOnceUnlessAMisspeltOneExplainsIt) {
+  const auto read = [](YamlMap& map) {
+    map.require("kind");
+    FAIL() << "went on without its kind";
+  };
+  EXPECT_EQ(refusal("other: 1\n", read), "f.yaml:1:1: key 'kind' is missing");
+  EXPECT_THAT(refusal("\nkid: 1\n", read), HasSubstr("f.yaml:2:1: unknown key 'kid'"));
+}
+
+TEST(YamlMap, WordsNameTheAllowedOnesAndTheNearest) {
+  const auto read = [](YamlMap& map) { map.word("plant", {"mujoco", "bullet"}, ""); };
+  EXPECT_EQ(refusal("plant: mojoco\n", read),
+            "f.yaml:1:1: plant is 'mojoco', not one of mujoco, bullet; did you mean 'mujoco'?");
+  EXPECT_EQ(refusal("plant: x\n", read), "f.yaml:1:1: plant is 'x', not one of mujoco, bullet");
+}
+
+TEST(YamlMap, ListsNumberTheirEntries) {
+  const auto read = [](YamlMap& map) {
+    map.list("axes", 0, "", [](YamlMap& axis, std::size_t) { axis.text("name", ""); });
+  };
+  EXPECT_EQ(refusal("axes: [{name: a}, {nam: b}]\n", read),
+            "f.yaml:1:20: unknown key 'axes[2].nam', did you mean 'name'?");
+  EXPECT_EQ(refusal("axes: []\n", read),
+            "f.yaml:1:1: axes is an empty list, where a list with at least one entry is expected");
+}
+
+TEST(YamlMap, AFileThatHoldsNoMapIsRefused) {
+  const auto read = [](YamlMap&) {};
+  EXPECT_THAT(refusal("", read), HasSubstr("the file is empty"));
+  EXPECT_THAT(refusal("words\n", read),
+              HasSubstr("the file is 'words', where keys with values are expected"));
+  EXPECT_THAT(refusal("a: 1\n---\na: 1\n", read), HasSubstr("2 documents, 1 is allowed"));
+  EXPECT_THAT(refusal("a: [1, 2\n", read), AllOf(HasSubstr("f.yaml:2:1"), HasSubstr("not YAML")));
+}
+
+TEST(YamlMap, LookingBelowDoesNotAddOrAskForTheKey) {
+  EXPECT_EQ(refusal("tool: {mill: 1}\n",
+                    [](YamlMap& map) {
+                      EXPECT_TRUE(map.has("tool.mill"));
+                      EXPECT_FALSE(map.has("tool.bore"));
+                      EXPECT_FALSE(map.has("none.bore"));
+                      map.section("tool", "", [](YamlMap& tool) { tool.number("mill", {}, ""); });
+                    }),
+            "accepted");
+}
+
+// What schema() tells of readers.
+
+const KeySchema& key_of(const MapVariant& variant, const std::string& key) {
+  for (const KeySchema& schema : variant.keys)
+    if (schema.key == key) return schema;
+  throw std::logic_error("no key " + key);
+}
+
+std::vector<std::string> keys_of(const MapVariant& variant) {
+  std::vector<std::string> keys;
+  for (const KeySchema& schema : variant.keys)
+    if (schema.type != KeySchema::Type::none) keys.push_back(schema.key + (schema.required ? "" : "?"));
+  return keys;
+}
+
+TEST(YamlMapSchema, TellsTypeRangeUnitAndPhraseOfEachKey) {
+  const MapSchema schema = YamlMap::schema([](YamlMap& map) {
+    map.quantity("lead_mm", {0.1, 100}, "travel of one turn");
+    if (map.has("name")) map.text("name", "shown");
+  });
+  ASSERT_EQ(schema.variants.size(), 1u);
+  EXPECT_THAT(keys_of(schema.variants[0]), ElementsAre("lead_mm", "name?"));
+  const KeySchema& lead = key_of(schema.variants[0], "lead_mm");
+  EXPECT_EQ(lead.type, KeySchema::Type::number);
+  EXPECT_EQ(lead.unit, "mm");
+  EXPECT_EQ(lead.bounds, (Bounds{0.1, 100}));
+  EXPECT_EQ(lead.about, "travel of one turn");
+}
+
+TEST(YamlMapSchema, FindsTheKeysThatHideBehindAWord) {
+  const MapSchema schema = YamlMap::schema([](YamlMap& map) {
+    if (map.word("shape", {"ball", "box", "cube"}, "") == "ball")
+      map.quantity("radius_mm", {}, "");
+    else
+      map.quantity("side_mm", {}, "");
+  });
+  ASSERT_EQ(schema.variants.size(), 3u);
+  EXPECT_THAT(schema.variants[0].when, ElementsAre(Condition{"shape", "ball"}));
+  EXPECT_THAT(keys_of(schema.variants[0]), ElementsAre("shape", "radius_mm"));
+  EXPECT_THAT(keys_of(schema.variants[2]), ElementsAre("shape", "side_mm"));
+}
+
+TEST(YamlMapSchema, FindsTheKeysThatHideBehindTheAbsenceOfOne) {
+  const MapSchema schema = YamlMap::schema([](YamlMap& map) {
+    if (!map.has("endless")) map.numbers("range", 2, {}, "");
+    if (map.has("endless")) map.text("endless", "");
+    if (map.has("jump")) map.number("jump", {}, "");  // by itself: no variant of its own
+  });
+  ASSERT_EQ(schema.variants.size(), 2u);
+  EXPECT_THAT(keys_of(schema.variants[0]), ElementsAre("endless?", "jump?"));
+  EXPECT_THAT(schema.variants[1].when, ElementsAre(Condition{"endless", kAbsent}));
+  EXPECT_THAT(keys_of(schema.variants[1]), ElementsAre("range", "jump?"));
+}
+
+TEST(YamlMapSchema, ListsOfAKnownLengthHaveAMapForEachEntryUnlessAllAreAlike) {
+  const auto list = [](bool alike) {
+    return YamlMap::schema([alike](YamlMap& map) {
+             map.list("axes", 2, "", [alike](YamlMap& axis, std::size_t i) {
+               axis.number(alike || i == 0 ? "slide" : "turn", {}, "");
+             });
+           })
+        .variants[0]
+        .keys[0];
+  };
+  EXPECT_EQ(list(true).maps.size(), 1u);
+  EXPECT_EQ(list(false).maps.size(), 2u);
+  EXPECT_EQ(list(true).count, 2u);
+}
+
+}  // namespace
+}  // namespace understudy
