@@ -24,6 +24,7 @@ void add_export(CLI::App& app, Action& action);
 void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap
 void add_benchmark_calibration(CLI::App& benchmark, Action& action);
 void add_benchmark_gap(CLI::App& benchmark, Action& action);
+void add_schema(CLI::App& app, Action& action);
 void add_inspection(CLI::App& app, Action& action);  ///< machines, doctor
 
 /// Words of the command line, quoted where a shell needs it: how a user repeats this run.

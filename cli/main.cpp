@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   cli::add_workspace(app, action);
   cli::add_export(app, action);
   cli::add_benchmark(app, action);
+  cli::add_schema(app, action);
   cli::add_inspection(app, action);
   check_first_word(app, argc, argv);
   try {
