@@ -5,36 +5,18 @@
 
 #include <fmt/format.h>
 
+#include "core/xml.h"
+
 namespace understudy::machine {
 namespace {
 
 using kinematics::Chain;
 using kinematics::ChainAxis;
+using tinyxml2::XMLElement;
 
 constexpr double kNoEnd = 1e6;
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
+std::string number(double value) { return fmt::format("{}", value); }
 
 std::string numbers(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 
@@ -79,56 +61,73 @@ LinkMass joined(std::span<const LinkMass> links, int axis) {
   return body;
 }
 
-std::string link_element(const Chain& chain, int axis, std::span<const LinkMass> links) {
+void add_link(XMLElement& robot, const Chain& chain, int axis, std::span<const LinkMass> links) {
   const LinkMass body = joined(links, axis);
-  const std::string name = escaped(link_name(chain, axis));
-  if (body.mass <= 0) return fmt::format("  <link name=\"{}\"/>\n", name);
+  XMLElement& link = add_element(robot, "link", {{"name", link_name(chain, axis)}});
+  if (body.mass <= 0) return;
   const Mat3& I = body.inertia_O;
-  return fmt::format(
-      "  <link name=\"{}\">\n    <inertial>\n      <origin xyz=\"{}\"/>\n      <mass value=\"{}\"/>\n"
-      "      <inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n"
-      "    </inertial>\n  </link>\n",
-      name, numbers(body.centre_O - link_origin(chain, axis)), body.mass, I(0, 0), I(0, 1), I(0, 2), I(1, 1),
-      I(1, 2), I(2, 2));
+  XMLElement& inertial = add_element(link, "inertial");
+  add_element(inertial, "origin", {{"xyz", numbers(body.centre_O - link_origin(chain, axis))}});
+  add_element(inertial, "mass", {{"value", number(body.mass)}});
+  add_element(inertial, "inertia",
+              {{"ixx", number(I(0, 0))},
+               {"ixy", number(I(0, 1))},
+               {"ixz", number(I(0, 2))},
+               {"iyy", number(I(1, 1))},
+               {"iyz", number(I(1, 2))},
+               {"izz", number(I(2, 2))}});
 }
 
-std::string joint_element(const Chain& chain, int axis, std::span<const AxisDrive> drives) {
-  const auto k = static_cast<std::size_t>(axis);
-  const ChainAxis& a = chain.axes[k];
-  const auto bounded = [](double v) { return std::clamp(v, -kNoEnd, kNoEnd); };
+XMLElement& add_joint(XMLElement& robot, const std::string& name, const char* type) {
+  return add_element(robot, "joint", {{"name", name}, {"type", type}});
+}
+
+void add_axis_joint(XMLElement& robot, const Chain& chain, int axis, const AxisDrive& drive) {
+  const ChainAxis& a = chain.axes[static_cast<std::size_t>(axis)];
+  const auto bounded = [](double v) { return number(std::clamp(v, -kNoEnd, kNoEnd)); };
   const bool endless = a.angle && std::isinf(a.lower) && std::isinf(a.upper);
-  const AxisDrive drive = k < drives.size() ? drives[k] : AxisDrive{};
-  const std::string ends =
-      endless ? "" : fmt::format("lower=\"{}\" upper=\"{}\" ", bounded(a.lower), bounded(a.upper));
-  return fmt::format(
-      "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n"
-      "    <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n    <axis xyz=\"{}\"/>\n"
-      "    <limit {}effort=\"{}\" velocity=\"{}\"/>\n  </joint>\n",
-      escaped(a.name), endless ? "continuous" : (a.angle ? "revolute" : "prismatic"),
-      escaped(link_name(chain, a.parent)), escaped(link_name(chain, axis)),
-      numbers(link_origin(chain, axis) - link_origin(chain, a.parent)), numbers(a.direction), ends,
-      bounded(drive.effort_max), bounded(drive.velocity_max));
+  XMLElement& joint = add_joint(robot, a.name, endless ? "continuous" : (a.angle ? "revolute" : "prismatic"));
+  add_element(joint, "parent", {{"link", link_name(chain, a.parent)}});
+  add_element(joint, "child", {{"link", link_name(chain, axis)}});
+  add_element(joint, "origin",
+              {{"xyz", numbers(link_origin(chain, axis) - link_origin(chain, a.parent))}, {"rpy", "0 0 0"}});
+  add_element(joint, "axis", {{"xyz", numbers(a.direction)}});
+  XMLElement& limit = add_element(joint, "limit");
+  if (!endless) {
+    limit.SetAttribute("lower", bounded(a.lower).c_str());
+    limit.SetAttribute("upper", bounded(a.upper).c_str());
+  }
+  limit.SetAttribute("effort", bounded(drive.effort_max).c_str());
+  limit.SetAttribute("velocity", bounded(drive.velocity_max).c_str());
 }
 
-std::string end_element(const Chain& chain, const std::string& name, int axis, const Pose& X_O) {
-  return fmt::format(
-      "  <link name=\"{0}\"/>\n  <joint name=\"{0}_mount\" type=\"fixed\">\n    <parent link=\"{1}\"/>\n"
-      "    <child link=\"{0}\"/>\n    <origin xyz=\"{2}\" rpy=\"{3}\"/>\n  </joint>\n",
-      name, escaped(link_name(chain, axis)), numbers(X_O.translation() - link_origin(chain, axis)),
-      numbers(roll_pitch_yaw(X_O.linear())));
+/// A frame fixed to an axis' link.
+void add_end(XMLElement& robot, const Chain& chain, const std::string& name, int axis, const Pose& X_O) {
+  add_element(robot, "link", {{"name", name}});
+  XMLElement& mount = add_joint(robot, name + "_mount", "fixed");
+  add_element(mount, "parent", {{"link", link_name(chain, axis)}});
+  add_element(mount, "child", {{"link", name}});
+  add_element(mount, "origin",
+              {{"xyz", numbers(X_O.translation() - link_origin(chain, axis))},
+               {"rpy", numbers(roll_pitch_yaw(X_O.linear()))}});
 }
 
 }  // namespace
 
 std::string write_urdf(const std::string& name, const Chain& chain, std::span<const LinkMass> links,
                        std::span<const AxisDrive> drives) {
-  std::string out = fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(name));
-  out += link_element(chain, -1, links);
-  for (int axis = 0; axis < chain.size(); ++axis)
-    out += link_element(chain, axis, links) + joint_element(chain, axis, drives);
-  out += end_element(chain, "work", chain.work_axis, chain.X_OS_zero);
-  out += end_element(chain, "tool", chain.tool_axis, chain.X_OT_zero);
-  return out + "</robot>\n";
+  tinyxml2::XMLDocument document;
+  document.InsertEndChild(document.NewDeclaration("xml version=\"1.0\""));
+  XMLElement& robot = add_element(document, "robot", {{"name", name}});
+  add_link(robot, chain, -1, links);
+  for (int axis = 0; axis < chain.size(); ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    add_link(robot, chain, axis, links);
+    add_axis_joint(robot, chain, axis, k < drives.size() ? drives[k] : AxisDrive{});
+  }
+  add_end(robot, chain, "work", chain.work_axis, chain.X_OS_zero);
+  add_end(robot, chain, "tool", chain.tool_axis, chain.X_OT_zero);
+  return to_text(document);
 }
 
 }  // namespace understudy::machine

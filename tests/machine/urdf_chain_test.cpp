@@ -1,5 +1,6 @@
 #include "machine/urdf_chain.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -293,6 +294,17 @@ TEST_F(UrdfFile, WrittenAndReadAgainAChainMovesTheSame) {
     // 17 digits in the file, angles of roll and pitch by urdfdom's quaternions: far below 1e-9.
     EXPECT_LE((before.matrix() - after.matrix()).cwiseAbs().maxCoeff(), 1e-13);
   }
+}
+
+TEST_F(UrdfFile, NamesOfAxesAreEscaped) {
+  Random random(4, "urdf names");
+  Chain chain = random_chain(random);
+  chain.axes[2].name = "R&D \"x\"><link name='x'/>";
+  const UrdfArm again = read_urdf(write(write_urdf("arm", chain)), "work", "tool");
+  ASSERT_EQ(again.chain.size(), chain.size());
+  const auto& axes = again.chain.axes;
+  EXPECT_TRUE(
+      std::any_of(axes.begin(), axes.end(), [&](const auto& a) { return a.name == chain.axes[2].name; }));
 }
 
 // Mass, first moment and inertia about the tip of all that an axis carries are what they were.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <clipper.hpp>
+
 #include "core/units.h"
 
 namespace understudy::toolpath {
@@ -13,27 +15,56 @@ constexpr double kFound = 1 * kMicrometre;
 // A mitre reaches as far as a polygon's own corner, but a needle's would leave the part.
 constexpr double kLongestMitre = 4;
 
-double segment_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a;
-  const double squared = along.squaredNorm();
-  const double s = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0;
-  return (a + s * along - p).norm();
+// Below 1.07 m Clipper needs no 128-bit products on this grid.
+constexpr double kGrid = 1e-9;  // [m]
+
+ClipperLib::Path on_grid(const Contour& contour) {
+  ClipperLib::Path path;
+  path.reserve(contour.size());
+  for (const Vec2& p : contour) path.emplace_back(std::llround(p.x() / kGrid), std::llround(p.y() / kGrid));
+  return path;
 }
 
-Vec2 left(const Vec2& v) { return Vec2(-v.y(), v.x()); }
+Contour off_grid(const ClipperLib::Path& path) {
+  Contour contour;
+  contour.reserve(path.size());
+  for (const ClipperLib::IntPoint& p : path)
+    contour.emplace_back(kGrid * static_cast<double>(p.X), kGrid * static_cast<double>(p.Y));
+  return contour;
+}
 
-// Each corner to where the two moved sides meet.
-Contour mitred(const Contour& contour, double offset) {
-  Contour moved;
-  const std::size_t count = contour.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec2 in = (contour[i] - contour[(i + count - 1) % count]).normalized();
-    const Vec2 out = (contour[(i + 1) % count] - contour[i]).normalized();
-    const Vec2 middle = left(in) + left(out);
-    const double stretch = 2 / std::max(middle.squaredNorm(), 4 / (kLongestMitre * kLongestMitre));
-    moved.push_back(contour[i] + offset * stretch * middle);
+std::vector<Contour> shrunk(const std::vector<Contour>& contours, double offset) {
+  ClipperLib::ClipperOffset clipper(kLongestMitre);
+  for (const Contour& contour : contours)
+    clipper.AddPath(on_grid(contour), ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
+  ClipperLib::Paths paths;
+  clipper.Execute(paths, -offset / kGrid);
+  std::vector<Contour> loops;
+  for (const ClipperLib::Path& path : paths) loops.push_back(off_grid(path));
+  return loops;
+}
+
+// Each loop from its point nearest to the first point of a contour on, in the order of the contours.
+void begin_by_contours(std::vector<Contour>& loops, const std::vector<Contour>& contours) {
+  struct Begun {
+    std::size_t contour = 0;
+    Contour loop;
+  };
+  std::vector<Begun> begun;
+  for (Contour& loop : loops) {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::size_t of = 0, first = 0;
+    for (std::size_t c = 0; c < contours.size(); ++c)
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const double distance = (loop[i] - contours[c].front()).norm();
+        if (distance < nearest) nearest = distance, of = c, first = i;
+      }
+    std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(first), loop.end());
+    begun.push_back({of, std::move(loop)});
   }
-  return moved;
+  std::stable_sort(begun.begin(), begun.end(),
+                   [](const Begun& a, const Begun& b) { return a.contour < b.contour; });
+  for (std::size_t i = 0; i < loops.size(); ++i) loops[i] = std::move(begun[i].loop);
 }
 
 // Cuts a closed polygon into the runs where `keep` holds.
@@ -97,51 +128,19 @@ double length(const FlatPath& path) {
 }  // namespace
 
 Contour simplified(const Contour& contour, double tolerance) {
-  Contour kept;
-  for (const Vec2& p : contour)
-    if (kept.empty() || (p - kept.back()).norm() > tolerance) kept.push_back(p);
-  while (kept.size() > 1 && (kept.front() - kept.back()).norm() <= tolerance) kept.pop_back();
-  for (std::size_t i = 0; kept.size() > 3 && i < kept.size();) {
-    const Vec2& before = kept[(i + kept.size() - 1) % kept.size()];
-    const Vec2& after = kept[(i + 1) % kept.size()];
-    if (segment_distance(kept[i], before, after) <= tolerance)
-      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
-    else
-      ++i;
-  }
-  return kept;
-}
-
-bool inside(const std::vector<Contour>& contours, const Vec2& p) {
-  bool odd = false;
-  for (const Contour& c : contours)
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      const Vec2 &a = c[i], &b = c[(i + 1) % c.size()];
-      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-      if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) odd = !odd;
-    }
-  return odd;
-}
-
-double distance_to(const std::vector<Contour>& contours, const Vec2& p) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Contour& c : contours)
-    for (std::size_t i = 0; i < c.size(); ++i)
-      nearest = std::min(nearest, segment_distance(p, c[i], c[(i + 1) % c.size()]));
-  return nearest;
+  ClipperLib::Path path = on_grid(contour);
+  ClipperLib::CleanPolygon(path, tolerance / kGrid);
+  return off_grid(path);
 }
 
 std::vector<FlatPath> inset_paths(const std::vector<Contour>& contours, double offset, double shortest,
                                   const std::function<bool(const Vec2&)>& wanted) {
-  const auto keep = [&](const Vec2& p) {
-    return inside(contours, p) && distance_to(contours, p) >= offset - kFound && wanted(p);
-  };
+  std::vector<Contour> loops = shrunk(contours, offset);
+  begin_by_contours(loops, contours);
   std::vector<FlatPath> paths;
-  for (const Contour& contour : contours) {
-    if (contour.size() < 3) continue;
-    for (FlatPath& run : Cutter(keep, 0.5 * offset).cut(mitred(contour, offset)))
+  for (const Contour& loop : loops)
+    for (FlatPath& run : Cutter(wanted, 0.5 * offset).cut(loop))
       if (length(run) >= shortest) paths.push_back(std::move(run));
-  }
   return paths;
 }
 

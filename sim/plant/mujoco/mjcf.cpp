@@ -16,6 +16,14 @@ constexpr double kRotor = 0.1;  // [kg] or [kg m^2]
 // rattles on for seconds; at 2 it does not.
 constexpr double kStopDamping = 2.0;
 
+std::string number(double value) { return fmt::format("{}", value); }
+
+XMLElement& add_joint(XMLElement& body, const MjcfJoint& joint) {
+  return add_element(
+      body, "joint",
+      {{"name", joint.name}, {"type", joint.hinge ? "hinge" : "slide"}, {"axis", mjcf_text(joint.axis)}});
+}
+
 }  // namespace
 
 std::string strut_part(int strut, const char* part) { return fmt::format("strut {} {}", strut + 1, part); }
@@ -27,47 +35,49 @@ std::string mjcf_text(const Mat3& R) {
   return fmt::format("{} {} {} {}", q.w(), q.x(), q.y(), q.z());
 }
 
-std::string driven_joint(const std::string& name, const std::string& type, const Vec3& axis,
-                         const machine::Drive& drive) {
-  std::string spring;
-  if (drive.stiffness > 0)
-    spring = fmt::format(R"( stiffness="{}" damping="{}")", drive.stiffness,
-                         2 * drive.damping_ratio * std::sqrt(drive.stiffness * drive.rotor()));
-  return fmt::format(R"(<joint name="{}" type="{}" axis="{}" armature="{}"{}/>)", name, type, mjcf_text(axis),
-                     drive.stiffness > 0 ? drive.rotor() : kRotor, spring);
+void add_driven_joint(XMLElement& body, const MjcfJoint& joint, const machine::Drive& drive) {
+  XMLElement& element = add_joint(body, joint);
+  element.SetAttribute("armature", number(drive.stiffness > 0 ? drive.rotor() : kRotor).c_str());
+  if (!(drive.stiffness > 0)) return;
+  element.SetAttribute("stiffness", number(drive.stiffness).c_str());
+  const double damping = 2 * drive.damping_ratio * std::sqrt(drive.stiffness * drive.rotor());
+  element.SetAttribute("damping", number(damping).c_str());
 }
 
-std::string play_joint(const std::string& name, const std::string& type, const Vec3& axis, double travel,
-                       double damping, double friction) {
-  return fmt::format(R"(
-        <joint name="{}" type="{}" axis="{}" damping="{}" limited="true" range="{} {}"{}/>)",
-                     name, type, mjcf_text(axis), damping, -travel / 2, travel / 2,
-                     friction > 0 ? fmt::format(R"( frictionloss="{}")", friction) : "");
+void add_drive_equality(XMLElement& equality, const std::string& name, const machine::Drive& drive) {
+  if (drive.stiffness > 0) return;
+  add_element(equality, "joint", {{"name", name}, {"joint1", name}});
 }
 
-std::string drive_equality(const std::string& name, const machine::Drive& drive) {
-  if (drive.stiffness > 0) return "";
-  return fmt::format(R"(
-    <joint name="{0}" joint1="{0}"/>)",
-                     name);
+void add_play_joint(XMLElement& body, const MjcfJoint& joint, const MjcfPlay& play) {
+  XMLElement& element = add_joint(body, joint);
+  element.SetAttribute("damping", number(play.damping).c_str());
+  element.SetAttribute("limited", "true");
+  element.SetAttribute("range", fmt::format("{} {}", -play.travel / 2, play.travel / 2).c_str());
+  if (play.friction > 0) element.SetAttribute("frictionloss", number(play.friction).c_str());
 }
 
-std::string mjcf_settings(const MujocoOptions& options, int rows) {
-  return fmt::format(R"(
-  <compiler angle="radian" inertiafromgeom="false"/>
-  <size njmax="{rows}" nconmax="0" nstack="60000"/>
-  <option timestep="{dt}" gravity="0 0 {g}" integrator="Euler" solver="Newton" tolerance="1e-10"
-          jacobian="dense">
-    <flag contact="disable" actuation="disable"/>
-  </option>
-  <default>
-    <joint solreflimit="{tc} {stop}" solimplimit="{d} {d} 0.001"/>
-    <equality solref="{tc} 1" solimp="{d} {d} 0.001"/>
-  </default>)",
-                     fmt::arg("rows", rows), fmt::arg("dt", options.timestep),
-                     fmt::arg("g", options.gravity ? -kGravity : 0.0),
-                     fmt::arg("tc", kConstraintSteps * options.timestep), fmt::arg("stop", kStopDamping),
-                     fmt::arg("d", kImpedance));
+XMLElement& add_model(tinyxml2::XMLDocument& document, const std::string& name, const MujocoOptions& options,
+                      int rows) {
+  XMLElement& model = add_element(document, "mujoco", {{"model", name}});
+  add_element(model, "compiler", {{"angle", "radian"}, {"inertiafromgeom", "false"}});
+  add_element(model, "size", {{"njmax", fmt::format("{}", rows)}, {"nconmax", "0"}, {"nstack", "60000"}});
+  XMLElement& option = add_element(model, "option",
+                                   {{"timestep", number(options.timestep)},
+                                    {"gravity", fmt::format("0 0 {}", options.gravity ? -kGravity : 0.0)},
+                                    {"integrator", "Euler"},
+                                    {"solver", "Newton"},
+                                    {"tolerance", "1e-10"},
+                                    {"jacobian", "dense"}});
+  add_element(option, "flag", {{"contact", "disable"}, {"actuation", "disable"}});
+  const double time_constant = kConstraintSteps * options.timestep;
+  const std::string impedance = fmt::format("{0} {0} 0.001", kImpedance);
+  XMLElement& defaults = add_element(model, "default");
+  add_element(
+      defaults, "joint",
+      {{"solreflimit", fmt::format("{} {}", time_constant, kStopDamping)}, {"solimplimit", impedance}});
+  add_element(defaults, "equality", {{"solref", fmt::format("{} 1", time_constant)}, {"solimp", impedance}});
+  return model;
 }
 
 std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built, const Pose& X_WT,

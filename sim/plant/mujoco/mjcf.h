@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "core/xml.h"
 #include "sim/plant/plant.h"
 
 namespace understudy::sim {
@@ -22,19 +23,36 @@ constexpr const char* kClosurePart = "ball";  ///< equality that closes the loop
 constexpr const char* kNutPlayPart = "nut play";
 constexpr const char* kBallPlayPart = "ball play z";  ///< along the strut
 
-/// Slide of a strut's screw, hinge or slide of a chain's axis, without and with an elastic drive.
-std::string driven_joint(const std::string& name, const std::string& type, const Vec3& axis,
-                         const machine::Drive& drive);
-/// A limited joint of `travel` in all, with the stops' damping left to the defaults of the model.
-std::string play_joint(const std::string& name, const std::string& type, const Vec3& axis, double travel,
-                       double damping, double friction);
-/// The equality that moves it; empty for an elastic drive, which is a spring.
-std::string drive_equality(const std::string& name, const machine::Drive& drive);
 /// "x y z" and "w x y z".
 std::string mjcf_text(const Vec3& v);
 std::string mjcf_text(const Mat3& R);
-/// Everything about constraints and integration that does not depend on the machine.
-std::string mjcf_settings(const MujocoOptions& options, int rows);
+
+using tinyxml2::XMLElement;
+
+/// A joint of one axis: a slide or a hinge along `axis` in the frame of its body.
+struct MjcfJoint {
+  std::string name;
+  bool hinge = false;
+  Vec3 axis = Vec3::UnitZ();
+};
+
+/// Slide of a strut's screw, hinge or slide of a chain's axis, without and with an elastic drive.
+void add_driven_joint(XMLElement& body, const MjcfJoint& joint, const machine::Drive& drive);
+/// The equality that moves it; none for an elastic drive, which is a spring.
+void add_drive_equality(XMLElement& equality, const std::string& name, const machine::Drive& drive);
+
+/// Clearance of a joint: [m], [N s/m], [N], or [rad], [N m s/rad], [N m].
+struct MjcfPlay {
+  double travel = 0;  ///< from stop to stop
+  double damping = 0;
+  double friction = 0;  ///< 0: none
+};
+/// A limited joint, with the stops' damping left to the defaults of the model.
+void add_play_joint(XMLElement& body, const MjcfJoint& joint, const MjcfPlay& play);
+
+/// <mujoco> with everything about constraints and integration that does not depend on the machine.
+XMLElement& add_model(tinyxml2::XMLDocument& document, const std::string& name, const MujocoOptions& options,
+                      int rows);
 
 std::string write_hexapod_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                const Pose& X_WT, const MujocoOptions& options);

@@ -5,6 +5,7 @@
 
 #include "sim/plant/mujoco/mujoco_engine.h"
 #include "tests/sim/plant/machine_g4.h"
+#include "tests/sim/plant/small_chains.h"
 
 namespace understudy::sim {
 namespace {
@@ -78,6 +79,26 @@ TEST_P(Mjcf, ScrewStandsOffTheUniversalJointByDev) {
     EXPECT_NEAR(axis.dot(second), 0, 1e-12);
     EXPECT_NEAR(first.dot(second), 0, 1e-12);
   }
+}
+
+// Characters that mean something in XML, and an element that an unescaped name would slip in.
+constexpr const char* kHostileName = "R&D \"x\"><include file='x'/>";
+
+TEST(MjcfNames, OfAHexapodAreEscaped) {
+  machine::MachineDescription machine = machine_g4();
+  machine.name = kHostileName;
+  const auto model =
+      load_model(write_mjcf(machine, make_as_built(machine, "nominal", 1), machine.X_WB * machine.X_BT_home));
+  EXPECT_STREQ(model->names, kHostileName);
+}
+
+TEST(MjcfNames, OfAChainsAxesAreEscaped) {
+  machine::MachineDescription machine = two_links(0.1, 0.2);
+  machine.chain->kinematics.chain.axes[1].name = kHostileName;
+  const auto model = load_model(write_mjcf(machine, make_as_built(machine, "nominal", 1), machine.X_BT_home));
+  EXPECT_EQ(model->nq, 2);
+  EXPECT_GE(find_id(*model, mjOBJ_JOINT, kHostileName), 0);
+  EXPECT_GE(find_id(*model, mjOBJ_BODY, kHostileName), 0);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "tests/geometry/test_solids.h"
-#include "toolpath/planners/contour_offset.h"
 #include "toolpath/planners/surface_planner.h"
 
 namespace understudy::toolpath {
@@ -102,22 +101,6 @@ TEST(PlanarSlicer, ADomeIsAStaircaseOfCircles) {
     // flat.
     EXPECT_NEAR(s.X_WT.translation().head<2>().norm(), radius, 3e-6 + 1.6e-6 / std::sqrt(1 - z * z / 100e-6));
   }
-}
-
-TEST(PlanarSlicer, InsetsStopWhereTheSectionIsTooNarrow) {
-  const std::vector<Contour> slot = {{Vec2(0, 0), Vec2(10e-3, 0), Vec2(10e-3, 0.8e-3), Vec2(0, 0.8e-3)}};
-  const auto all = [](const Vec2&) { return true; };
-  EXPECT_EQ(inset_paths(slot, 0.3e-3, 0, all).size(), 1u);
-  EXPECT_TRUE(inset_paths(slot, 0.5e-3, 0, all).empty());
-  // A dumb-bell: the offset runs in both ends, not through the neck.
-  const std::vector<Contour> dumbbell = {{Vec2(0, 0), Vec2(4e-3, 0), Vec2(4e-3, 1.5e-3), Vec2(8e-3, 1.5e-3),
-                                          Vec2(8e-3, 0), Vec2(12e-3, 0), Vec2(12e-3, 4e-3), Vec2(8e-3, 4e-3),
-                                          Vec2(8e-3, 2.5e-3), Vec2(4e-3, 2.5e-3), Vec2(4e-3, 4e-3),
-                                          Vec2(0, 4e-3)}};
-  const auto paths = inset_paths(dumbbell, 0.6e-3, 0, all);
-  EXPECT_EQ(paths.size(), 2u);
-  for (const FlatPath& path : paths)
-    for (const Vec2& p : path) EXPECT_GT(distance_to(dumbbell, p), 0.6e-3 - 3e-6);
 }
 
 TEST(PlanarSlicer, WhatCannotBeSlicedIsRefused) {
