@@ -11,6 +11,8 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/fixture.h"
+#include "toolpath/lattice/lattice_fill.h"
+#include "toolpath/lattice/lattice_json.h"
 #include "toolpath/lattice/lattice_planner.h"
 
 namespace understudy::cli {

@@ -6,6 +6,8 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "rehearsal/fixture.h"
+#include "toolpath/planners/curve_csv.h"
+#include "toolpath/planners/section_rows.h"
 #include "toolpath/planners/surface_planner.h"
 
 namespace understudy::cli {

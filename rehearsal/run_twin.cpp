@@ -81,7 +81,7 @@ sim::DepositionOptions deposition_options(const TwinSetup& setup, FlowWatch& flo
   sim::DepositionOptions options;
   options.laid = [&flow](const sim::LaidBead& bead) { flow.add(bead); };
   if (!setup.machine.tool.prints()) return options;
-  options.loose = [&strands](const sim::UnsupportedStretch& stretch) { strands.add(stretch); };
+  options.on_unsupported = [&strands](const sim::UnsupportedStretch& stretch) { strands.add(stretch); };
   options.glass_transition = setup.material.glass_transition;
   options.substrate_temperature = sim::BeadTemperature(setup.machine, setup.material);
   return options;
@@ -176,7 +176,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   run.trace = watch.trace.take();
   run.frames = pair_with_truth(run.result, truth);
   run.deposition = watch.deposition.summary();
-  run.loose = watch.deposition.loose_stretches();
+  run.loose = watch.deposition.unsupported_stretches();
   run.flow = watch.flow.stretches();
   run.workpiece = watch.workpiece;
   run.strands = watch.strands.finish();

@@ -1,14 +1,14 @@
 #include "rehearsal/scene.h"
 
-#include "sim/collision/collision.h"
+#include "sim/collision/machine_bodies.h"
 
 namespace understudy::rehearsal {
 
 Scene machine_scene(const machine::MachineDescription& machine, const sim::AsBuilt& as_built,
-                    const sim::Configuration& posture) {
+                    const sim::Configuration& configuration) {
   Scene scene;
-  scene.X_WT = posture.X_WT;
-  scene.bodies = sim::machine_bodies(machine, as_built, posture);
+  scene.X_WT = configuration.X_WT;
+  scene.bodies = sim::machine_bodies(machine, as_built, configuration);
   // The base has no part in collisions: a ring of joints tells where the struts hang.
   if (!machine.is_chain())
     for (const Vec3& p_BB : as_built.hexapod.base_joint) {

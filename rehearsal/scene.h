@@ -25,9 +25,9 @@ struct Scene {
   std::shared_ptr<const sim::Workpiece> printed;  ///< null: nothing was simulated
 };
 
-/// The machine in a posture, on its table; no part, no program.
+/// The machine in a configuration, on its table; no part, no program.
 Scene machine_scene(const machine::MachineDescription& machine, const sim::AsBuilt& as_built,
-                    const sim::Configuration& posture);
+                    const sim::Configuration& configuration);
 
 /// Where the tip goes while it prints, one polyline [m] for each stretch between two travels.
 std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program);

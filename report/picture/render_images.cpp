@@ -106,8 +106,8 @@ std::string targets(const RenderRequest& request, const MachineDescription& mach
 /// The overview of a rehearsal that stands still at the pose.
 std::string scene(const MachineDescription& machine, const Pose& X_WT, ordered_json& truth) {
   const auto mechanism = machine.make_mechanism();
-  sim::Configuration posture{X_WT, {}};
-  const auto axes = std::span(posture.axes).first(static_cast<std::size_t>(mechanism->axis_count()));
+  sim::Configuration configuration{X_WT, {}};
+  const auto axes = std::span(configuration.axes).first(static_cast<std::size_t>(mechanism->axis_count()));
   if (const auto solved = mechanism->inverse(machine.X_WB.inverse() * X_WT, {}, axes);
       solved != kinematics::SolveStatus::ok)
     throw InputError(fmt::format("{} cannot take this pose: {}", machine.name, to_string(solved)));
@@ -122,8 +122,8 @@ std::string scene(const MachineDescription& machine, const Pose& X_WT, ordered_j
     truth["axes"][mechanism->axis_name(i) + (angle ? "_deg" : "_mm")] =
         list({angle ? to_deg(value) : to_mm(value)})[0];
   }
-  return encode_png(
-      draw_overview(rehearsal::machine_scene(machine, sim::make_as_built(machine, "nominal", 1), posture)));
+  return encode_png(draw_overview(
+      rehearsal::machine_scene(machine, sim::make_as_built(machine, "nominal", 1), configuration)));
 }
 
 Pose default_pose(const RenderRequest& request, const MachineDescription& machine) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "sim/collision/machine_bodies.h"
 #include "sim/distance/penetration.h"
 
 namespace understudy::sim {
@@ -135,10 +136,10 @@ Separation BodySet::surfaces(const Body& body, const Pose& X_W1, const Body& obs
   return world_.distance(body.fcl, X_W1, obstacle.fcl, X_W2);
 }
 
-Separation BodySet::separation(const BodyPair& pair, const Configuration& posture, bool check_inside) {
+Separation BodySet::separation(const BodyPair& pair, const Configuration& configuration, bool check_inside) {
   Body &body = bodies_[pair.body], &obstacle = bodies_[pair.obstacle];
-  if (body.owner == Owner::link || obstacle.owner == Owner::link) links_.pose(posture.axes);
-  const Pose X_W1 = place(body, posture.X_WT), X_W2 = place(obstacle, posture.X_WT);
+  if (body.owner == Owner::link || obstacle.owner == Owner::link) links_.pose(configuration.axes);
+  const Pose X_W1 = place(body, configuration.X_WT), X_W2 = place(obstacle, configuration.X_WT);
   Separation result = surfaces(body, X_W1, obstacle, X_W2);
   bool overlap = result.distance <= 0;
   if (!overlap && check_inside) {
@@ -151,20 +152,20 @@ Separation BodySet::separation(const BodyPair& pair, const Configuration& postur
   return result;
 }
 
-std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const Configuration& posture,
+std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const Configuration& configuration,
                                                      std::size_t before) {
   Body& body = bodies_[pair.body];
-  if (body.owner == Owner::link) links_.pose(posture.axes);
-  const Pose X_WS = place(body, posture.X_WT);
+  if (body.owner == Owner::link) links_.pose(configuration.axes);
+  const Pose X_WS = place(body, configuration.X_WT);
   return beads_->nearest(*body.solid, X_WS, kBeadReach, before);
 }
 
-double BodySet::bead_clearance(const BodyPair& pair, const Configuration& posture, const Bead& bead) {
+double BodySet::bead_clearance(const BodyPair& pair, const Configuration& configuration, const Bead& bead) {
   Body& body = bodies_[pair.body];
-  if (body.owner == Owner::link) links_.pose(posture.axes);
+  if (body.owner == Owner::link) links_.pose(configuration.axes);
   const Vec3 from(bead.from_W[0], bead.from_W[1], bead.from_W[2]),
       to(bead.to_W[0], bead.to_W[1], bead.to_W[2]);
-  const Vec3 middle_S = place(body, posture.X_WT).inverse(Eigen::Isometry) * (0.5 * (from + to));
+  const Vec3 middle_S = place(body, configuration.X_WT).inverse(Eigen::Isometry) * (0.5 * (from + to));
   return signed_distance(*body.solid, middle_S) - 0.5 * ((to - from).norm() + double(bead.width));
 }
 

@@ -36,7 +36,7 @@ class BodySet {
   const std::vector<BodyPair>& pairs() const { return pairs_; }
   const std::string& name(std::size_t body) const { return bodies_[body].shape.name; }
 
-  /// How much a machine moves from one posture to another.
+  /// How much a machine moves from one configuration to another.
   struct Travel {
     double path = 0;                ///< [m], of the tip
     double turn = 0;                ///< [rad], of the tool
@@ -47,13 +47,13 @@ class BodySet {
 
   /// Distance of the two surfaces at a pose of the tool; where they overlap, minus the depth. `check_inside`
   /// also finds a body that lies wholly inside a closed part, which no surface shows.
-  Separation separation(const BodyPair& pair, const Configuration& posture, bool check_inside);
+  Separation separation(const BodyPair& pair, const Configuration& configuration, bool check_inside);
 
   /// The nearest of the first `before` beads; nothing within kBeadReach.
-  std::optional<BeadIndex::Near> nearest_bead(const BodyPair& pair, const Configuration& posture,
+  std::optional<BeadIndex::Near> nearest_bead(const BodyPair& pair, const Configuration& configuration,
                                               std::size_t before);
   /// [m], at least, between the pair's body and one bead.
-  double bead_clearance(const BodyPair& pair, const Configuration& posture, const Bead& bead);
+  double bead_clearance(const BodyPair& pair, const Configuration& configuration, const Bead& bead);
 
  private:
   enum class Owner { tool, strut, link, world };

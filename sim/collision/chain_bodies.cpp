@@ -36,8 +36,8 @@ ChainBodies::ChainBodies(const machine::MachineDescription& machine, const AsBui
   }
 }
 
-/// Of the item's farthest point from a point of the axis (-1: from the frame's origin), in any posture: along
-/// the chain between them.
+/// Of the item's farthest point from a point of the axis (-1: from the frame's origin), in any configuration:
+/// along the chain between them.
 double ChainBodies::reach_from(int from, const Item& item) const {
   const auto solid = convex_solid(item.shape);
   const Vec3 anchor = item.axis < 0 ? Vec3(0, 0, 0) : axis(item.axis).point;
@@ -51,7 +51,7 @@ double ChainBodies::reach_from(int from, const Item& item) const {
   return length;
 }
 
-/// From the frame's origin to a point of the axis, in any posture of what carries it.
+/// From the frame's origin to a point of the axis, in any configuration of what carries it.
 double ChainBodies::way_to(int last) const {
   double length = 0;
   for (int i = last; i >= 0; i = axis(i).parent) {

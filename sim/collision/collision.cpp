@@ -18,11 +18,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastAccuracy = 0.05e-3;  // [m], of min_clearance()
 constexpr double kNozzleFineness = 4;  // the nozzle works a few margins from the part: looked at more often
 
-Configuration posture_between(const Snapshot& from, const Snapshot& to, double t) {
-  Configuration posture{interpolate(from.X_WT, to.X_WT, t), from.axes_reached};
-  for (std::size_t i = 0; i < posture.axes.size(); ++i)
-    posture.axes[i] += t * (to.axes_reached[i] - from.axes_reached[i]);
-  return posture;
+Configuration configuration_between(const Snapshot& from, const Snapshot& to, double t) {
+  Configuration configuration{interpolate(from.X_WT, to.X_WT, t), from.axes_reached};
+  for (std::size_t i = 0; i < configuration.axes.size(); ++i)
+    configuration.axes[i] += t * (to.axes_reached[i] - from.axes_reached[i]);
+  return configuration;
 }
 
 BodySet::Travel travel_between(const Snapshot& from, const Snapshot& to) {
@@ -62,33 +62,33 @@ struct CollisionObserver::State {
     return pair.nozzle_at_work ? options.nozzle_contact : options.near;
   }
 
-  void look(std::size_t index, const Configuration& posture, double time, int line) {
+  void look(std::size_t index, const Configuration& configuration, double time, int line) {
     const BodyPair& pair = bodies.pairs()[index];
-    if (pair.printed) return look_at_beads(index, posture, time, line);
+    if (pair.printed) return look_at_beads(index, configuration, time, line);
     Look& at = looks[index];
     // Motion is continuous: a body that was outside gets inside only through a contact that is seen.
     const bool check_inside = !last || at.clearance <= 0;
-    const Separation seen = bodies.separation(pair, posture, check_inside);
+    const Separation seen = bodies.separation(pair, configuration, check_inside);
     ++checks;
     at.clearance = seen.distance;
     record(index,
            {bodies.name(pair.body), bodies.name(pair.obstacle), seen.distance, seen.place_W, time, line});
-    at.budget = allowed_motion(seen.distance, watch(index, line));
+    at.budget = allowed_motion(seen.distance, limits(index, line));
   }
 
-  void look_at_beads(std::size_t index, const Configuration& posture, double time, int line) {
+  void look_at_beads(std::size_t index, const Configuration& configuration, double time, int line) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
     at.clearance = kBeadReach;
     ++checks;
-    if (const auto found = bodies.nearest_bead(pair, posture, beads_for(pair))) {
+    if (const auto found = bodies.nearest_bead(pair, configuration, beads_for(pair))) {
       at.clearance = found->separation.distance;
       if (at.clearance <= near_level(pair) || at.clearance < closest.clearance) {
         const std::string name = "bead of line " + std::to_string(options.beads->bead(found->bead).line);
         record(index, {bodies.name(pair.body), name, at.clearance, found->separation.place_W, time, line});
       }
     }
-    at.budget = allowed_motion(at.clearance, watch(index, line));
+    at.budget = allowed_motion(at.clearance, limits(index, line));
   }
 
   // How many beads are there for this pair.
@@ -98,12 +98,12 @@ struct CollisionObserver::State {
   }
 
   // Material has appeared since the last snapshot: nearer than what the pair's budget counts with, perhaps.
-  void mind_new_beads(std::size_t index, const Configuration& posture) {
+  void mind_new_beads(std::size_t index, const Configuration& configuration) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
     const std::size_t count = beads_for(pair);
     for (std::size_t k = at.beads; k < count && at.budget > 0; ++k) {
-      const double clearance = bodies.bead_clearance(pair, posture, options.beads->bead(k));
+      const double clearance = bodies.bead_clearance(pair, configuration, options.beads->bead(k));
       at.budget = std::min(at.budget, std::max(0.0, clearance - near_level(pair)));
     }
     at.beads = count;
@@ -124,27 +124,27 @@ struct CollisionObserver::State {
     if (!added && contact.clearance < entry->second.clearance) entry->second = contact;
   }
 
-  Watch watch(std::size_t index, int line) const {
+  ClearanceLimits limits(std::size_t index, int line) const {
     const BodyPair& pair = bodies.pairs()[index];
-    Watch w;
-    w.contact = contact_level(pair);
-    w.near = near_level(pair);
+    ClearanceLimits level;
+    level.contact = contact_level(pair);
+    level.near = near_level(pair);
     for (const auto* records : {&touching, &near}) {
       const auto entry = records->find({line, index});
-      if (entry != records->end()) w.deepest = std::min(w.deepest, entry->second.clearance);
+      if (entry != records->end()) level.deepest = std::min(level.deepest, entry->second.clearance);
     }
-    w.least = pair.nozzle_gap ? least_nozzle : closest.clearance;
-    w.resolution = pair.nozzle_gap ? options.margin / kNozzleFineness : options.margin;
-    w.depth_accuracy = options.margin;
-    w.accuracy = pair.nozzle_gap ? w.resolution / 2 : kLeastAccuracy;
+    level.least = pair.nozzle_gap ? least_nozzle : closest.clearance;
+    level.resolution = pair.nozzle_gap ? options.margin / kNozzleFineness : options.margin;
+    level.depth_accuracy = options.margin;
+    level.accuracy = pair.nozzle_gap ? level.resolution / 2 : kLeastAccuracy;
     if (pair.printed && pair.nozzle_at_work) {
-      w.least = kInfinity;
-      w.resolution = w.depth_accuracy = options.bead_press;
+      level.least = kInfinity;
+      level.resolution = level.depth_accuracy = options.bead_press;
     }
-    return w;
+    return level;
   }
 
-  // Looks wherever on the way from the last snapshot the pair's budget is used up.
+  // Looks wherever on the path from the last snapshot the pair's budget is used up.
   void advance(std::size_t index, const Snapshot& to, const BodySet::Travel& travel) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
@@ -155,7 +155,7 @@ struct CollisionObserver::State {
     while (at.budget < left) {
       left -= at.budget;
       const double t = 1 - left / motion;
-      look(index, posture_between(*last, to, t), last->time + t * (to.time - last->time), to.line);
+      look(index, configuration_between(*last, to, t), last->time + t * (to.time - last->time), to.line);
     }
     at.budget -= left;
   }

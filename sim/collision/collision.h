@@ -15,14 +15,6 @@
 
 namespace understudy::sim {
 
-/// The bodies of a machine: those of the tool, and the struts of a hexapod or the links of a chain. Shared by
-/// collision checks and pictures. Each shape's X_FS is its pose in W.
-std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& machine,
-                                            const AsBuilt& as_built, const Configuration& posture);
-/// Tool bodies and platform, six strut capsules from base joint to ball joint.
-std::vector<geometry::Shape> hexapod_bodies(const machine::MachineDescription& machine,
-                                            const kinematics::HexapodGeometry& geometry, const Pose& X_WT);
-
 struct Contact {
   std::string body;       ///< "nozzle", "heater block", "strut 3"
   std::string obstacle;   ///< "part", "table", "strut 4", "bead of line 812"

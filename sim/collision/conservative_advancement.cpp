@@ -6,25 +6,25 @@
 namespace understudy::sim {
 namespace {
 
-double below(double value, const Watch& watch) {
+double below(double value, const ClearanceLimits& limits) {
   if (std::isinf(value)) return value;
-  if (value <= watch.contact) {
-    return value - std::max(watch.depth_accuracy, kRelativeDepthAccuracy * std::abs(value));
+  if (value <= limits.contact) {
+    return value - std::max(limits.depth_accuracy, kRelativeDepthAccuracy * std::abs(value));
   }
-  return value - std::max(watch.accuracy, kRelativeAccuracy * value);
+  return value - std::max(limits.accuracy, kRelativeAccuracy * value);
 }
 
 }  // namespace
 
-double allowed_motion(double clearance, const Watch& watch) {
-  double level = below(watch.deepest, watch);
-  if (clearance > watch.near) {
-    level = watch.near;
-  } else if (clearance > watch.contact) {
-    level = std::max(watch.contact, level);
+double allowed_motion(double clearance, const ClearanceLimits& limits) {
+  double level = below(limits.deepest, limits);
+  if (clearance > limits.near) {
+    level = limits.near;
+  } else if (clearance > limits.contact) {
+    level = std::max(limits.contact, level);
   }
-  level = std::max(level, below(watch.least, watch));
-  return std::max(clearance - level, clearance > watch.contact ? watch.resolution : watch.depth_accuracy);
+  level = std::max(level, below(limits.least, limits));
+  return std::max(clearance - level, clearance > limits.contact ? limits.resolution : limits.depth_accuracy);
 }
 
 }  // namespace understudy::sim

@@ -1,12 +1,12 @@
-// When a pair of bodies must be looked at again: by how far they may have moved since the last look.
+// When a pair of bodies must be measured again: how far they may move after a measurement.
 #pragma once
 
 #include <limits>
 
 namespace understudy::sim {
 
-/// What the next query of a pair must not miss. All [m].
-struct Watch {
+/// Clearances that the next query of a pair must not miss. All [m].
+struct ClearanceLimits {
   double contact = 0;  ///< at or below, they touch
   double near = 0;     ///< at or below, they are near; equal to `contact` where nearness means nothing
   double deepest = std::numeric_limits<double>::infinity();  ///< least clearance on record for this line
@@ -16,11 +16,11 @@ struct Watch {
   double resolution = 0;                                     ///< motion that is always allowed
 };
 
-// Of what is reported, where that is more than the absolute accuracy.
+// Of the reported value, where that is more than the absolute accuracy.
 constexpr double kRelativeAccuracy = 0.01;
 constexpr double kRelativeDepthAccuracy = 0.05;
 
 /// Motion that the pair may make after `clearance` was measured before any of these could be missed.
-double allowed_motion(double clearance, const Watch& watch);
+double allowed_motion(double clearance, const ClearanceLimits& limits);
 
 }  // namespace understudy::sim

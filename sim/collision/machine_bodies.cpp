@@ -1,7 +1,8 @@
+#include "sim/collision/machine_bodies.h"
+
 #include <string>
 
 #include "sim/collision/chain_bodies.h"
-#include "sim/collision/collision.h"
 
 namespace understudy::sim {
 
@@ -21,15 +22,15 @@ std::vector<geometry::Shape> hexapod_bodies(const machine::MachineDescription& m
 }
 
 std::vector<geometry::Shape> machine_bodies(const machine::MachineDescription& machine,
-                                            const AsBuilt& as_built, const Configuration& posture) {
-  if (!machine.is_chain()) return hexapod_bodies(machine, as_built.hexapod, posture.X_WT);
+                                            const AsBuilt& as_built, const Configuration& configuration) {
+  if (!machine.is_chain()) return hexapod_bodies(machine, as_built.hexapod, configuration.X_WT);
   std::vector<geometry::Shape> bodies;
   for (geometry::Shape shape : machine.tool.bodies) {
-    shape.X_FS = posture.X_WT * shape.X_FS;
+    shape.X_FS = configuration.X_WT * shape.X_FS;
     bodies.push_back(std::move(shape));
   }
   ChainBodies links(machine, as_built);
-  links.pose(posture.axes);
+  links.pose(configuration.axes);
   for (std::size_t i = 0; i < links.items().size(); ++i) {
     bodies.push_back(links.items()[i].shape);
     bodies.back().X_FS = links.place(i);

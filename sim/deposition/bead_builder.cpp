@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/deposition/bead_section.h"
+
 namespace understudy::sim {
 namespace {
 
@@ -92,8 +94,8 @@ void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double length, do
 void BeadBuilder::settle_section() {
   LaidBead& bead = element_->bead;
   const double gap = bead.adhesion == Adhesion::fused ? fused_height_ : bead.gap;
-  const bool pressed =
-      bead.adhesion != Adhesion::loose && bead.adhesion != Adhesion::buried && std::isfinite(gap) && gap > 0;
+  const bool pressed = bead.adhesion != Adhesion::unsupported && bead.adhesion != Adhesion::buried &&
+                       std::isfinite(gap) && gap > 0;
   // The net way: what the tip trembles to and fro draws nothing out.
   bead.length = (bead.to_W - bead.from_W).norm();
   bead.path = (element_->tip_to_W - element_->tip_from_W).norm();

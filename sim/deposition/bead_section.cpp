@@ -1,7 +1,7 @@
+#include "sim/deposition/bead_section.h"
+
 #include <cmath>
 #include <numbers>
-
-#include "sim/deposition/deposition.h"
 
 namespace understudy::sim {
 

@@ -40,7 +40,7 @@ Bead shape_of(const Element& element) {
   // What fills the way from the surface to the nozzle is as high as the tip everywhere; a thinner strand lies
   // on the surface, unless it hangs.
   const bool lies = laid.adhesion == Adhesion::buried ||
-                    (laid.adhesion != Adhesion::loose && laid.adhesion != Adhesion::fused &&
+                    (laid.adhesion != Adhesion::unsupported && laid.adhesion != Adhesion::fused &&
                      laid.height < kFills * laid.gap);
   const double half = laid.height / 2;
   const auto middle = [&](const Vec3& tip, const Vec3& foot) -> Vec3 {
@@ -76,7 +76,8 @@ struct DepositionObserver::State {
         extruder(machine.process.extruder_lag),
         builder(kWidestLine * machine.tool.nozzle_diameter,
                 [this](const Element& element) { keep(element); }),
-        loose(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter, options.loose),
+        unsupported(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter,
+                    options.on_unsupported),
         sums(machine.gap.accepted_min - kRounding, machine.gap.accepted_max + kRounding),
         usual_height(machine.gap.aim) {}
 
@@ -87,7 +88,7 @@ struct DepositionObserver::State {
   double accepted_min, accepted_max;  // [m]
   Extruder extruder;
   BeadBuilder builder;
-  UnsupportedStretchRecorder loose;
+  UnsupportedStretchRecorder unsupported;
   GapSums sums;
   DepositionSummary totals;
 
@@ -120,7 +121,7 @@ struct DepositionObserver::State {
       totals.deposited_volume += bead.volume;
     if (bead.adhesion == Adhesion::sticks) usual_height = bead.height;
     ++totals.beads;
-    loose.add(element, conditions);
+    unsupported.add(element, conditions);
     conditions.interface_temperature = kInfinity;
     if (bead.height > kThinnest) {
       workpiece->add(shape_of(element));
@@ -177,7 +178,7 @@ struct DepositionObserver::State {
   }
 
   Adhesion adhesion_of(double gap, const Ground& below) const {
-    if (gap > accepted_max + kRounding) return Adhesion::loose;
+    if (gap > accepted_max + kRounding) return Adhesion::unsupported;
     if (below.printed && gap > -kSoftDepth && gap < accepted_min - kRounding) return Adhesion::fused;
     if (gap <= kRounding) return Adhesion::buried;
     if (below.interface_temperature < options.glass_transition) return Adhesion::cold;
@@ -276,7 +277,7 @@ void DepositionObserver::finish() {
   State& s = *state_;
   if (s.started) s.builder.ooze(s.take_column());
   s.builder.close();
-  s.loose.finish();
+  s.unsupported.finish();
 }
 
 double DepositionObserver::gap() const { return state_->ground.gap; }
@@ -292,8 +293,8 @@ DepositionSummary DepositionObserver::summary() const {
   return summary;
 }
 
-const std::vector<UnsupportedStretch>& DepositionObserver::loose_stretches() const {
-  return state_->loose.stretches();
+const std::vector<UnsupportedStretch>& DepositionObserver::unsupported_stretches() const {
+  return state_->unsupported.stretches();
 }
 
 }  // namespace understudy::sim

@@ -12,18 +12,13 @@
 
 namespace understudy::sim {
 
-/// Width of a bead of this cross-section [m^2] pressed to the height `gap`: flat with rounded edges, area =
-/// (w - g) g + pi g^2 / 4; a round strand where it is too thin to touch both sides, or the gap is not above
-/// 0.
-double bead_width(double area, double gap);
-
 /// How an element lies on what is below it.
 enum class Adhesion {
-  sticks,  ///< supported, gap in reach, warm enough
-  fused,   ///< over a bead of its own height: pressed into its place, no gap to speak of
-  loose,   ///< higher above what is below than a bead sticks, or nothing is below
-  cold,    ///< on an earlier bead, the interface below the glass transition
-  buried,  ///< the tip at or below the surface
+  sticks,       ///< supported, gap in reach, warm enough
+  fused,        ///< over a bead of its own height: pressed into its place, no gap to speak of
+  unsupported,  ///< higher above what is below than a bead sticks, or nothing is below
+  cold,         ///< on an earlier bead, the interface below the glass transition
+  buried,       ///< the tip at or below the surface
 };
 
 /// How deep the nozzle may press into printed material that it passes over: half a usual layer.
@@ -50,7 +45,7 @@ struct LaidBead {
 
 /// Consecutive elements that do not stick, for the same reason.
 struct UnsupportedStretch {
-  Adhesion adhesion = Adhesion::loose;
+  Adhesion adhesion = Adhesion::unsupported;
   int line = 0;                      ///< where it begins
   double time = 0;                   ///< [s], there
   Vec3 place_W{0, 0, 0};             ///< there
@@ -64,7 +59,7 @@ struct UnsupportedStretch {
   bool held_at_end = false;
   bool on_printed = false;      ///< what held it last is printed material: it bridges a hollow of the print
   double width = 0;             ///< [m], of its widest element, or of what was laid before it
-  std::vector<Vec3> path_W;     ///< [m], of a loose one: middle of the strand as laid
+  std::vector<Vec3> path_W;     ///< [m], of an unsupported one: middle of the strand as laid
   std::vector<double> laid_at;  ///< [s], one a point of path_W
 };
 
@@ -90,12 +85,13 @@ struct DepositionOptions {
   double glass_transition = 0;                ///< [K]; an interface below it does not weld
   std::function<void(const LaidBead&)> laid;  ///< called for every element, in order
   std::function<void(const UnsupportedStretch&)>
-      loose;  ///< called for every stretch that does not stick, at its end
+      on_unsupported;  ///< called for every stretch that does not stick, at its end
 };
 
-/// Between snapshots tip, gap and feed are taken as linear, so that fractions and the ends of loose stretches
-/// do not depend on the snapshots' rate where the true motion is. What lies below is the workpiece without
-/// the freshest material, which is still under the nozzle: the last nozzle flat and two bead widths of path.
+/// Between snapshots tip, gap and feed are taken as linear, so that fractions and the ends of unsupported
+/// stretches do not depend on the snapshots' rate where the true motion is. What lies below is the workpiece
+/// without the freshest material, which is still under the nozzle: the last nozzle flat and two bead widths
+/// of path.
 ///
 /// Beyond one ray along the tool axis, an element whose middle has nothing in reach is held where half of
 /// its width has (an overhang).
@@ -114,7 +110,7 @@ class DepositionObserver : public Observer {
   std::size_t fresh_from() const;
   bool flowing() const;  ///< in the last interval something left the nozzle
   DepositionSummary summary() const;
-  const std::vector<UnsupportedStretch>& loose_stretches() const;
+  const std::vector<UnsupportedStretch>& unsupported_stretches() const;
 
  private:
   struct State;

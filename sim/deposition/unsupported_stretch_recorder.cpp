@@ -33,7 +33,7 @@ void UnsupportedStretchRecorder::begin(const Element& element, const Conditions&
   stretch.width = std::max(least_width_, last_held_width_);
   stretch.on_printed = bead.follows && last_on_printed_;
   first_bead_ = workpiece_.beads().size();
-  if (bead.adhesion == Adhesion::loose) {
+  if (bead.adhesion == Adhesion::unsupported) {
     const Vec3 start = middle_of_strand(element.tip_from_W, bead);
     stretch.held_at_start =
         (bead.follows && last_held_) || touches_something(start, bead.height, first_bead_);
@@ -54,7 +54,7 @@ void UnsupportedStretchRecorder::extend(const Element& element, const Conditions
                                                         : std::max(stretch.worst_gap, element.worst_gap);
   stretch.interface_temperature = std::min(stretch.interface_temperature, conditions.interface_temperature);
   diameter_ = bead.height;
-  if (bead.adhesion != Adhesion::loose) return;
+  if (bead.adhesion != Adhesion::unsupported) return;
   stretch.path_W.push_back(middle_of_strand(element.tip_to_W, bead));
   stretch.laid_at.push_back(bead.time);
 }
@@ -62,7 +62,7 @@ void UnsupportedStretchRecorder::extend(const Element& element, const Conditions
 void UnsupportedStretchRecorder::end(bool held) {
   if (!open_) return;
   UnsupportedStretch& stretch = stretches_.back();
-  if (stretch.adhesion == Adhesion::loose)
+  if (stretch.adhesion == Adhesion::unsupported)
     stretch.held_at_end = held || touches_something(stretch.path_W.back(), diameter_, first_bead_);
   open_ = false;
   if (done_) done_(stretch);

@@ -7,7 +7,7 @@
 #include "core/frames.h"
 #include "geometry/mesh.h"
 #include "sim/beads/bead_index.h"
-#include "sim/deposition/true_gap.h"
+#include "sim/deposition/surface_gap.h"
 
 namespace understudy::sim {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "sim/beads/bead_shape.h"
+#include "sim/distance/bead_core.h"
 #include "sim/distance/convex_solid.h"
 
 namespace understudy::sim {

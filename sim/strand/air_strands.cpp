@@ -154,11 +154,11 @@ class Solver {
     path.nozzle_temperature = temperature_of(stretch);
     path.surroundings = air_around(stretch, machine_);
     path.end_supported = strand.held_at_end;
-    const PathSag droop = compute_sag(material_, path);
-    strand.sag = droop.droop_max;
-    strand.sag_place_W = path.points_W[droop.droop_max_point] + droop.displacement_W[droop.droop_max_point];
-    strand.solid_after = droop.solid_at - path.laid_at.front();
-    strand.small = strand.small && droop.small;
+    const PathSag sag = compute_sag(material_, path);
+    strand.sag = sag.sag_max;
+    strand.sag_place_W = path.points_W[sag.sag_max_point] + sag.displacement_W[sag.sag_max_point];
+    strand.solid_after = sag.solid_at - path.laid_at.front();
+    strand.small = strand.small && sag.small;
   }
 
   const machine::MachineDescription& machine_;
@@ -170,13 +170,14 @@ class Solver {
 }  // namespace
 
 bool spans_a_groove(const UnsupportedStretch& stretch) {
-  if (stretch.adhesion != Adhesion::loose) return false;
+  if (stretch.adhesion != Adhesion::unsupported) return false;
   const int held = (stretch.held_at_start ? 1 : 0) + (stretch.held_at_end ? 1 : 0);
   return stretch.length <= held * stretch.width;
 }
 
 bool hangs_in_air(const UnsupportedStretch& stretch) {
-  if (stretch.adhesion != Adhesion::loose || !stretch.held_at_start || spans_a_groove(stretch)) return false;
+  if (stretch.adhesion != Adhesion::unsupported || !stretch.held_at_start || spans_a_groove(stretch))
+    return false;
   if (stretch.length < kShortest) return false;
   const double diameter = std::sqrt(4 * area_of(stretch) / std::numbers::pi);
   return stretch.worst_gap > kInAir * diameter || (stretch.held_at_end && stretch.on_printed);

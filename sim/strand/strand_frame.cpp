@@ -99,7 +99,7 @@ void StrandFrame::solve() {
   for (std::size_t i = settled_; i <= last; ++i) {
     factor.compute(diagonal_[i]);
     if (factor.info() != Eigen::Success)
-      throw MachineError("the droop of a strand in air cannot be computed: its equations are singular");
+      throw MachineError("the sag of a strand in air cannot be computed: its equations are singular");
     if (i < last) {
       const Mat6 below = below_[i];
       below_[i] = factor.solve(below.transpose()).transpose();

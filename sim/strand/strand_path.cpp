@@ -118,9 +118,9 @@ void read_shape(const StrandFrame& frame, const Division& division, PathSag& res
     const Vec3& moved = frame.displacement_W(node);
     result.displacement_W.push_back(moved);
     result.drop_max = std::max(result.drop_max, -moved.z());
-    if (moved.norm() <= result.droop_max) continue;
-    result.droop_max = moved.norm();
-    result.droop_max_point = result.displacement_W.size() - 1;
+    if (moved.norm() <= result.sag_max) continue;
+    result.sag_max = moved.norm();
+    result.sag_max_point = result.displacement_W.size() - 1;
   }
   for (std::size_t i = 0; i <= frame.elements(); ++i)
     result.rotation_max = std::max(result.rotation_max, frame.rotation_W(i).norm());
@@ -157,7 +157,7 @@ PathSag compute_sag(const machine::Material& material, const AirPath& path, cons
     ++point;
   }
   drawing.move_to(division.laid_at.back(), longest);
-  result.droop_at_end = farthest(frame, division);
+  result.sag_at_end = farthest(frame, division);
   frame.hold_end(path.end_supported);
   for (int k = 1; k <= options.cooling_steps; ++k)
     drawing.move_to(division.laid_at.back() +

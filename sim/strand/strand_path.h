@@ -1,4 +1,4 @@
-// How far a strand drawn through air along a curve droops from the programmed path while it hardens, like the
+// How far a strand drawn through air along a curve sags from the programmed path while it hardens, like the
 // spiral that Song 2015 draws in air (figure 14).
 #pragma once
 
@@ -24,14 +24,14 @@ struct AirPath {
 
 struct PathSag {
   std::vector<Vec3> displacement_W;  ///< [m], of each point from the programmed one when all is solid
-  double droop_max = 0;              ///< [m], largest of their norms
-  std::size_t droop_max_point = 0;
-  double drop_max = 0;       ///< [m], largest way down
-  double droop_at_end = 0;   ///< [m], largest norm when the nozzle is at the last point
+  double sag_max = 0;                ///< [m], largest of their norms
+  std::size_t sag_max_point = 0;
+  double drop_max = 0;       ///< [m], largest downward component
+  double sag_at_end = 0;     ///< [m], largest norm when the nozzle is at the last point
   double time_to_solid = 0;  ///< [s], of a section
   double solid_at = 0;       ///< [s], of laid_at's clock, when every section is solid
   double rotation_max = 0;   ///< [rad]
-  bool small = true;         ///< rotation_max is below 0.3 rad; else droop says no more than that it is large
+  bool small = true;  ///< rotation_max is below 0.3 rad; else the sag says no more than that it is large
 };
 
 struct PathOptions {

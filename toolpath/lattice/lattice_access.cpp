@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/units.h"
 #include "toolpath/program_builder.h"
 
 namespace understudy::toolpath {

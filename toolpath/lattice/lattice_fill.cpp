@@ -1,10 +1,11 @@
+#include "toolpath/lattice/lattice_fill.h"
+
 #include <cmath>
 #include <functional>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "toolpath/lattice/lattice.h"
 #include "toolpath/planners/plan_checks.h"
 
 namespace understudy::toolpath {

@@ -1,3 +1,5 @@
+#include "toolpath/lattice/lattice_json.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
-#include "toolpath/lattice/lattice.h"
+#include "core/units.h"
 
 namespace understudy::toolpath {
 namespace {

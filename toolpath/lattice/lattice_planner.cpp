@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/units.h"
 #include "toolpath/bead.h"
 #include "toolpath/lattice/tool_envelope.h"
 #include "toolpath/planners/plan_checks.h"

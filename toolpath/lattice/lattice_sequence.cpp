@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "toolpath/lattice/lattice_access.h"
 #include "toolpath/planners/plan_checks.h"
 

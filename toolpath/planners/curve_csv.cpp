@@ -1,3 +1,5 @@
+#include "toolpath/planners/curve_csv.h"
+
 #include <sstream>
 
 #include <fmt/format.h>
@@ -6,7 +8,6 @@
 #include "core/number_table.h"
 #include "core/output_file.h"
 #include "core/units.h"
-#include "toolpath/planners/surface_planner.h"
 
 namespace understudy::toolpath {
 

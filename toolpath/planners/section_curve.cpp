@@ -1,8 +1,9 @@
+#include "toolpath/planners/section_curve.h"
+
 #include <algorithm>
 
 #include "core/error.h"
 #include "toolpath/planners/mesh_section.h"
-#include "toolpath/planners/surface_planner.h"
 #include "toolpath/polyline.h"
 
 namespace understudy::toolpath {

@@ -1,3 +1,5 @@
+#include "toolpath/planners/section_rows.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -5,7 +7,8 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "toolpath/planners/plan_checks.h"
-#include "toolpath/planners/surface_planner.h"
+#include "toolpath/planners/section_curve.h"
+#include "toolpath/planners/tilt_clip.h"
 
 namespace understudy::toolpath {
 namespace {

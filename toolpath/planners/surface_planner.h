@@ -1,7 +1,6 @@
 // Prints a curve on any surface with the tool along the local normal (Song 2015, 3.2 and 6.2).
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "geometry/mesh.h"
@@ -41,39 +40,5 @@ Program plan_surface(const geometry::Mesh& mesh, const std::vector<Vec3>& curve,
 /// layer k = 0, 1, ... runs k bead heights farther out along the surface's normals.
 Program plan_surface(const geometry::Mesh& mesh, const std::vector<std::vector<Vec3>>& curves, int layers,
                      const SurfacePlan& plan);
-
-/// The intersection of the mesh with a plane through `point` with unit `normal`: the longest connected
-/// polyline on the side that faces `up` (unit). It runs with its inside (the material) on the left, seen from
-/// the tip of `normal`. Throws InputError when the plane misses the mesh or nothing faces `up`.
-std::vector<Vec3> section_curve(const geometry::Mesh& mesh, const Vec3& point, const Vec3& normal,
-                                const Vec3& up);
-
-/// Tilt of a surface normal [rad]: the angle about `swing_axis` (unit, level) from vertical to the normal.
-/// Positive about y leans to +x.
-double tilt_about(const Vec3& surface_normal, const Vec3& swing_axis);
-
-/// The longest part of the curve over which the mesh's normal tilts from tilt_min to tilt_max [rad]. Starts
-/// at tilt_min if it reaches it, with ends on the limits to 1e-9 rad where the normal passes them smoothly.
-/// The tilt is taken to be monotonic between two points of the curve.
-/// Throws InputError when tilt_min is not below tilt_max or no part of the curve lies between them.
-std::vector<Vec3> clip_by_tilt(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, double tilt_min,
-                               double tilt_max, const Vec3& swing_axis);
-
-/// Planes side by side, and what is kept of their sections.
-struct SectionRows {
-  Vec3 point = Vec3::Zero();    ///< [m], on the middle plane, or between the two middle ones
-  Vec3 normal = Vec3::UnitY();  ///< unit, level
-  int count = 1;
-  double pitch = 0;                   ///< [m], from plane to plane
-  double tilt_min = 0, tilt_max = 0;  ///< [rad], as clip_by_tilt takes them
-};
-
-/// section_curve and clip_by_tilt for each plane, along the normal; every second curve runs backwards, so
-/// that the tool goes to and fro. Throws InputError as they do, naming the row.
-std::vector<std::vector<Vec3>> section_rows(const geometry::Mesh& mesh, const SectionRows& rows);
-
-/// A polyline from a CSV file with the header x_mm,y_mm,z_mm. Throws InputError with file, line and column
-/// for another header, a row without three finite numbers, or fewer than two points.
-std::vector<Vec3> read_curve_csv(const std::filesystem::path& path);
 
 }  // namespace understudy::toolpath

@@ -1,3 +1,5 @@
+#include "toolpath/planners/tilt_clip.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -6,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "toolpath/planners/surface_planner.h"
 #include "toolpath/polyline.h"
 
 namespace understudy::toolpath {

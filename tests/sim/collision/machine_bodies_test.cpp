@@ -1,6 +1,7 @@
+#include "sim/collision/machine_bodies.h"
+
 #include <gtest/gtest.h>
 
-#include "sim/collision/collision.h"
 #include "tests/sim/collision/bodies_for_tests.h"
 
 namespace understudy::sim {

@@ -57,7 +57,7 @@ TEST(GrowingPart, TheSecondLayerLiesOnTheFirst) {
   EXPECT_NEAR(summary.gap_max, kLayer, 10e-9);
   EXPECT_EQ(summary.in_band_fraction, 1);
   EXPECT_NEAR(summary.deposited_volume, summary.extruded_volume, 1e-9 * summary.extruded_volume);
-  EXPECT_TRUE(laying.loose_stretches().empty());
+  EXPECT_TRUE(laying.unsupported_stretches().empty());
 }
 
 TEST(GrowingPart, ATiltedLayerLiesOnATiltedLayer) {
@@ -91,7 +91,7 @@ TEST(GrowingPart, CrossingABeadOfTheSameLayerFuses) {
   print.travel({0, 0, 5e-3});
   print.line({0, -5e-3, kLayer}, {0, 5e-3, kLayer});
   const auto summary = laying.summary();
-  EXPECT_TRUE(laying.loose_stretches().empty());
+  EXPECT_TRUE(laying.unsupported_stretches().empty());
   EXPECT_NEAR(summary.gap_min, kLayer, kLayer / 3) << "the rounded flanks of the bead crossed";
   EXPECT_GT(summary.fused_length, kWidth - kLayer);
   EXPECT_LT(summary.fused_length, kWidth + 2 * 20e-6) << "to within a snapshot at either side";
@@ -107,9 +107,9 @@ TEST(GrowingPart, DeepInAnEarlierBeadTheNozzleIsBuried) {
     print.travel({0, 0, 5e-3});
   }
   print.line({0, -5e-3, kLayer}, {0, 5e-3, kLayer});
-  ASSERT_EQ(laying.loose_stretches().size(), 1u);
-  EXPECT_EQ(laying.loose_stretches()[0].adhesion, Adhesion::buried);
-  EXPECT_NEAR(laying.loose_stretches()[0].worst_gap, -2 * kLayer, 20e-9);
+  ASSERT_EQ(laying.unsupported_stretches().size(), 1u);
+  EXPECT_EQ(laying.unsupported_stretches()[0].adhesion, Adhesion::buried);
+  EXPECT_NEAR(laying.unsupported_stretches()[0].worst_gap, -2 * kLayer, 20e-9);
 }
 
 // Half of the width over the row below is an overhang that holds; a whole width beside it is none.
@@ -122,7 +122,7 @@ TEST(GrowingPart, AnOverhangHoldsByHalfOfItsWidth) {
       print.travel({5e-3, 0, 5e-3});
     }
     print.line({0, offset, 3 * kLayer}, {10e-3, offset, 3 * kLayer});
-    EXPECT_EQ(laying.loose_stretches().empty(), offset < 0.5e-3) << offset;
+    EXPECT_EQ(laying.unsupported_stretches().empty(), offset < 0.5e-3) << offset;
   }
 }
 
@@ -135,14 +135,14 @@ TEST(GrowingPart, AStrandFromOneWallToAnotherIsHeldAtBothEnds) {
       print.travel({x, 0, 6e-3});
     }
   print.line({0, 0, 21 * kLayer}, {8e-3, 0, 21 * kLayer});
-  const auto& loose = laying.loose_stretches();
-  ASSERT_EQ(loose.size(), 1u);
-  EXPECT_EQ(loose[0].adhesion, Adhesion::loose);
-  EXPECT_TRUE(loose[0].held_at_start);
-  EXPECT_TRUE(loose[0].held_at_end);
+  const auto& stretches = laying.unsupported_stretches();
+  ASSERT_EQ(stretches.size(), 1u);
+  EXPECT_EQ(stretches[0].adhesion, Adhesion::unsupported);
+  EXPECT_TRUE(stretches[0].held_at_start);
+  EXPECT_TRUE(stretches[0].held_at_end);
   // From flank to flank: 8 mm less one width, and what the sides still feel.
-  EXPECT_NEAR(loose[0].length, 8e-3 - kWidth, 0.3e-3);
-  EXPECT_NEAR(loose[0].worst_gap, 21 * kLayer, 20e-9);
+  EXPECT_NEAR(stretches[0].length, 8e-3 - kWidth, 0.3e-3);
+  EXPECT_NEAR(stretches[0].worst_gap, 21 * kLayer, 20e-9);
 }
 
 TEST(GrowingPart, AStrandThatEndsInTheAirIsFreeThere) {
@@ -153,9 +153,9 @@ TEST(GrowingPart, AStrandThatEndsInTheAirIsFreeThere) {
     print.travel({0, 0, 6e-3});
   }
   print.line({0, 0, 21 * kLayer}, {4e-3, 0, 21 * kLayer});
-  ASSERT_EQ(laying.loose_stretches().size(), 1u);
-  EXPECT_TRUE(laying.loose_stretches()[0].held_at_start);
-  EXPECT_FALSE(laying.loose_stretches()[0].held_at_end);
+  ASSERT_EQ(laying.unsupported_stretches().size(), 1u);
+  EXPECT_TRUE(laying.unsupported_stretches()[0].held_at_start);
+  EXPECT_FALSE(laying.unsupported_stretches()[0].held_at_end);
 }
 
 // The mean of both temperatures is that of the interface between two like half-spaces.
@@ -172,11 +172,11 @@ TEST(GrowingPart, AColdInterfaceDoesNotWeld) {
     print.travel({0, 0, 5e-3});
     print.line({0, 0, 2 * kLayer}, {10e-3, 0, 2 * kLayer});
     const bool welds = 0.5 * (nozzle + 298.15) > kGlass;
-    ASSERT_EQ(laying.loose_stretches().empty(), welds) << nozzle;
+    ASSERT_EQ(laying.unsupported_stretches().empty(), welds) << nozzle;
     if (welds) continue;
-    EXPECT_EQ(laying.loose_stretches()[0].adhesion, Adhesion::cold);
-    EXPECT_NEAR(laying.loose_stretches()[0].interface_temperature, 0.5 * (nozzle + 298.15), 1e-9);
-    EXPECT_NEAR(laying.loose_stretches()[0].length, 10e-3, 1e-6) << "the first layer lies on the table";
+    EXPECT_EQ(laying.unsupported_stretches()[0].adhesion, Adhesion::cold);
+    EXPECT_NEAR(laying.unsupported_stretches()[0].interface_temperature, 0.5 * (nozzle + 298.15), 1e-9);
+    EXPECT_NEAR(laying.unsupported_stretches()[0].length, 10e-3, 1e-6) << "the first layer lies on the table";
   }
 }
 
@@ -193,7 +193,7 @@ TEST(GrowingPart, ABeadThatIsStillWarmWelds) {
     print.wait(wait);
     print.travel({10e-3, 0, 5e-3});
     print.line({10e-3, 0, 2 * kLayer}, {0, 0, 2 * kLayer});
-    EXPECT_EQ(laying.loose_stretches().empty(), wait < 5);
+    EXPECT_EQ(laying.unsupported_stretches().empty(), wait < 5);
   }
 }
 

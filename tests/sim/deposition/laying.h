@@ -55,8 +55,8 @@ class Laying {
   // All of these as if the print ended here.
   const std::vector<LaidBead>& beads() { return observer_.finish(), beads_; }
   DepositionSummary summary() { return observer_.finish(), observer_.summary(); }
-  const std::vector<UnsupportedStretch>& loose_stretches() {
-    return observer_.finish(), observer_.loose_stretches();
+  const std::vector<UnsupportedStretch>& unsupported_stretches() {
+    return observer_.finish(), observer_.unsupported_stretches();
   }
   double total_volume() {
     double sum = 0;

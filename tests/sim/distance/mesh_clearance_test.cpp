@@ -29,50 +29,12 @@ Mat3 random_rotation(Random& random) {
       .toRotationMatrix();
 }
 
-template <typename F>
-double least_on_unit_interval(const F& f) {
-  constexpr double kGolden = 0.3819660112501051;
-  double a = 0, b = 1;
-  for (int i = 0; i < 45; ++i) {  // 0.618^45 = 4e-10 of the triangle's side
-    const double m = a + (b - a) * kGolden, n = b - (b - a) * kGolden;
-    (f(m) < f(n) ? b : a) = f(m) < f(n) ? n : m;
-  }
-  return f(0.5 * (a + b));
-}
-
-// The distance to a point is convex, so is its least over a line: two golden sections, one in the other.
-double slow_distance(const ConvexSolid& solid, const Triangle& t) {
-  return least_on_unit_interval([&](double s) {
-    return least_on_unit_interval([&](double r) {
-      return std::max(0.0, signed_distance(solid, t[0] + s * (t[1] - t[0]) + r * (1 - s) * (t[2] - t[0])));
-    });
-  });
-}
-
 std::vector<ConvexSolid> solids() {
   return {*convex_solid({"", geometry::Frustum{0.5e-3, 3.5e-3, 6e-3}, Pose::Identity()}),
           *convex_solid({"", geometry::Cylinder{3e-3, 4e-3}, Pose::Identity()}),
           *convex_solid({"", geometry::Box{Vec3(6e-3, 4e-3, 3e-3)}, Pose::Identity()}),
           *convex_solid({"", geometry::Capsule{1e-3, 6e-3}, Pose::Identity()}),
           *convex_solid({"", geometry::Sphere{2e-3}, Pose::Identity()})};
-}
-
-TEST(Gjk, AgreesWithNestedGoldenSectionsOnRandomTriangles) {
-  Random random(11, "gjk");
-  for (int trial = 0; trial < 600; ++trial) {
-    const auto all = solids();
-    ConvexSolid solid = all[static_cast<std::size_t>(trial) % all.size()];
-    solid.radius = 0;  // the core alone
-    const double size = trial % 3 == 0 ? 0.3e-3 : trial % 3 == 1 ? 3e-3 : 30e-3;
-    const Vec3 at = random_vector(random, 8e-3);
-    Triangle t;
-    for (Vec3& corner : t) corner = at + random_vector(random, size);
-    const GjkResult result =
-        std::visit([&](const auto& core) { return distance_to_triangle(core, t, kInfinity); }, solid.core);
-    EXPECT_NEAR(result.distance, slow_distance(solid, t), kStated) << "trial " << trial;
-    EXPECT_NEAR(std::max(0.0, signed_distance(solid, result.on_other)), result.distance, kStated);
-    EXPECT_LT(result.iterations, 60) << "trial " << trial;
-  }
 }
 
 // A tilted cone over a plane stands on its rim: height - r sin(tilt).

@@ -148,16 +148,16 @@ TEST(StrandPath, AStraightSpanSagsLikeTheBeamStringThatKnowsNothingOfIt) {
   path.end_supported = true;
   PathOptions fine;
   fine.elements_of_hot_length = 80;
-  const PathSag droop = compute_sag(pla, path, fine);
+  const PathSag path_sag = compute_sag(pla, path, fine);
   AirSpan span;
   span.length = from_mm(5);
   span.diameter = from_mm(0.48);
   span.speed = from_mm(5);
   span.surroundings.coefficient = 150;
   const StrandResult sag = compute_sag(pla, span);
-  EXPECT_NEAR(-droop.displacement_W[1].z() / sag.sag_middle, 1,
+  EXPECT_NEAR(-path_sag.displacement_W[1].z() / sag.sag_middle, 1,
               0.02);  // each is within 1 % of its finest grid
-  EXPECT_DOUBLE_EQ(droop.solid_at, sag.solid_at);
+  EXPECT_DOUBLE_EQ(path_sag.solid_at, sag.solid_at);
   // And without a support at its end.
   path.end_supported = false;
   span.end = Hold::free;
@@ -175,31 +175,31 @@ TEST(StrandPath, ASpiralDrawnInAirFallsDownALittleUntilItIsHard) {
   // Song 2015, figure 14: "not a perfect spiral because the filament is still soft ... and slightly falls
   // down until it gets hardened". Its size is not published: radius and pitch 10 mm, two turns, ABS, 0.4 mm.
   const machine::Material abs = machine::load_material("abs");
-  const PathSag droop = compute_sag(abs, spiral(abs, from_mm(2), 0, 100));
-  EXPECT_GT(droop.droop_max, from_mm(0.1));          // seen by eye
-  EXPECT_LT(droop.droop_max, from_mm(1));            // still a spiral: a tenth of the pitch
-  EXPECT_GT(droop.drop_max, 0.9 * droop.droop_max);  // down
-  EXPECT_TRUE(droop.small);
-  ASSERT_EQ(droop.displacement_W.size(), 100u);
-  EXPECT_EQ(droop.displacement_W[0].norm(), 0);
+  const PathSag sag = compute_sag(abs, spiral(abs, from_mm(2), 0, 100));
+  EXPECT_GT(sag.sag_max, from_mm(0.1));        // seen by eye
+  EXPECT_LT(sag.sag_max, from_mm(1));          // still a spiral: a tenth of the pitch
+  EXPECT_GT(sag.drop_max, 0.9 * sag.sag_max);  // down
+  EXPECT_TRUE(sag.small);
+  ASSERT_EQ(sag.displacement_W.size(), 100u);
+  EXPECT_EQ(sag.displacement_W[0].norm(), 0);
 }
 
 TEST(StrandPath, AFanHoldsASpiralThatStillAirLetsFall) {
   const machine::Material pla = machine::load_material("pla");
   const PathSag still = compute_sag(pla, spiral(pla, from_mm(5), 0, 100));
   const PathSag fan = compute_sag(pla, spiral(pla, from_mm(5), 1, 100));
-  EXPECT_LT(fan.droop_max, 0.2 * still.droop_max);
+  EXPECT_LT(fan.sag_max, 0.2 * still.sag_max);
   EXPECT_TRUE(fan.small);
   EXPECT_FALSE(still.small);  // its hot end hangs by more than linear theory can say
 }
 
-TEST(SlowStrandPath, ASpiralsDroopConvergesWithPointsElementsAndTimeSteps) {
+TEST(SlowStrandPath, ASpiralsSagConvergesWithPointsElementsAndTimeSteps) {
   const machine::Material abs = machine::load_material("abs");
-  const double plain = compute_sag(abs, spiral(abs, from_mm(2), 0, 100)).droop_max;
+  const double plain = compute_sag(abs, spiral(abs, from_mm(2), 0, 100)).sag_max;
   PathOptions fine;
   fine.elements_of_hot_length = 32;
   fine.cooling_steps = 160;
-  EXPECT_NEAR(compute_sag(abs, spiral(abs, from_mm(2), 0, 397), fine).droop_max / plain, 1, 0.01);
+  EXPECT_NEAR(compute_sag(abs, spiral(abs, from_mm(2), 0, 397), fine).sag_max / plain, 1, 0.01);
 }
 
 TEST(StrandPath, ASupportOnTheWayHolds) {
@@ -210,7 +210,7 @@ TEST(StrandPath, ASupportOnTheWayHolds) {
   path.supported[50] = true;
   const PathSag held = compute_sag(abs, path);
   EXPECT_EQ(held.displacement_W[50].norm(), 0);
-  EXPECT_LT(held.droop_max, 0.7 * free.droop_max);
+  EXPECT_LT(held.sag_max, 0.7 * free.sag_max);
 }
 
 TEST(StrandPath, RefusesWhatIsNoPath) {

@@ -168,7 +168,7 @@ TEST(Strand, OnlyTheWeightAcrossTheChordBends) {
   EXPECT_LT(compute_sag(pla, s).sag_max, 1e-9);
 }
 
-TEST(Strand, WithoutAFarSupportItDroopsUntilItIsSolid) {
+TEST(Strand, WithoutAFarSupportItSagsUntilItIsSolid) {
   const machine::Material pla = machine::load_material("pla");
   AirSpan s = span(5, 0.48, 5, 150);
   const StrandResult held = compute_sag(pla, s);

@@ -11,6 +11,8 @@
 #include "geometry/mesh.h"
 #include "tests/geometry/test_solids.h"
 #include "toolpath/gcode/gcode.h"
+#include "toolpath/planners/section_curve.h"
+#include "toolpath/planners/tilt_clip.h"
 
 namespace understudy::toolpath {
 namespace {

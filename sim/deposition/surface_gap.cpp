@@ -1,4 +1,4 @@
-#include "sim/deposition/true_gap.h"
+#include "sim/deposition/surface_gap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,12 +53,6 @@ SurfaceGap part_gap(const geometry::Mesh& part, const Vec3& tip_W, const Vec3& a
     from = depth + kPast;
   }
   return entered;
-}
-
-double true_gap(const geometry::Mesh* part, const Pose& X_WT) {
-  const Vec3 tip = X_WT.translation(), axis = tool_axis(X_WT);
-  const double table = table_gap(tip, axis).gap;
-  return part ? std::min(table, part_gap(*part, tip, axis).gap) : table;
 }
 
 }  // namespace understudy::sim

@@ -1,0 +1,11 @@
+// The cross-section of a bead that is pressed on a surface.
+#pragma once
+
+namespace understudy::sim {
+
+/// Width of a bead of this cross-section [m^2] pressed to the height `gap`: flat with rounded edges, area =
+/// (w - g) g + pi g^2 / 4; a round strand where it is too thin to touch both sides, or the gap is not above
+/// 0.
+double bead_width(double area, double gap);
+
+}  // namespace understudy::sim
