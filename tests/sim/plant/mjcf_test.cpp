@@ -94,7 +94,7 @@ TEST(MjcfNames, OfAHexapodAreEscaped) {
 
 TEST(MjcfNames, OfAChainsAxesAreEscaped) {
   machine::MachineDescription machine = two_links(0.1, 0.2);
-  machine.chain->kinematics.chain.axes[1].name = kHostileName;
+  machine.chain().kinematics.chain.axes[1].name = kHostileName;
   const auto model = load_model(write_mjcf(machine, make_as_built(machine, "nominal", 1), machine.X_BT_home));
   EXPECT_EQ(model->nq, 2);
   EXPECT_GE(find_id(*model, mjOBJ_JOINT, kHostileName), 0);
