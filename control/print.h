@@ -7,7 +7,7 @@
 
 #include "control/gap/continuous_gap_controller.h"
 #include "control/gap/gap_controller.h"
-#include "control/motion/motion_planner.h"
+#include "control/stop.h"
 #include "toolpath/program.h"
 
 namespace understudy::control {
@@ -27,14 +27,6 @@ struct PrintOptions {
   const geometry::Mesh* part = nullptr;
 };
 
-/// From `time` on, every programmed pose is shifted by `offset_W`.
-struct OffsetChange {
-  double time = 0;
-  int line = 0;
-  Vec3 offset_W{0, 0, 0};
-  bool gradual = false;  ///< the shift goes straight from the one before, whose time it had, to this
-};
-
 struct GapApproach {
   int line = 0;        ///< of the move that ends at S
   double done_at = 0;  ///< [s]
@@ -43,10 +35,7 @@ struct GapApproach {
 
 struct PrintResult {
   bool completed = false;
-  std::string stop_reason;  ///< one line; empty when completed
-  int stop_line = 0;
-  machine::Status status = machine::Status::ok;
-  machine::Fault fault = machine::Fault::none;
+  Stop stop;            ///< why it ended early
   double duration = 0;  ///< [s], port clock
   int moves = 0;
   double extruded = 0;  ///< [m] of filament fed forward
@@ -57,6 +46,12 @@ struct PrintResult {
   /// bead before is carried on.
   std::vector<int> unmeasured_starts;
   std::optional<GapFollowing> following;  ///< with GapControl::continuous
+
+  /// By the gap controller, and not in an approach.
+  bool stopped_on_path() const {
+    return stop.gap != GapStop::none &&
+           (approaches.empty() || approaches.back().outcome.stop == GapStop::none);
+  }
 };
 
 class PrintObserver {

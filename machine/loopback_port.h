@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "machine/port.h"
+#include "machine/setpoint_queue.h"
 
 namespace understudy::machine {
 
@@ -16,8 +16,9 @@ class LoopbackPort : public MachinePort {
     int axis_count = 6;
     std::size_t queue_capacity = 4096;
     AxisVector start{};
-    double frame_time = 0.02;  ///< [s], exposure plus transfer
-    bool history = true;       ///< keep every executed setpoint, which allocates
+    std::vector<kinematics::AxisRange> ranges;  ///< one an axis; empty: without end
+    double frame_time = 0.02;                   ///< [s], exposure plus transfer
+    bool history = true;                        ///< keep every executed setpoint, which allocates
   };
   /// Fills the image for the axis positions at a time; false: no frame.
   using FrameSource = std::function<bool(const AxisState&, const Region&, Image&)>;
@@ -33,7 +34,7 @@ class LoopbackPort : public MachinePort {
   Status set_outputs(const Outputs& outputs, double deadline) override;
   Status capture(const Region& region, Frame& frame, double deadline) override;
 
-  /// The fault stands as soon as the clock has reached `time`; axes stop where they are, the queue is lost.
+  /// The fault stands as soon as the clock has reached `time`.
   void inject_fault(Fault fault, double time = 0);
   /// The next `count` frames are the last one again: stale.
   void repeat_frames(int count) { repeats_ = count; }
@@ -42,22 +43,14 @@ class LoopbackPort : public MachinePort {
   const std::vector<Setpoint>& history() const { return history_; }
 
  private:
-  AxisVector position_at(double queue_time) const;
-  void rest_at(const AxisVector& position);
   void execute_until(double time);
-  const Setpoint& front() const { return ring_[head_]; }
-  const Setpoint& back() const { return ring_[(head_ + size_ - 1) % ring_.size()]; }
   void raise(Fault fault);
 
   Options options_;
   FrameSource frames_;
   double time_ = 0;
-  Setpoint last_;               ///< executed last; where the axes rest when the queue is empty
-  std::vector<Setpoint> ring_;  ///< fixed storage of the queue
-  std::size_t head_ = 0, size_ = 0;
-  double queue_lag_ = 0;  ///< [s], port clock minus the queue's; grows while held
-  bool held_ = false;
-  std::uint64_t accepted_ = 0, executed_ = 0, frame_number_ = 0;
+  SetpointQueue queue_;
+  std::uint64_t frames_delivered_ = 0;
   Frame last_frame_;
   int repeats_ = 0;
   Fault fault_ = Fault::none;

@@ -17,19 +17,23 @@ namespace understudy::machine {
 using kinematics::AxisVector;
 using kinematics::kMaxAxes;
 
-enum class Status {
-  ok,
-  queue_full,         ///< nothing of the call was queued; wait and call again
-  deadline_exceeded,  ///< the port's clock passed the deadline before the call could finish
-  faulted,            ///< a sticky fault stands; see AxisState::fault
-  rejected,  ///< the request itself is wrong (time not increasing, not finite, beyond the axis range)
-  no_frame,  ///< the camera delivered nothing
+enum class [[nodiscard]] Status{
+    ok,
+    queue_full,         ///< nothing of the call was queued; wait and call again
+    deadline_exceeded,  ///< the port's clock passed the deadline before the call could finish
+    faulted,            ///< a sticky fault stands; see AxisState::fault
+    rejected,  ///< the request itself is wrong (time not increasing, not finite, beyond the axis range)
+    no_frame,  ///< the camera delivered nothing
 };
 const char* to_string(Status s);
 
 /// Sticky until clear_fault(): a port with a fault takes no setpoints.
 enum class Fault { none, following_error, underrun, limit_switch, drive, emergency_stop, power, engine };
 const char* to_string(Fault f);
+
+/// A hold or stop brings the axes to rest within this time, along what is queued: at the full speed of the
+/// hexapod (60 mm/s) well below its drives' acceleration.
+constexpr double kBrakingTime = 0.1;  // [s]
 
 /// Where the axes shall be at a time. Between setpoints the port interpolates with position and velocity.
 struct Setpoint {

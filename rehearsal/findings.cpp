@@ -167,10 +167,11 @@ void add_gap_findings(const TwinRun& run, const machine::MachineDescription& mac
         gap_finding(Severity::error, approach.line, approach.done_at, outcome.gap, limits.accepted_max,
                     fmt::format("gap control stopped ({}): {}", to_string(outcome.stop), outcome.why)));
   }
-  if (const auto& following = run.result.following; following && following->stop != control::GapStop::none)
-    findings.push_back(gap_finding(
-        Severity::error, following->line, following->time, following->gap, limits.accepted_max,
-        fmt::format("gap control stopped on the path ({}): {}", to_string(following->stop), following->why)));
+  const control::Stop& stop = run.result.stop;
+  if (run.result.stopped_on_path())
+    findings.push_back(gap_finding(Severity::error, stop.line, stop.time, run.result.following->gap,
+                                   limits.accepted_max,
+                                   fmt::format("gap control stopped on the path: {}", stop.why)));
   if (const auto& unmeasured = run.result.unmeasured_starts; !unmeasured.empty())
     findings.push_back(gap_finding(
         Severity::warning, unmeasured.front(), 0, limits.aim, limits.accepted_max,
@@ -228,17 +229,14 @@ std::vector<Finding> findings_of(const TwinRun& run, const TwinSetup& setup,
     findings.push_back(contact_finding(stretch, false, options.near));
   add_gap_findings(run, machine, gap_control, findings);
   add_strand_findings(run, setup, findings);
-  const bool explained =
-      std::any_of(run.result.approaches.begin(), run.result.approaches.end(),
-                  [](const auto& a) { return a.outcome.stop != control::GapStop::none; }) ||
-      (run.result.following && run.result.following->stop != control::GapStop::none);
+  const bool explained = run.result.stop.gap != control::GapStop::none;
   if (!run.result.completed && !explained) {
     Finding f;
     f.kind = "unreachable";
-    f.gcode_line = run.result.stop_line;
+    f.gcode_line = run.result.stop.line;
     f.time_s = run.result.duration;
     f.unit = "1";
-    f.message = "the print stopped: " + run.result.stop_reason;
+    f.message = "the print stopped: " + run.result.stop.why;
     findings.push_back(std::move(f));
   }
   return findings;

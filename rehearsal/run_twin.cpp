@@ -59,9 +59,9 @@ std::vector<FrameRecord> pair_with_truth(const control::PrintResult& result,
     frames.push_back(std::move(record));
   };
   for (const auto& approach : result.approaches)
-    for (const auto& look : approach.outcome.looks) add(look);
+    for (const auto& look : approach.outcome.samples) add(look);
   if (result.following)
-    for (const auto& look : result.following->looks) add(look);
+    for (const auto& look : result.following->samples) add(look);
   std::stable_sort(frames.begin(), frames.end(),
                    [](const FrameRecord& a, const FrameRecord& b) { return a.look.time < b.look.time; });
   return frames;

@@ -7,7 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "control/gap/gap_response_test.h"
+#include "control/gap/confidence.h"
+#include "control/gap/gap_response.h"
 #include "control/gap/gap_sensor.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -19,53 +20,52 @@ using machine::Status;
 
 namespace {
 
-constexpr double kTrusted = 3;         // standard deviations kept between a step's end and the accepted band
-constexpr double kScaleError = 0.15;   // of a step: wrong slope or calibration that still counts as plausible
 constexpr double kUnmodelled = 20e-6;  // [m]: surface roughness and facets, as-built curvature of the motion
-constexpr double kJump = 10e-6;        // [m], beyond noise: the mechanism has moved, older looks do not count
+constexpr double kJump = 10e-6;  // [m], beyond noise: the mechanism has moved, older samples do not count
 constexpr int kStallsMax = 2;
 constexpr double kProbe = 0.1e-3;   // [m], a step while no reading has followed one yet
 constexpr double kBlind = 0.25e-3;  // [m], in all until then: two such steps, and noise
 constexpr double kStepMin = 1e-6;   // [m], about two microsteps: less is no motion
 
-/// Gap minus commanded height, averaged over the last looks: motion along the axis changes both alike, so
-/// looks at different heights add up.
+/// Gap minus commanded height, averaged over the last samples: motion along the axis changes both alike, so
+/// samples at different heights add up.
 class GapEstimate {
  public:
   explicit GapEstimate(int window) : window_(static_cast<std::size_t>(std::max(1, window))) {}
 
-  /// A look that is not to be averaged stands alone until the next.
+  /// A sample that is not to be averaged stands alone until the next.
   void add(double height, const GapReading& reading, bool averaged) {
     const double offset = reading.gap - height;
     const double scatter = std::hypot(reading.sigma, sigma_);
-    if (!averaging_ || !averaged || std::abs(offset - offset_) > kTrusted * scatter + kJump) looks_.clear();
+    if (!averaging_ || !averaged || std::abs(offset - offset_) > kSafeSigmas * scatter + kJump)
+      samples_.clear();
     averaging_ = averaged;
-    looks_.push_back({offset, reading.sigma});
-    if (looks_.size() > window_) looks_.pop_front();
+    samples_.push_back({offset, reading.sigma});
+    if (samples_.size() > window_) samples_.pop_front();
     update();
   }
   double gap(double height) const { return height + offset_; }
   double sigma() const { return sigma_; }
-  bool full() const { return averaging_ && looks_.size() == window_; }
-  int missing() const { return static_cast<int>(window_ - looks_.size()); }
+  bool full() const { return averaging_ && samples_.size() == window_; }
+  int missing() const { return static_cast<int>(window_ - samples_.size()); }
 
  private:
-  struct Look {
+  struct Sample {
     double offset, sigma;
   };
   void update() {
     double weights = 0, sum = 0;
-    for (const Look& look : looks_) {
-      const double weight = 1 / std::max(look.sigma * look.sigma, 1e-18);
+    for (const Sample& sample : samples_) {
+      const double weight = 1 / std::max(sample.sigma * sample.sigma, 1e-18);
       weights += weight;
-      sum += weight * look.offset;
+      sum += weight * sample.offset;
     }
     offset_ = sum / weights;
     sigma_ = 1 / std::sqrt(weights);
   }
 
   std::size_t window_;
-  std::deque<Look> looks_;
+  std::deque<Sample> samples_;
   bool averaging_ = false;
   double offset_ = 0, sigma_ = 0;
 };
@@ -81,8 +81,8 @@ class Approach {
         options_(options),
         aim_(options.aim > 0 ? options.aim : machine.gap.aim),
         play_(machine.tip_play()),
-        proof_(limits_.accepted_min / 2, kBlind),
-        eye_(machine, surface, options, motion.port()),
+        response_(limits_.accepted_min / 2, kBlind),
+        sensor_(machine, surface, options, motion.port()),
         height_(standoff) {
     if (aim_ <= limits_.accepted_min || aim_ >= limits_.accepted_max)
       throw InputError(
@@ -101,7 +101,7 @@ class Approach {
 
  private:
   GapStop descend();
-  GapStop look(GapEstimate& estimate, std::optional<Expectation>& expected);
+  GapStop take_sample(GapEstimate& estimate, std::optional<Expectation>& expected);
   GapStop judge(const GapEstimate& estimate);
   bool reached(const GapEstimate& estimate) const;
   double next_step(const GapEstimate& estimate) const;
@@ -120,8 +120,8 @@ class Approach {
   const GapControllerOptions& options_;
   const double aim_;
   const double play_;
-  ApproachResponseTest proof_;
-  GapSensor eye_;
+  ApproachResponseTest response_;
+  GapSensor sensor_;
   double height_;  ///< [m], commanded tip above S along the tool axis
   GapOutcome outcome_;
 };
@@ -131,7 +131,7 @@ GapStop Approach::descend() {
   std::optional<Expectation> expected;
   for (int stops = 0; stops < options_.stops_max; ++stops) {
     stop_if_interrupted();
-    if (const GapStop s = look(estimate, expected); s != GapStop::none) return s;
+    if (const GapStop s = take_sample(estimate, expected); s != GapStop::none) return s;
     const double gap = estimate.gap(height_);
     outcome_.gap = gap;
     outcome_.sigma = estimate.sigma();
@@ -152,19 +152,19 @@ GapStop Approach::descend() {
                   options_.stops_max, to_mm(aim_), to_mm(outcome_.gap), to_mm(outcome_.sigma)));
 }
 
-GapStop Approach::look(GapEstimate& estimate, std::optional<Expectation>& expected) {
+GapStop Approach::take_sample(GapEstimate& estimate, std::optional<Expectation>& expected) {
   machine::MachinePort& port = motion_.port();
   if (port.wait_until(port.now() + options_.settle_time) != Status::ok)
     return stop_for(GapStop::port_failed,
                     fmt::format("the machine failed: {}", to_string(port.state().fault)));
-  GapSample look;
-  const GapStop s = eye_.take(expected, look);
-  std::string why = look.why;
+  GapSample sample;
+  const GapStop s = sensor_.take(expected, sample);
+  std::string why = sample.why;
   if (s == GapStop::none) {
-    proof_.add(height_, look.reading.gap, look.reading.sigma);
-    estimate.add(height_, look.reading, look.reading.gap - aim_ <= options_.slow_zone);
+    response_.add(height_, sample.reading.gap, sample.reading.sigma);
+    estimate.add(height_, sample.reading, sample.reading.gap - aim_ <= options_.slow_zone);
   }
-  outcome_.looks.push_back(std::move(look));
+  outcome_.samples.push_back(std::move(sample));
   return s == GapStop::none ? s : stop_for(s, std::move(why));
 }
 
@@ -184,16 +184,16 @@ GapStop Approach::judge(const GapEstimate& estimate) {
         fmt::format("the gap reads {:.3f} mm at {:.3f} mm above the start: the surface is {:.3f} mm lower "
                     "than programmed, at most {:.3f} mm are allowed",
                     to_mm(gap), to_mm(height_), to_mm(depth), to_mm(options_.depth_max)));
-  if (proof_.stalls() >= kStallsMax)
+  if (response_.stalls() >= kStallsMax)
     return stop_for(GapStop::no_progress, fmt::format("the gap still reads {:.3f} mm after {} steps down",
-                                                      to_mm(gap), proof_.stalls()));
-  if (!reached(estimate) && proof_.room(height_) < kStepMin)
+                                                      to_mm(gap), response_.stalls()));
+  if (!reached(estimate) && response_.room(height_) < kStepMin)
     return stop_for(
         GapStop::no_progress,
         fmt::format("the gap reads {:.3f} mm, but by the steps since a reading last followed one {:.3f} mm "
                     "are sure: what shines may not be the dot",
-                    to_mm(gap), to_mm(proof_.room(height_) + limits_.accepted_min / 2)));
-  if (reached(estimate) && kTrusted * sigma > aim_ - limits_.accepted_min)
+                    to_mm(gap), to_mm(response_.room(height_) + limits_.accepted_min / 2)));
+  if (reached(estimate) && kSafeSigmas * sigma > aim_ - limits_.accepted_min)
     return stop_for(
         GapStop::implausible,
         fmt::format("the gap of {:.3f} mm is known to {:.3f} mm only (1 sigma), too little to stay above "
@@ -202,21 +202,21 @@ GapStop Approach::judge(const GapEstimate& estimate) {
   return GapStop::none;
 }
 
-/// Far away a fraction of what is left. In the slow zone what is left is shared between the looks still to be
-/// averaged, and no step uses up more than half of the way to the accepted band's end. Never farther than is
-/// proved, never upwards.
+/// Far away a fraction of what is left. In the slow zone what is left is shared between the samples still to
+/// be averaged, and no step uses up more than half of the way to the accepted band's end. Never farther than
+/// is proved, never upwards.
 double Approach::next_step(const GapEstimate& estimate) const {
-  const double gap = estimate.gap(height_), left = gap - aim_, room = proof_.room(height_);
+  const double gap = estimate.gap(height_), left = gap - aim_, room = response_.room(height_);
   if (left > options_.slow_zone)
-    return std::min(options_.step_fraction * left, proof_.proved() ? room : std::min(room, kProbe));
+    return std::min(options_.step_fraction * left, response_.proved() ? room : std::min(room, kProbe));
   const double share = left / std::max(1, estimate.missing());
-  const double safe = gap - kTrusted * estimate.sigma() - limits_.accepted_min;
+  const double safe = gap - kSafeSigmas * estimate.sigma() - limits_.accepted_min;
   return std::max(0.0, std::min({share, safe, (gap - limits_.accepted_min) / 2, room}));
 }
 
 GapStop Approach::try_again_from_above() {
   const std::string first = outcome_.why;
-  proof_.restart();
+  response_.restart();
   const double height = std::max(standoff_, height_ + options_.retreat);
   if (const GapStop s = move_to(height); s != GapStop::none) return s;
   const GapStop s = descend();
@@ -255,34 +255,6 @@ void Approach::retreat() {
 }
 
 }  // namespace
-
-const char* to_string(GapStop s) {
-  switch (s) {
-    case GapStop::none:
-      return "aim reached";
-    case GapStop::no_dot:
-      return "no dot";
-    case GapStop::saturated:
-      return "dot saturated";
-    case GapStop::partly_hidden:
-      return "dot partly hidden";
-    case GapStop::implausible:
-      return "implausible reading";
-    case GapStop::stale_frame:
-      return "stale frame";
-    case GapStop::too_close:
-      return "too close";
-    case GapStop::too_far:
-      return "too far";
-    case GapStop::no_progress:
-      return "no progress";
-    case GapStop::unreachable:
-      return "out of reach";
-    case GapStop::port_failed:
-      return "machine failed";
-  }
-  return "unknown";
-}
 
 GapOutcome close_gap(const machine::MachineDescription& machine, const LocalSurface& surface,
                      const Pose& X_WT_start, double standoff, GapMotion& motion,

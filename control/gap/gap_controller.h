@@ -1,12 +1,13 @@
-// Closes the initial deposition gap (Song 2015, 3.3): from S' towards the surface in one direction, looking
-// at every stop, until the gap is the aim. It never touches: a step is a fraction of what is left above the
-// aim, and no dot, a saturated, implausible or stale image stops it, retreats and says why.
+// Closes the initial deposition gap (Song 2015, 3.3): from S' towards the surface in one direction, with a
+// sample at every stop, until the gap is the aim. It never touches: a step is a fraction of what is left
+// above the aim, and no dot, a saturated, implausible or stale image stops it, retreats and says why.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "control/gap/gap_reading.h"
+#include "control/gap/gap_stop.h"
 #include "machine/port.h"
 
 namespace understudy::control {
@@ -25,22 +26,7 @@ struct GapControllerOptions {
   double retreat = 2e-3;        ///< [m], along the tool axis, after a stop for a reason
 };
 
-enum class GapStop {
-  none,
-  no_dot,
-  saturated,
-  partly_hidden,
-  implausible,
-  stale_frame,
-  too_close,
-  too_far,
-  no_progress,
-  unreachable,
-  port_failed
-};
-const char* to_string(GapStop s);
-
-/// One look: what was seen and what it was taken for.
+/// One frame: what was seen and what it was taken for.
 struct GapSample {
   double time = 0;  ///< [s], middle of the exposure
   vision::DotMeasurement dot;
@@ -56,7 +42,7 @@ struct GapOutcome {
   double gap = 0;                ///< [m], last accepted reading
   double sigma = 0;              ///< [m]
   Vec3 offset_W{0, 0, 0};        ///< [m], to be carried: commanded tip minus programmed S
-  std::vector<GapSample> looks;
+  std::vector<GapSample> samples;
 };
 
 /// What the controller may do to the machine while it approaches: straight moves along the tool axis.

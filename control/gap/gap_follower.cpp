@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/gap/confidence.h"
+
 namespace understudy::control {
 namespace {
 
-constexpr double kTrusted = 3;          // standard deviations kept above the floor
 constexpr int kRepeatsMax = 3;          // readings equal to the last bit: a camera's noise forbids one
-constexpr double kSpeckleShare = 0.01;  // of a new pattern that a look from the same place is worth
+constexpr double kSpeckleShare = 0.01;  // of a new pattern that a sample from the same place is worth
 
 }  // namespace
 
@@ -91,20 +92,21 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
     return known_ ? GapVerdict::used : GapVerdict::not_yet;
   }
   predict(o.time, o.path);
-  // From the same place the same speckle: such looks hardly add.
+  // From the same place the same speckle: such samples hardly add.
   const double fresh = std::clamp((o.path - used_path_) / options_.speckle_length, kSpeckleShare, 1.0);
   const double variance = o.sigma * o.sigma / fresh + options_.unmodelled * options_.unmodelled;
   const double innovation = o.gap - o.correction - error_;
-  if (o.path - used_path_ > options_.extrapolated_max) proof_.forget();
+  if (o.path - used_path_ > options_.extrapolated_max) response_.forget();
   const double spread = std::sqrt(p_ee_ + o.sigma * o.sigma) + options_.unmodelled;
   if (std::abs(innovation) > options_.gate * spread && !lasting_step(innovation, o.sigma * o.sigma)) {
     miss(o.time, o.path, GapStop::implausible);
     return GapVerdict::jump;
   }
-  if (steps_ >= options_.step_looks) {
-    proof_.forget();
+  if (steps_ >= options_.step_samples) {
+    response_.forget();
   } else {
-    if (proof_.observe(o.gap - o.still, variance, innovation, p_ee_ + variance)) proof_.restart(o.correction);
+    if (response_.observe(o.gap - o.still, variance, innovation, p_ee_ + variance))
+      response_.restart(o.correction);
     correct(innovation, variance);
   }
   steps_ = 0;
@@ -126,7 +128,7 @@ bool GapFollower::lasting_step(double innovation, double variance) {
   ++steps_;
   step_sum_ += innovation;
   step_squares_ += innovation * innovation;
-  if (steps_ < options_.step_looks) return false;
+  if (steps_ < options_.step_samples) return false;
   const double mean = step_sum_ / steps_, scatter = step_squares_ / steps_ - mean * mean;
   if (scatter > options_.gate * options_.gate * (variance + options_.unmodelled * options_.unmodelled)) {
     steps_ = 0;
@@ -149,7 +151,7 @@ void GapFollower::begin(const GapObservation& o) {
   if (steps_ == 0) path_ = o.path;
   ++steps_;
   step_sum_ += error;
-  if (steps_ < options_.step_looks) return;
+  if (steps_ < options_.step_samples) return;
   known_ = true;
   error_ = step_sum_ / steps_;
   p_ee_ = o.sigma * o.sigma / steps_ + std::pow(options_.slope_sigma * (o.path - path_), 2);
@@ -178,14 +180,14 @@ void GapFollower::miss(double time, double path, GapStop why) {
 
 void GapFollower::judge(const GapObservation& o) {
   if (!known_) return;
-  if (gap(o.correction) - kTrusted * sigma() < options_.floor) raise(GapStop::too_close);
-  if (std::abs(wanted()) > options_.travel_max + kTrusted * sigma()) raise(GapStop::too_far);
+  if (gap(o.correction) - kSafeSigmas * sigma() < options_.floor) raise(GapStop::too_close);
+  if (std::abs(wanted()) > options_.travel_max + kSafeSigmas * sigma()) raise(GapStop::too_far);
   judge_proof(o);
 }
 
 /// The part's own dot would have come down with the tool, or risen while the tool waits.
 void GapFollower::judge_proof(const GapObservation& o) {
-  const bool held = wanted() < lowest() - options_.unproved_max / 2 - kTrusted * sigma();
+  const bool held = wanted() < lowest() - options_.unproved_max / 2 - kSafeSigmas * sigma();
   if (held && !held_) {
     held_time_ = o.time;
     held_path_ = o.path;
@@ -197,7 +199,7 @@ void GapFollower::judge_proof(const GapObservation& o) {
 
 /// The correction that is proved to be safe.
 double GapFollower::lowest() const {
-  return std::max(-options_.travel_max, proof_.highest() - options_.unproved_max);
+  return std::max(-options_.travel_max, response_.highest() - options_.unproved_max);
 }
 
 /// Rate and acceleration are limited; what is left is taken over within settle_time, and the line's own climb
@@ -221,7 +223,7 @@ GapFollower::Correction GapFollower::advance(double dt, double path, bool follow
   const double next = correction_.rate + std::clamp(rate - correction_.rate, -change, change);
   correction_.value += 0.5 * (correction_.rate + next) * dt;
   correction_.rate = next;
-  proof_.reach(correction_.value);
+  response_.reach(correction_.value);
   return correction_;
 }
 

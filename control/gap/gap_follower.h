@@ -5,15 +5,16 @@
 //
 // Speckle is averaged by a Kalman filter whose noise is that of the readings. What jumps is not followed: a
 // fresh bead or an edge lifts the reading by more than its noise explains. What does not move when the
-// correction does is not believed for long (control/gap/gap_response_test.h). Nothing here allocates or
+// correction does is not believed for long (control/gap/gap_response.h). Nothing here allocates or
 // throws.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
+#include "control/gap/confidence.h"
 #include "control/gap/gap_controller.h"
-#include "control/gap/gap_response_test.h"
+#include "control/gap/gap_response.h"
 
 namespace understudy::control {
 
@@ -26,14 +27,14 @@ struct GapFollowerOptions {
   /// still in the picture leads no farther.
   double unproved_max = 40e-6;
   double settle_time = 0.03;        ///< [s], in which a small step of the estimate is taken over
-  double gate = 4;                  ///< standard deviations that a reading may be off
+  double gate = kPlausibleSigmas;   ///< standard deviations that a reading may be off
   double unmodelled = 2e-6;         ///< [m], a reading may be off besides: facets and roughness
   double slope_sigma = 0.025;       ///< [m/m], of the error over the path before it was measured
   double slope_walk = 0.04;         ///< [1/m], variance of that slope's change over a metre
   double drift = 2e-6;              ///< [m/sqrt(s)], of the error of a tool at rest
   double speckle_length = 0.15e-3;  ///< [m] of path after which speckle is new
   double step_max = 50e-6;          ///< [m], a lasting step of the machine; a bead is at least twice as high
-  int step_looks = 4;               ///< in a row that show the same step
+  int step_samples = 4;             ///< in a row that show the same step
   double extrapolated_max = 1e-3;   ///< [m] of path beyond the last good reading; the correction rests then
   double blind_time = 0.5;          ///< [s] without a good reading ...
   double blind_path = 1.5e-3;       ///< [m] ... and at least so far, is a stop: longer than a bead is wide
@@ -69,7 +70,7 @@ class GapFollower {
 
   /// The gap is known, as after an approach: the correction begins at 0 from here.
   void start(double time, double path, double gap, double sigma);
-  /// Nothing is known: `step_looks` readings that agree begin it; the correction stays at 0 until then.
+  /// Nothing is known: `step_samples` readings that agree begin it; the correction stays at 0 until then.
   void start_unknown(double time, double path);
   /// Readings begin again after a part of the path where there could be none.
   void resume(double time, double path);
@@ -78,7 +79,7 @@ class GapFollower {
   void pass(double dt, double way);
 
   GapVerdict observe(const GapObservation& o);
-  /// A look without a reading, for a reason.
+  /// A frame without a reading, for a reason.
   void miss(double time, double path, GapStop why);
 
   /// The correction a cycle later, where the path will be then. `follow` false: it comes to rest.
@@ -93,7 +94,7 @@ class GapFollower {
   /// Why the print must stop; none: it need not. Sticky.
   GapStop stop() const { return stop_; }
   double blind_since() const { return seen_time_; }        ///< [s], the last good reading
-  int missed() const { return missed_; }                   ///< looks since then
+  int missed() const { return missed_; }                   ///< frames since then
   double wanted() const { return options_.aim - error_; }  ///< [m], the correction that would reach the aim
 
  private:
@@ -117,9 +118,9 @@ class GapFollower {
   int same_readings_ = 0;  // in a row, to the last bit
   int steps_ = 0;          // readings in a row that are off to one side
   double step_sum_ = 0, step_squares_ = 0;
-  double seen_time_ = 0, seen_path_ = 0;  // of the last good reading, or where looking began
+  double seen_time_ = 0, seen_path_ = 0;  // of the last good reading, or where readings began
   int missed_ = 0;
-  CusumTest proof_;
+  CusumTest response_;
   double held_time_ = 0, held_path_ = 0;  // since when readings ask for more than is proved
   bool held_ = false;
   std::array<int, 16> reasons_{};  // of those, by GapStop

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "control/gap/confidence.h"
+
 namespace understudy::control {
 namespace {
 
@@ -167,9 +169,8 @@ bool read_gap(const machine::MachineDescription& machine, const LocalSurface& su
 }
 
 bool whole(const GapReading& reading, const vision::DotMeasurement& dot) {
-  constexpr double kTrusted = 4;        // standard deviations
   constexpr double kUnmodelled = 0.05;  // the camera's rounding, the beam's waist off by 2 %, facets
-  return reading.narrowest >= 1 - kTrusted * dot.spread_sigma - kUnmodelled;
+  return reading.narrowest >= 1 - kPlausibleSigmas * dot.spread_sigma - kUnmodelled;
 }
 
 Region region_for_gap(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,

@@ -1,27 +1,11 @@
 // From the dot's pixel to the gap: the laser's line, the local surface and the camera, inverted.
 #pragma once
 
-#include <optional>
-
+#include "control/gap/local_surface.h"
 #include "machine/description.h"
 #include "vision/dot/dot.h"
 
 namespace understudy::control {
-
-/// The surface near the tool axis, in T with the tip at gap 0 on it:
-///   z = slope . (x, y) + 1/2 (x, y) curvature (x, y)^T      (z along the tool axis, away from the part)
-struct LocalSurface {
-  Vec2 slope{0, 0};
-  Eigen::Matrix2d curvature = Eigen::Matrix2d::Zero();  ///< [1/m], negative where the part bulges to the tool
-};
-
-/// Quadratic fit of the nominal part around the point under the tool, within `radius` [m]. The part is in
-/// the frame of X_WT. Throws InputError when the axis does not meet the part within 20 mm of the tip.
-LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT, double radius);
-
-/// Of the tip over the nominal part [m], along the tool axis; nothing where that does not meet the part
-/// within 20 mm. What reaches up to `radius` [m] above the tip is seen.
-std::optional<double> height_over(const geometry::Mesh& part, const Pose& X_WT, double radius);
 
 struct GapReading {
   double gap = 0;          ///< [m], along the tool axis, positive outside the part

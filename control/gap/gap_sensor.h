@@ -1,4 +1,4 @@
-// One look through the microscope: expose, measure, invert, and judge whether it can be believed.
+// One frame of the microscope: expose, measure, invert, and judge whether it can be believed.
 #pragma once
 
 #include <cstdint>
@@ -20,22 +20,22 @@ class GapSensor {
             const GapControllerOptions& options, machine::MachinePort& port);
 
   /// The tool stands: a frame that is lost or stale is asked for again, thrice in all. Without an expectation
-  /// the whole sensor is read. The result says why `look` cannot be used; none: it
-  /// can.
-  GapStop take(const std::optional<Expectation>& expected, GapSample& look);
+  /// the whole sensor is read. The result says why `sample` cannot be used;
+  /// none: it can.
+  GapStop take(const std::optional<Expectation>& expected, GapSample& sample);
 
   /// One exposure of where the dot of such gaps is, without a second try on the whole sensor; it must be
   /// there within `patience` [s]. The dot is measured, not read.
-  GapStop expose_around(const Expectation& expected, double patience, GapSample& look);
+  GapStop expose_around(const Expectation& expected, double patience, GapSample& sample);
   /// Reads the gap off the dot that was measured, on the surface as it is now.
-  GapStop read(GapSample& look) const;
+  GapStop read(GapSample& sample) const;
 
  private:
-  GapStop expose(const Region& region, double patience, GapSample& look);
-  GapStop expose_standing(const Region& region, GapSample& look);
+  GapStop expose(const Region& region, double patience, GapSample& sample);
+  GapStop expose_standing(const Region& region, GapSample& sample);
   Region region_around(const Expectation& expected) const;
-  GapStop judge_dot(GapSample& look) const;
-  GapStop judge_reading(const std::optional<Expectation>& expected, GapSample& look) const;
+  GapStop judge_dot(GapSample& sample) const;
+  GapStop judge_reading(const std::optional<Expectation>& expected, GapSample& sample) const;
 
   const machine::MachineDescription& machine_;
   const LocalSurface& surface_;

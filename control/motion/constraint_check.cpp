@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "control/motion/path_segment.h"
+#include "control/motion/path_kinematics.h"
 #include "core/error.h"
 
 namespace understudy::control {

@@ -8,39 +8,12 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
-#include "kinematics/mechanism.h"
-#include "machine/description.h"
-#include "machine/port.h"
+#include "control/motion/motion_limits.h"
+#include "control/motion/planned_point.h"
 #include "toolpath/program.h"
 
 namespace understudy::control {
-
-struct MotionLimits {
-  kinematics::AxisVector axis_velocity{};      ///< [m/s or rad/s]
-  kinematics::AxisVector axis_acceleration{};  ///< [m/s^2 or rad/s^2]
-  kinematics::AxisVector velocity_jump{};      ///< [m/s or rad/s], at once at a corner, besides
-  double tip_acceleration = 0;                 ///< [m/s^2]
-  double travel_velocity = 0;                  ///< [m/s], G0
-  double orientation_velocity = 0;             ///< [rad/s]
-  double cycle_time = 0;                       ///< [s]
-};
-MotionLimits motion_limits(const machine::MachineDescription& machine);
-
-/// One planned cycle. `X_WT` is the commanded pose that the axes were computed from.
-struct PlannedPoint {
-  machine::Setpoint setpoint;
-  Pose X_WT = Pose::Identity();
-  std::size_t step = 0;  ///< that this serves, counting the pushes from 0
-  double fraction = 0;   ///< of that step's path (of its time, where it does not move), in [0, 1]
-};
-
-/// What a pose must satisfy to be planned through.
-enum class PoseCheck {
-  limits,    ///< every limit of the mechanism
-  solvable,  ///< only that there are axis positions for it: to time a program whose findings are known
-};
 
 /// Streams a program: call next() until it is false after each push(), and memory is bounded by the lookahead
 /// window (200 mm of path or some thousand pieces, whichever is shorter), not by the program. The plan can

@@ -4,6 +4,7 @@
 #include <deque>
 #include <vector>
 
+#include "control/motion/path_kinematics.h"
 #include "control/motion/speed_profile.h"
 
 namespace understudy::control {

@@ -1,7 +1,8 @@
+#include "control/motion/path_kinematics.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "control/motion/path_segment.h"
 #include "core/error.h"
 #include "core/units.h"
 

@@ -14,41 +14,32 @@ using machine::Status;
 
 namespace {
 
-/// A hold brings the axes to rest in this time: at full speed (60 mm/s) well below the drives' acceleration.
-constexpr double kHoldTime = 0.1;  // [s]
-
 /// Long enough to see where the tool goes when no motor holds it: free fall is 1.2 m.
 constexpr double kCoastTime = 0.5;  // [s]
 
-/// Rest means slower than one microstep a second: what is left cannot be seen by the drives.
-bool at_rest(const Setpoint& s, std::size_t axes, const machine::MachineDescription& machine) {
-  for (std::size_t i = 0; i < axes; ++i)
-    if (std::abs(s.velocity[i]) > machine.drives[i].step()) return false;
-  return true;
+machine::SetpointQueueOptions queue_options(const machine::MachineDescription& machine,
+                                            const kinematics::Mechanism& mechanism, std::size_t capacity) {
+  machine::SetpointQueueOptions queue;
+  queue.capacity = capacity;
+  for (int i = 0; i < mechanism.axis_count(); ++i) {
+    queue.ranges.push_back(mechanism.axis_range(i));
+    // Rest means slower than one microstep a second: what is left cannot be seen by the drives.
+    const auto axis = static_cast<std::size_t>(i);
+    queue.rest_velocity[axis] = machine.drives[axis].step();
+  }
+  return queue;
 }
 
-/// Cubic Hermite between two setpoints.
-void blend(const Setpoint& a, const Setpoint& b, double time, AxisVector& position, AxisVector& velocity) {
-  const double h = b.time - a.time;
-  const double u = std::clamp((time - a.time) / h, 0.0, 1.0);
-  const double u2 = u * u, u3 = u2 * u;
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const double step = b.position[i] - a.position[i];
-    const double va = a.velocity[i] * h, vb = b.velocity[i] * h;
-    position[i] = a.position[i] + step * (3 * u2 - 2 * u3) + va * (u3 - 2 * u2 + u) + vb * (u3 - u2);
-    velocity[i] = (step * (6 * u - 6 * u2) + va * (3 * u2 - 4 * u + 1) + vb * (3 * u2 - 2 * u)) / h;
-  }
+AxisVector axes_at_home(const machine::MachineDescription& machine, const kinematics::Mechanism& mechanism) {
+  AxisVector home{};
+  const auto axes = static_cast<std::size_t>(mechanism.axis_count());
+  const auto solved = mechanism.inverse(machine.X_BT_home, {}, std::span(home).first(axes));
+  if (solved != kinematics::SolveStatus::ok)
+    throw InputError(machine.file.string() + ": the home pose cannot be reached: " + to_string(solved));
+  return home;
 }
 
 }  // namespace
-
-/// Where the controller wants the axes now, by its own geometry.
-struct SimulatedPort::Target {
-  AxisVector position{};
-  AxisVector velocity{};
-  double filament = 0;
-  int line = 0;
-};
 
 SimulatedPort::SimulatedPort(const machine::MachineDescription& machine, Plant& plant, Exposure exposure,
                              std::vector<Observer*> observers, const TwinOptions& options)
@@ -60,18 +51,13 @@ SimulatedPort::SimulatedPort(const machine::MachineDescription& machine, Plant& 
       options_(options),
       drive_zero_(machine.drive_zero()),
       drives_(machine, options.faults),
-      ring_(options.queue_capacity),
+      queue_(queue_options(machine, *mechanism_, options.queue_capacity), axes_at_home(machine, *mechanism_),
+             plant.time()),
       X_BT_commanded_(machine.X_BT_home) {
-  const int axes = mechanism_->axis_count();
-  for (int i = 0; i < axes; ++i) ranges_.push_back(mechanism_->axis_range(i));
-  const auto solved = mechanism_->inverse(machine.X_BT_home, {},
-                                          std::span(last_.position).first(static_cast<std::size_t>(axes)));
-  if (solved != kinematics::SolveStatus::ok)
-    throw InputError(machine.file.string() + ": the home pose cannot be reached: " + to_string(solved));
-  AxisVector displacement{};
-  for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = last_.position[i] - drive_zero_[i];
+  AxisVector displacement = queue_.target().position;
+  for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] -= drive_zero_[i];
   plant_.reset(displacement);
-  last_.time = plant_.time();
+  queue_.clear(plant_.time());
   steps_per_observation_ =
       std::max(1, static_cast<int>(std::lround(options.observation_period / plant_.timestep())));
 }
@@ -87,10 +73,10 @@ machine::AxisState SimulatedPort::state() const {
   s.position = plant_.displacement();
   for (std::size_t i = 0; i < s.position.size(); ++i)
     s.position[i] = drives_.counts_only(static_cast<int>(i)) ? asked_[i] : s.position[i] + drive_zero_[i];
-  s.accepted = accepted_;
-  s.executed = executed_;
-  s.free_slots = ring_.size() - size_;
-  s.moving = size_ > 0 && queue_rate_ > 0;
+  s.accepted = queue_.accepted();
+  s.executed = queue_.executed();
+  s.free_slots = queue_.free_slots();
+  s.moving = queue_.moving();
   s.fault = fault_;
   return s;
 }
@@ -98,54 +84,20 @@ machine::AxisState SimulatedPort::state() const {
 Status SimulatedPort::submit(std::span<const Setpoint> setpoints, double deadline) {
   if (fault_ != Fault::none) return Status::faulted;
   if (plant_.time() > deadline) return Status::deadline_exceeded;
-  if (setpoints.size() > ring_.size() - size_) return Status::queue_full;
-  double time =
-      size_ > 0 ? ring_[(head_ + size_ - 1) % ring_.size()].time : std::max(last_.time, now() - queue_lag_);
-  for (const Setpoint& s : setpoints) {
-    if (!(s.time > time) || !std::isfinite(s.filament)) return Status::rejected;
-    for (int i = 0; i < axis_count(); ++i) {
-      const auto axis = static_cast<std::size_t>(i);
-      if (!std::isfinite(s.position[axis]) || !std::isfinite(s.velocity[axis])) return Status::rejected;
-      if (s.position[axis] < ranges_[axis].lower || s.position[axis] > ranges_[axis].upper)
-        return Status::rejected;
-    }
-    time = s.time;
-  }
-  if (size_ == 0) last_.time = now() - queue_lag_;  // the axes have rested at `last_` until now
-  for (const Setpoint& s : setpoints) ring_[(head_ + size_++) % ring_.size()] = s;
-  accepted_ += setpoints.size();
-  return Status::ok;
+  return queue_.submit(setpoints, plant_.time());
 }
 
-SimulatedPort::Target SimulatedPort::target_at_queue_clock() {
-  const double clock = plant_.time() - queue_lag_;
-  while (size_ > 0 && ring_[head_].time <= clock) {
-    last_ = ring_[head_];
-    head_ = (head_ + 1) % ring_.size();
-    --size_;
-    ++executed_;
-  }
-  Target target;
-  target.line = last_.line;
-  target.filament = last_.filament;
-  if (size_ == 0) {
-    target.position = last_.position;
-    if (!at_rest(last_, ranges_.size(), machine_)) fault_ = Fault::underrun;
-    return target;
-  }
-  const Setpoint& next = ring_[head_];
-  blend(last_, next, clock, target.position, target.velocity);
-  const double share = std::clamp((clock - last_.time) / (next.time - last_.time), 0.0, 1.0);
-  target.filament += share * (next.filament - last_.filament);
-  target.line = next.line;
-  for (double& v : target.velocity) v *= queue_rate_;
-  return target;
+/// The axes rest where they are to be, and what is queued is lost.
+void SimulatedPort::raise(Fault fault) {
+  fault_ = fault;
+  queue_.clear(plant_.time());
 }
 
 void SimulatedPort::advance() {
-  const Target target = target_at_queue_clock();
+  const Target target = queue_.advance_to(plant_.time());
+  if (queue_.ran_dry()) raise(Fault::underrun);
   DriveCommand command;
-  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axis_count()); ++i) {
     double displacement = target.position[i] - drive_zero_[i];
     if (options_.quantise_steps) {
       const double step = machine_.drives[i].step();
@@ -162,13 +114,7 @@ void SimulatedPort::advance() {
   closure_max_ = std::max(closure_max_, plant_.closure_error());
   if (drives_.power_is_cut()) return coast(target, command);
 
-  const double dt = plant_.timestep();
-  if (rate_slope_ != 0) {
-    queue_rate_ = std::clamp(queue_rate_ + rate_slope_ * dt, 0.0, 1.0);
-    if (queue_rate_ == 0 || queue_rate_ == 1) rate_slope_ = 0;
-    if (queue_rate_ == 0 && drop_when_held_) return drop_queue(target);
-  }
-  queue_lag_ += (1 - queue_rate_) * dt;
+  queue_.pass(plant_.timestep(), plant_.time());
 }
 
 /// The controller is gone with the power; the machine goes on moving as its load wants.
@@ -181,18 +127,7 @@ void SimulatedPort::coast(const Target& target, DriveCommand command) {
     ++steps_;
   }
   outputs_ = {};
-  fault_ = Fault::power;
-}
-
-void SimulatedPort::drop_queue(const Target& target) {
-  last_.position = target.position;
-  last_.velocity = {};
-  last_.filament = target.filament;
-  last_.time = plant_.time();
-  size_ = 0;
-  queue_rate_ = 1;
-  queue_lag_ = 0;
-  drop_when_held_ = false;
+  raise(Fault::power);
 }
 
 void SimulatedPort::observe(const Target& target) {
@@ -225,7 +160,7 @@ Status SimulatedPort::wait_until(double time) {
       advance();
     } catch (const MachineError& error) {
       engine_failure_ = error.what();
-      fault_ = Fault::engine;
+      raise(Fault::engine);
     }
   }
   return fault_ == Fault::none ? Status::ok : Status::faulted;
@@ -234,18 +169,18 @@ Status SimulatedPort::wait_until(double time) {
 Status SimulatedPort::urgent(machine::UrgentCommand command) {
   switch (command) {
     case machine::UrgentCommand::hold:
-    case machine::UrgentCommand::stop:
-      rate_slope_ = -1 / kHoldTime;
-      drop_when_held_ = command == machine::UrgentCommand::stop;
+      queue_.hold();
       return Status::ok;
     case machine::UrgentCommand::resume:
-      rate_slope_ = drop_when_held_ ? rate_slope_ : 1 / kHoldTime;
+      queue_.resume();
+      return Status::ok;
+    case machine::UrgentCommand::stop:
+      queue_.stop(plant_.time());
       return Status::ok;
     case machine::UrgentCommand::clear_fault:
       if (fault_ == Fault::engine || fault_ == Fault::power)
         return Status::faulted;  // no state to go on from: it diverged, or must be homed again
       fault_ = Fault::none;
-      last_.velocity = {};
       return Status::ok;
   }
   return Status::rejected;

@@ -1,14 +1,13 @@
 // The twin behind MachinePort: drives with their quantisation, the plant, the microscope, observers.
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "machine/description.h"
-#include "machine/port.h"
+#include "machine/setpoint_queue.h"
 #include "sim/faults/faults.h"
 #include "sim/observer.h"
 #include "sim/plant/plant.h"
@@ -49,12 +48,11 @@ class SimulatedPort : public machine::MachinePort {
   double closure_max() const { return closure_max_; }  ///< [m]
 
  private:
-  struct Target;
-  Target target_at_queue_clock();
+  using Target = machine::SetpointQueue::Target;  ///< by the controller's own geometry
   void advance();
   void coast(const Target& target, DriveCommand command);
-  void drop_queue(const Target& target);
   void observe(const Target& target);
+  void raise(machine::Fault fault);
 
   const machine::MachineDescription& machine_;
   std::unique_ptr<kinematics::Mechanism> mechanism_;
@@ -63,23 +61,16 @@ class SimulatedPort : public machine::MachinePort {
   std::vector<Observer*> observers_;
   TwinOptions options_;
   kinematics::AxisVector drive_zero_;
-  std::vector<kinematics::AxisRange> ranges_;  ///< one an axis
   FaultyDrives drives_;
   kinematics::AxisVector asked_{};  ///< [m] or [rad], axis positions that the drives were last asked for
 
-  std::vector<machine::Setpoint> ring_;  ///< fixed storage of the queue
-  std::size_t head_ = 0, size_ = 0;
-  machine::Setpoint last_;  ///< executed last; where the axes rest when the queue is empty
-  double queue_lag_ = 0;    ///< [s], port clock minus the queue's clock; grows while held
-  double queue_rate_ = 1;   ///< 1 running, 0 held
-  double rate_slope_ = 0;   ///< [1/s], of queue_rate_ while a hold or stop decelerates
-  bool drop_when_held_ = false;
+  machine::SetpointQueue queue_;
 
   Pose X_BT_commanded_;
   machine::Outputs outputs_;
   machine::Fault fault_ = machine::Fault::none;
   std::string engine_failure_;
-  std::uint64_t accepted_ = 0, executed_ = 0, steps_ = 0, frame_number_ = 0;
+  std::uint64_t steps_ = 0, frame_number_ = 0;
   int steps_per_observation_ = 1;
   double closure_max_ = 0;
 };

@@ -175,7 +175,7 @@ void GapScene::glow(Image& image) {
   constexpr double kBeside = 40e-6, kFlicker = 0.35;  // [m] of gap, [px]
   const auto at = microscope_.true_dot(along(surface.X_WT_S, 0, kBeside));
   Eigen::Matrix2d spread;
-  const auto local = control::local_surface(*surface.part, surface.X_WT_S, 2.5e-3);
+  const auto local = control::local_surface(*surface.part, surface.X_WT_S);
   if (!at || !control::predict_spread(lit_, local, lit_.gap.aim, spread)) return;
   const Eigen::Matrix2d inverse = spread.inverse();
   const Vec2 centre = *at + kFlicker * Vec2(random_.normal(), random_.normal());

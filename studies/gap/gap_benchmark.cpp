@@ -88,7 +88,7 @@ std::vector<DetectorRow> measure_detectors(const Cell& cell) {
     X_WT.translation() += X_WT.linear() * Vec3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), 0);
     const double target = random.uniform(0.08e-3, 0.25e-3);
     X_WT.translation() += (target - scene.true_gap(X_WT)) * tool_axis(X_WT);
-    const auto surface = control::local_surface(*cell.surface.part, X_WT, 2.5e-3);
+    const auto surface = control::local_surface(*cell.surface.part, X_WT);
     const Image image =
         scene.expose(X_WT, control::region_for_gap(cell.machine, surface, target, 0.15e-3, 0.15e-3, 30));
     for (std::size_t d = 0; d < rows.size(); ++d) {
@@ -132,7 +132,7 @@ ApproachRow measure_approaches(const Cell& cell) {
     if (approach.outcome.stop == GapStop::none) {
       ++row.reached;
       errors.push_back(1e3 * std::abs(trial.last_gap_mm - to_mm(cell.machine.gap.aim)));
-      times.push_back(approach.done_at - approach.outcome.looks.front().time);
+      times.push_back(approach.done_at - approach.outcome.samples.front().time);
     } else {
       ++row.stops[to_string(approach.outcome.stop)];
       row.false_stops += cell.condition.benign;
@@ -169,10 +169,9 @@ FollowingRow measure_followings(const Cell& cell) {
       used += trial.result.following->used;
     }
     if (trial.result.completed) continue;
-    const bool on_path = trial.result.following && trial.result.following->stop != GapStop::none;
-    const GapStop stop = on_path                           ? trial.result.following->stop
-                         : trial.result.approaches.empty() ? GapStop::port_failed
-                                                           : trial.result.approaches.back().outcome.stop;
+    const bool on_path = trial.result.stopped_on_path();
+    const GapStop seen = trial.result.stop.gap;
+    const GapStop stop = seen == GapStop::none ? GapStop::port_failed : seen;
     ++row.stops[std::string(on_path ? "on the path: " : "approach: ") + to_string(stop)];
     row.false_stops += cell.condition.benign;
   }

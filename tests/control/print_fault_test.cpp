@@ -22,14 +22,14 @@ using toolpath::StepKind;
 
 TEST(Print, NothingIsPrintedWithoutAKnownGap) {
   GapRig rig(hexapod(), low_by(0));
-  rig.set_mischief([](const Pose&, Image& image) {
+  rig.set_frame_fault([](const Pose&, Image& image) {
     std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{12});
     return true;
   });
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), {});
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.stop_line, 5);
-  EXPECT_THAT(result.stop_reason, AllOf(HasSubstr("no dot"), HasSubstr("retreated by 2.000 mm")));
+  EXPECT_EQ(result.stop.line, 5);
+  EXPECT_THAT(result.stop.why, AllOf(HasSubstr("no dot"), HasSubstr("retreated by 2.000 mm")));
   ASSERT_EQ(result.approaches.size(), 1u);
   EXPECT_EQ(result.approaches[0].outcome.stop, GapStop::no_dot);
   EXPECT_EQ(result.extruded, 0);
@@ -43,10 +43,10 @@ TEST(Print, AnEmergencyStopEndsIt) {
   rig.port().inject_fault(Fault::emergency_stop, 3.0);
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), {});
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.status, Status::faulted);
-  EXPECT_EQ(result.fault, Fault::emergency_stop);
-  EXPECT_THAT(result.stop_reason, HasSubstr("emergency stop"));
-  EXPECT_GT(result.stop_line, 0);
+  EXPECT_EQ(result.stop.status, Status::faulted);
+  EXPECT_EQ(result.stop.fault, Fault::emergency_stop);
+  EXPECT_THAT(result.stop.why, HasSubstr("emergency stop"));
+  EXPECT_GT(result.stop.line, 0);
   EXPECT_FALSE(rig.port().state().moving);
 }
 
@@ -59,7 +59,7 @@ TEST(Print, AnEmergencyStopInTheBeadEndsIt) {
     options.gap_control = GapControl::off;
     const PrintResult result = print(bead_program(), hexapod(), rig.port(), options);
     EXPECT_FALSE(result.completed);
-    EXPECT_EQ(result.fault, Fault::emergency_stop);
+    EXPECT_EQ(result.stop.fault, Fault::emergency_stop);
     EXPECT_NEAR(result.duration, at, 1e-9);
     EXPECT_EQ(rig.port().outputs().nozzle_temperature, 0) << "left hot";
     EXPECT_NEAR(rig.commanded_now().translation().z(), kTable + kGap, 1e-3);
@@ -71,8 +71,8 @@ TEST(Print, AFaultThatStandsAlreadyIsNotIgnored) {
   rig.port().inject_fault(Fault::drive);
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), {});
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.fault, Fault::drive);
-  EXPECT_THAT(result.stop_reason, HasSubstr("drive fault"));
+  EXPECT_EQ(result.stop.fault, Fault::drive);
+  EXPECT_THAT(result.stop.why, HasSubstr("drive fault"));
   EXPECT_TRUE(rig.port().history().empty());
 }
 
@@ -123,8 +123,8 @@ TEST(Print, AQueueThatStaysFullIsGivenUp) {
   port.always_full = true;
   const PrintResult result = print(bead_program(), hexapod(), port, without_gap_control());
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.status, Status::deadline_exceeded);
-  EXPECT_THAT(result.stop_reason, HasSubstr("deadline exceeded"));
+  EXPECT_EQ(result.stop.status, Status::deadline_exceeded);
+  EXPECT_THAT(result.stop.why, HasSubstr("deadline exceeded"));
   EXPECT_LT(port.now(), 60);
 }
 
@@ -133,7 +133,7 @@ TEST(Print, ARejectedBatchStopsTheMachine) {
   port.reject_after = 5;
   const PrintResult result = print(bead_program(), hexapod(), port, without_gap_control());
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.status, Status::rejected);
+  EXPECT_EQ(result.stop.status, Status::rejected);
   EXPECT_FALSE(port.state().moving) << "the rest of the queue still runs";
   EXPECT_EQ(port.outputs().nozzle_temperature, 0);
 }
@@ -143,7 +143,7 @@ TEST(Print, AQueueThatRunsDryIsReported) {
   rig.port().inject_fault(Fault::underrun, 2.5);
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), without_gap_control());
   EXPECT_FALSE(result.completed);
-  EXPECT_THAT(result.stop_reason, HasSubstr("queue underrun"));
+  EXPECT_THAT(result.stop.why, HasSubstr("queue underrun"));
 }
 
 TEST(Print, AnInterruptStopsTheMachineAndLeavesNothingHot) {
@@ -163,7 +163,7 @@ TEST(Print, AnInterruptStopsTheMachineAndLeavesNothingHot) {
 
 TEST(Print, AnInterruptIsHeardDuringTheApproach) {
   GapRig rig(hexapod(), low_by(0));
-  rig.set_mischief([](const Pose&, Image&) {
+  rig.set_frame_fault([](const Pose&, Image&) {
     set_interrupted(true);
     return true;
   });
@@ -178,8 +178,8 @@ TEST(Print, APoseOutOfReachStopsAtRestAndNamesTheStrut) {
   GapRig rig(hexapod(), low_by(0));
   const PrintResult result = print(program, hexapod(), rig.port(), without_gap_control());
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.stop_line, 7);
-  EXPECT_THAT(result.stop_reason, HasSubstr("strut"));
+  EXPECT_EQ(result.stop.line, 7);
+  EXPECT_THAT(result.stop.why, HasSubstr("strut"));
   EXPECT_EQ(rig.port().state().fault, Fault::none) << "the queue ran dry in motion";
   EXPECT_NEAR(rig.commanded_now().translation().x(), 5e-3, 1e-6) << "the last good step was not finished";
 }

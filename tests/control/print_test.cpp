@@ -21,7 +21,7 @@ using toolpath::StepKind;
 TEST(Print, CarriesTheOffsetOfTheStartAlongThePath) {
   GapRig rig(hexapod(), low_by(0.4e-3));
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), {});
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   ASSERT_EQ(result.approaches.size(), 1u);
   EXPECT_EQ(result.approaches[0].line, 5);
   EXPECT_EQ(result.approaches[0].outcome.stop, GapStop::none);
@@ -45,7 +45,7 @@ TEST(Print, WithoutGapControlGoesWhereTheProgramSays) {
   PrintOptions options;
   options.gap_control = GapControl::off;
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), options);
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   EXPECT_TRUE(result.approaches.empty());
   EXPECT_TRUE(result.offsets.empty());
   bool seen = false;
@@ -158,7 +158,7 @@ TEST(Print, ASecondApproachReplacesTheFirstOffset) {
   rig.set_play(
       [](const Pose& X) -> Vec3 { return X.translation().y() > 5e-3 ? Vec3(0, 0, 0.3e-3) : Vec3(0, 0, 0); });
   const PrintResult result = print(program, hexapod(), rig.port(), {});
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   ASSERT_EQ(result.offsets.size(), 2u);
   EXPECT_NEAR(result.offsets[0].offset_W.z(), -0.2e-3, 30e-6);
   EXPECT_NEAR(result.offsets[1].offset_W.z(), -0.5e-3, 30e-6);

@@ -61,7 +61,7 @@ TEST(ContinuousPrint, KeepsTheGapWhereTheStartAloneLosesIt) {
     set_slope(rig, slope);
     ASSERT_TRUE(print(bead_program(), hexapod(), start_rig.port(), {}).completed);
     const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
-    ASSERT_TRUE(result.completed) << result.stop_reason;
+    ASSERT_TRUE(result.completed) << result.stop.why;
     EXPECT_LT(beads_of(start_rig, start_rig.port()).in_band, 0.6);
     const Beads beads = beads_of(rig, rig.port());
     EXPECT_EQ(beads.in_band, 1) << beads.gap_min << " to " << beads.gap_max;
@@ -71,7 +71,7 @@ TEST(ContinuousPrint, KeepsTheGapWhereTheStartAloneLosesIt) {
     // 2 s of bead, a frame in 25 ms of it and the wait for the next cycle.
     EXPECT_NEAR(result.following->frames, 77, 6);
     EXPECT_GT(result.following->used, result.following->frames - 4);
-    EXPECT_EQ(result.following->stop, GapStop::none);
+    EXPECT_EQ(result.stop.gap, GapStop::none);
   }
 }
 
@@ -108,7 +108,7 @@ TEST(ContinuousPrint, TellsItsOffsetsSoThatTheProgramCanBeFoundAgain) {
   GapRig rig(hexapod(), low_by(0.1e-3));
   set_slope(rig, 0.02);
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous(), &keep);
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   ASSERT_EQ(keep.changes.size(), result.offsets.size());
   ASSERT_GT(keep.changes.size(), 50u);
   EXPECT_LT(keep.changes.size(), 300u);
@@ -132,7 +132,7 @@ TEST(ContinuousPrint, TellsItsOffsetsSoThatTheProgramCanBeFoundAgain) {
 TEST(ContinuousPrint, ABeadUnderTheDotIsNotChased) {
   GapRig rig(hexapod(), low_by(0));
   // Between 4 and 4.6 mm the dot lies on a bead of 0.15 mm.
-  rig.set_mischief([&](const Pose& X, Image& image) {
+  rig.set_frame_fault([&](const Pose& X, Image& image) {
     const double x = X.translation().x();
     if (x < 4e-3 || x > 4.6e-3) return true;
     Pose over_bead = rig.truth(X);
@@ -141,7 +141,7 @@ TEST(ContinuousPrint, ABeadUnderTheDotIsNotChased) {
     return true;
   });
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   const Beads beads = beads_of(rig, rig.port());
   EXPECT_EQ(beads.in_band, 1) << beads.gap_min << " to " << beads.gap_max;
   EXPECT_GE(result.following->frames - result.following->used, 4);  // 0.6 mm take 0.12 s: five frames
@@ -152,7 +152,7 @@ TEST(ContinuousPrint, AHalfHiddenDotIsNotFollowed) {
     GapRig rig(hexapod(), low_by(0));
     set_slope(rig, slope);
     std::optional<Vec2> edge;  // stands still in the picture
-    rig.set_mischief([&](const Pose& X, Image& image) {
+    rig.set_frame_fault([&](const Pose& X, Image& image) {
       if (X.translation().x() < 3e-3) return true;
       if (!edge) edge = exact_dot(hexapod(), flat_part(), rig.truth(X));
       hide_beyond(*edge, Vec2(1, 0), image);
@@ -161,26 +161,26 @@ TEST(ContinuousPrint, AHalfHiddenDotIsNotFollowed) {
     const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
     EXPECT_FALSE(result.completed);
     ASSERT_TRUE(result.following);
-    EXPECT_STREQ(to_string(result.following->stop), "dot partly hidden");
-    EXPECT_THAT(result.stop_reason, HasSubstr("something hides a part of it"));
+    EXPECT_STREQ(to_string(result.stop.gap), "dot partly hidden");
+    EXPECT_THAT(result.stop.why, HasSubstr("something hides a part of it"));
     EXPECT_EQ(beads_of(rig, rig.port()).in_band, 1) << "slope " << slope;
   }
 }
 
 TEST(ContinuousPrint, AVanishedDotStopsRetreatsAndSaysWhy) {
   GapRig rig(hexapod(), low_by(0));
-  rig.set_mischief([&](const Pose& X, Image& image) {
+  rig.set_frame_fault([&](const Pose& X, Image& image) {
     if (X.translation().x() > 3e-3) std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{12});
     return true;
   });
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
   EXPECT_FALSE(result.completed);
   ASSERT_TRUE(result.following);
-  EXPECT_STREQ(to_string(result.following->stop), "no dot");
-  EXPECT_THAT(result.stop_reason,
-              AllOf(HasSubstr("no dot: "), HasSubstr("looks in 0.5"), HasSubstr("; retreated by 2.000 mm")));
-  EXPECT_EQ(result.stop_reason.find('\n'), std::string::npos);
-  EXPECT_EQ(result.stop_line, 7);  // 3 mm and half a second at 5 mm/s
+  EXPECT_STREQ(to_string(result.stop.gap), "no dot");
+  EXPECT_THAT(result.stop.why,
+              AllOf(HasSubstr("no dot: "), HasSubstr("frames in 0.5"), HasSubstr("; retreated by 2.000 mm")));
+  EXPECT_EQ(result.stop.why.find('\n'), std::string::npos);
+  EXPECT_EQ(result.stop.line, 7);  // 3 mm and half a second at 5 mm/s
   EXPECT_NEAR(rig.gap_now(), 2.13e-3, 30e-6);
   EXPECT_GT(beads_of(rig, rig.port()).gap_min, 0.1e-3);
   EXPECT_EQ(rig.port().outputs().nozzle_temperature, 0);
@@ -194,28 +194,28 @@ TEST(ContinuousPrint, AMachineThatSinksFasterThanItFollowsStopsBeforeItTouches) 
   options.following->rate_max = 0.03e-3;
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), options);
   EXPECT_FALSE(result.completed);
-  EXPECT_STREQ(to_string(result.following->stop), "too close");
+  EXPECT_STREQ(to_string(result.stop.gap), "too close");
   EXPECT_GT(beads_of(rig, rig.port()).gap_min, 0.02e-3);
 }
 
 TEST(ContinuousPrint, ADeadCameraIsSaidToBeDead) {
   GapRig rig(hexapod(), low_by(0));
-  rig.set_mischief([](const Pose& X, Image&) { return X.translation().x() < 2e-3; });
+  rig.set_frame_fault([](const Pose& X, Image&) { return X.translation().x() < 2e-3; });
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
   EXPECT_FALSE(result.completed);
-  EXPECT_THAT(result.stop_reason, AllOf(HasSubstr("no picture from the microscope"), HasSubstr("retreated")));
+  EXPECT_THAT(result.stop.why, AllOf(HasSubstr("no picture from the microscope"), HasSubstr("retreated")));
 }
 
 TEST(ContinuousPrint, RepeatedFramesAreNotFollowed) {
   GapRig rig(hexapod(), low_by(0));
   set_slope(rig, 0.02);
-  rig.set_mischief([&](const Pose& X, Image&) {
+  rig.set_frame_fault([&](const Pose& X, Image&) {
     if (X.translation().x() > 3e-3) rig.port().repeat_frames(kForGood);
     return true;
   });
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
   EXPECT_FALSE(result.completed);
-  EXPECT_STREQ(to_string(result.following->stop), "stale frame");
+  EXPECT_STREQ(to_string(result.stop.gap), "stale frame");
   EXPECT_GT(beads_of(rig, rig.port()).gap_min, 0.1e-3);
 }
 
@@ -224,8 +224,8 @@ TEST(ContinuousPrint, AFaultOfTheMachineIsAFaultOfTheMachine) {
   rig.port().inject_fault(machine::Fault::following_error, 4.2);
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.status, Status::faulted);
-  EXPECT_EQ(result.fault, machine::Fault::following_error);
+  EXPECT_EQ(result.stop.status, Status::faulted);
+  EXPECT_EQ(result.stop.fault, machine::Fault::following_error);
 }
 
 TEST(ContinuousPrint, WithoutAnApproachItBeginsWhenReadingsAgree) {
@@ -235,7 +235,7 @@ TEST(ContinuousPrint, WithoutAnApproachItBeginsWhenReadingsAgree) {
   program.steps[3] = step_to(toolpath::StepKind::travel, {0, 0, kTable + kGap}, 0, 5);
   GapRig rig(hexapod(), low_by(50e-6));
   const PrintResult result = print(program, hexapod(), rig.port(), continuous());
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   EXPECT_TRUE(result.approaches.empty());
   double late = 0;
   int n = 0;
@@ -266,7 +266,7 @@ TEST(ContinuousPrint, ASecondApproachTakesOverWhatWasCorrected) {
   GapRig rig(hexapod(), low_by(0.1e-3));
   set_slope(rig, 0.02);
   const PrintResult result = print(program, hexapod(), rig.port(), continuous());
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   ASSERT_EQ(result.approaches.size(), 2u);
   // 0.1 mm high at first and 0.2 mm more at 10 mm: what was followed is not to be found again.
   EXPECT_NEAR(result.approaches[1].outcome.offset_W.z(), 0, 40e-6);
@@ -281,8 +281,8 @@ TEST(ContinuousPrint, KeepsFewPicturesAndAllReadings) {
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), continuous());
   ASSERT_TRUE(result.completed);
   int pictures = 0;
-  for (const auto& look : result.following->looks) pictures += look.frame.image.pixels.empty() ? 0 : 1;
-  EXPECT_EQ(static_cast<int>(result.following->looks.size()), result.following->frames);
+  for (const auto& look : result.following->samples) pictures += look.frame.image.pixels.empty() ? 0 : 1;
+  EXPECT_EQ(static_cast<int>(result.following->samples.size()), result.following->frames);
   EXPECT_LE(pictures, 40);
   EXPECT_GE(pictures, 20);
 }

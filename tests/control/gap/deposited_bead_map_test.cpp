@@ -100,7 +100,7 @@ GapRigOptions flat_rig() {
 TEST(ContinuousPrint, ADotThatTrailsOnItsOwnBeadIsNotLookedAt) {
   // The dot is 1.1 mm beside the tip towards +y: on the way towards -y it runs over what was just laid.
   GapRig rig(hexapod(), flat_rig());
-  rig.set_mischief([&](const Pose& X, Image& image) {
+  rig.set_frame_fault([&](const Pose& X, Image& image) {
     if (X.translation().y() > -1.5e-3 || X.translation().x() < 5.7e-3) return true;
     Pose over_bead = rig.truth(X);
     over_bead.translation().z() -= kGap;
@@ -116,7 +116,7 @@ TEST(ContinuousPrint, ADotThatTrailsOnItsOwnBeadIsNotLookedAt) {
                    step_to(StepKind::print, {0, -8e-3, z}, 5e-3, 5, f),
                    step_to(StepKind::move, {0, -8e-3, z + 5e-3}, 5e-3, 6)};
   const PrintResult result = print(program, hexapod(), rig.port(), controlled(GapControl::continuous));
-  EXPECT_TRUE(result.completed) << result.stop_reason;
+  EXPECT_TRUE(result.completed) << result.stop.why;
   ASSERT_TRUE(result.following);
   EXPECT_GT(result.following->used, 30);  // 1.2 s along x at 40 frames a second
 }
@@ -135,7 +135,7 @@ TEST(Print, AnApproachWhoseDotWouldLieOnABeadKeepsTheOffsetAndIsTold) {
                    step_to(StepKind::print, {4e-3, -1.0e-3, z}, 5e-3, 7, f),
                    step_to(StepKind::move, {4e-3, -1.0e-3, z + 2e-3}, 5e-3, 8)};
   const PrintResult result = print(program, hexapod(), rig.port(), controlled(GapControl::start));
-  ASSERT_TRUE(result.completed) << result.stop_reason;
+  ASSERT_TRUE(result.completed) << result.stop.why;
   EXPECT_EQ(result.approaches.size(), 1u);
   EXPECT_THAT(result.unmeasured_starts, ElementsAre(6));
   for (const auto& s : rig.port().history())

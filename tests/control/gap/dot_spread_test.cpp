@@ -57,7 +57,7 @@ TEST(DotSpread, ThatIsLeftByAnEdgeIsThatOfACutGaussian) {
   ASSERT_EQ(motion.move_to(start.X_WT_S), machine::Status::ok);
   for (const double d : {0.0, 0.5, 1.0, 3.5}) {
     const Vec2 side(1, 0);
-    rig.set_mischief([&](const Pose&, Image& image) {
+    rig.set_frame_fault([&](const Pose&, Image& image) {
       hide_beyond(dot + d * std::sqrt(spread(0, 0)) * side, side, image);
       return true;
     });

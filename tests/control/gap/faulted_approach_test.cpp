@@ -68,42 +68,43 @@ void cause(const Fault& fault, const Start& start, Stage& stage, Random& random)
   const auto frozen = std::make_shared<std::optional<Vec2>>();
   const Vec2 ghost(random.uniform(40, 600), random.uniform(40, 440));
   const Cut cut = draw_cut(random);
-  stage.rig().set_mischief([&stage, &random, fault, start, frozen, ghost, cut](const Pose& X, Image& image) {
-    if (stage.height(X) > fault.below || random.uniform() > fault.share) return true;
-    const auto dot = exact_dot(hexapod(), start.world, stage.rig().truth(X));
-    switch (fault.trouble) {
-      case Trouble::dark:
-        std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{12});
-        return true;
-      case Trouble::saturated:
-        for (auto& p : image.pixels) p = p > 30 ? 255 : p;
-        return true;
-      case Trouble::frozen:
-        if (!*frozen) *frozen = dot;
-        if (*frozen) stage.rig().draw_spot(**frozen, 190, image);
-        return true;
-      case Trouble::stale:
-        stage.rig().port().repeat_frames(fault.share < 1 ? 1 + static_cast<int>(random.uniform(0, 4))
-                                                         : kForGood);
-        return true;
-      case Trouble::lost:
-        return false;
-      case Trouble::ghost:
-        stage.rig().draw_spot(ghost, 190, image);
-        return true;
-      case Trouble::cut:
-        if (dot) hide_beyond(*dot + cut.offset, cut.side, image);
-        return true;
-      case Trouble::dim:
-        if (dot) stage.rig().draw_spot(*dot, 8, image);
-        return true;
-      case Trouble::offset_picture:
-        image.region.x += 8;
-        return true;
-      default:
-        return true;
-    }
-  });
+  stage.rig().set_frame_fault(
+      [&stage, &random, fault, start, frozen, ghost, cut](const Pose& X, Image& image) {
+        if (stage.height(X) > fault.below || random.uniform() > fault.share) return true;
+        const auto dot = exact_dot(hexapod(), start.world, stage.rig().truth(X));
+        switch (fault.trouble) {
+          case Trouble::dark:
+            std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{12});
+            return true;
+          case Trouble::saturated:
+            for (auto& p : image.pixels) p = p > 30 ? 255 : p;
+            return true;
+          case Trouble::frozen:
+            if (!*frozen) *frozen = dot;
+            if (*frozen) stage.rig().draw_spot(**frozen, 190, image);
+            return true;
+          case Trouble::stale:
+            stage.rig().port().repeat_frames(fault.share < 1 ? 1 + static_cast<int>(random.uniform(0, 4))
+                                                             : kForGood);
+            return true;
+          case Trouble::lost:
+            return false;
+          case Trouble::ghost:
+            stage.rig().draw_spot(ghost, 190, image);
+            return true;
+          case Trouble::cut:
+            if (dot) hide_beyond(*dot + cut.offset, cut.side, image);
+            return true;
+          case Trouble::dim:
+            if (dot) stage.rig().draw_spot(*dot, 8, image);
+            return true;
+          case Trouble::offset_picture:
+            image.region.x += 8;
+            return true;
+          default:
+            return true;
+        }
+      });
 }
 
 void approach_with_faults(int first, int approaches) {

@@ -66,7 +66,7 @@ TEST(GapController, AveragesItsLastLooksAtDifferentHeights) {
   Stage stage(on_bottle(-20), 0.3e-3);
   const GapOutcome outcome = stage.run();
   ASSERT_EQ(outcome.stop, GapStop::none) << outcome.why;
-  const auto& looks = outcome.looks;
+  const auto& looks = outcome.samples;
   ASSERT_GE(looks.size(), 4u);
   for (std::size_t i = looks.size() - 3; i < looks.size(); ++i) {
     EXPECT_TRUE(looks[i].used);
@@ -81,7 +81,7 @@ TEST(GapController, AveragesAlsoWhenOneStepWouldDo) {
   Stage stage(on_slope(0));
   const GapOutcome outcome = stage.run(options);
   ASSERT_EQ(outcome.stop, GapStop::none) << outcome.why;
-  EXPECT_GE(outcome.looks.size(), 4u);  // one from afar, three averaged
+  EXPECT_GE(outcome.samples.size(), 4u);  // one from afar, three averaged
 }
 
 TEST(GapController, AimsWhereItIsTold) {
@@ -120,7 +120,7 @@ TEST(GapController, TheSameSeedTakesTheSameWay) {
   Stage a(on_bottle(15), 0.7e-3), b(on_bottle(15), 0.7e-3);
   const GapOutcome first = a.run(), second = b.run();
   EXPECT_EQ(first.offset_W, second.offset_W);
-  EXPECT_EQ(first.looks.size(), second.looks.size());
+  EXPECT_EQ(first.samples.size(), second.samples.size());
   EXPECT_EQ(first.gap, second.gap);
 }
 

@@ -319,14 +319,14 @@ TEST(LocalSurface, FindsSlopeAndCurvatureOfTheBottle) {
     const Vec3 normal(std::sin(a), 0, std::cos(a));
     const Vec3 foot = Vec3(0, 0, -kBottleRadius) + kBottleRadius * normal;
     const Mat3 R = shortest_arc_from_z(normal).toRotationMatrix();
-    const LocalSurface square = local_surface(mesh, make_pose(R, foot + 0.13e-3 * normal), 2.5e-3);
+    const LocalSurface square = local_surface(mesh, make_pose(R, foot + 0.13e-3 * normal));
     // A fit over 2.5 mm sees 1/R (1 + 5/8 (r/R)^2) at most, 1.6 %, and facets of 0.15 um.
     EXPECT_NEAR(square.curvature(0, 0), -1 / kBottleRadius, 0.02 / kBottleRadius);
     EXPECT_NEAR(square.curvature(1, 1), 0, 0.01 / kBottleRadius);
     EXPECT_NEAR(square.curvature(0, 1), 0, 0.01 / kBottleRadius);
     EXPECT_LT(square.slope.norm(), 1e-3);
     const Mat3 leaned = R * exp_rotation(Vec3(from_deg(10), 0, 0));
-    const LocalSurface slanted = local_surface(mesh, make_pose(leaned, foot + 0.13e-3 * normal), 2.5e-3);
+    const LocalSurface slanted = local_surface(mesh, make_pose(leaned, foot + 0.13e-3 * normal));
     // Leaning about x by 10 degrees makes T's y climb out of the surface by tan(10 degrees).
     EXPECT_NEAR(slanted.slope.y(), -std::tan(from_deg(10)), 1e-3);
     EXPECT_NEAR(slanted.slope.x(), 0, 1e-3);
@@ -335,7 +335,7 @@ TEST(LocalSurface, FindsSlopeAndCurvatureOfTheBottle) {
 
 TEST(LocalSurface, ReadsTheBottlesGapThroughItsMesh) {
   const auto mesh = cylinder_mesh(kBottleRadius, 50e-3, 720);
-  const LocalSurface surface = local_surface(mesh, upright(0.13e-3), 2.5e-3);
+  const LocalSurface surface = local_surface(mesh, upright(0.13e-3));
   for (double gap : {0.1e-3, 0.13e-3, 0.2e-3, 1e-3}) {
     GapReading reading;
     ASSERT_TRUE(read_gap(hexapod(), surface,
@@ -346,7 +346,7 @@ TEST(LocalSurface, ReadsTheBottlesGapThroughItsMesh) {
 
 std::string error_of(const geometry::Mesh& mesh, const Pose& X_WT) {
   try {
-    local_surface(mesh, X_WT, 2.5e-3);
+    local_surface(mesh, X_WT);
   } catch (const InputError& error) {
     return error.what();
   }

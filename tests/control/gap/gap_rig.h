@@ -11,8 +11,8 @@
 
 #include <Eigen/LU>
 
+#include "control/cycle.h"
 #include "control/gap/gap_controller.h"
-#include "control/setpoint_streamer.h"
 #include "core/random.h"
 #include "machine/loopback_port.h"
 #include "tests/control/gap/dot_world.h"
@@ -46,7 +46,7 @@ class GapRig {
   GapRig(const GapRig&) = delete;
 
   machine::LoopbackPort& port() { return port_; }
-  void set_mischief(FrameFault mischief) { mischief_ = std::move(mischief); }
+  void set_frame_fault(FrameFault fault) { frame_fault_ = std::move(fault); }
   /// Added to the commanded tip when the truth is asked for; for errors that come and go.
   void set_play(std::function<Vec3(const Pose& X_WT_commanded)> play) { play_ = std::move(play); }
 
@@ -103,7 +103,7 @@ class GapRig {
     spread_ = *spread;
     draw_spot(*dot + options_.jitter_px * Vec2(random_.normal(), random_.normal()), machine_.laser.peak_level,
               image);
-    return !mischief_ || mischief_(X, image);
+    return !frame_fault_ || frame_fault_(X, image);
   }
 
   std::uint32_t noise() {  // xorshift: a third of a million draws a frame
@@ -118,7 +118,7 @@ class GapRig {
   Random random_;
   std::uint32_t noise_ = 2463534242u;
   Eigen::Matrix2d spread_ = Eigen::Matrix2d::Identity();  // [px^2]
-  FrameFault mischief_;
+  FrameFault frame_fault_;
   std::function<Vec3(const Pose&)> play_;
   machine::LoopbackPort port_;
 };
@@ -137,7 +137,7 @@ inline void hide_beyond(const Vec2& edge, const Vec2& side, Image& image) {
 class RigMotion : public GapMotion {
  public:
   RigMotion(const machine::MachineDescription& machine, GapRig& rig)
-      : feeder_(machine, rig.port(), machine.X_WB * machine.X_BT_home), port_(rig.port()) {}
+      : cycle_(machine, rig.port(), machine.X_WB * machine.X_BT_home), port_(rig.port()) {}
 
   machine::Status move_to(const Pose& X_WT) override {
     targets.push_back(X_WT);
@@ -145,15 +145,15 @@ class RigMotion : public GapMotion {
     step.kind = toolpath::StepKind::move;
     step.feed = 5e-3;
     step.X_WT = X_WT;
-    if (const auto s = feeder_.push(step); s != machine::Status::ok) return s;
-    return feeder_.come_to_rest();
+    if (const auto s = cycle_.push(step); s != machine::Status::ok) return s;
+    return cycle_.come_to_rest();
   }
   machine::MachinePort& port() override { return port_; }
 
   std::vector<Pose> targets;
 
  private:
-  SetpointStreamer feeder_;
+  ControlCycle cycle_;
   machine::MachinePort& port_;
 };
 

@@ -30,7 +30,7 @@ void expect_stopped_and_retreated(Stage& stage, const GapOutcome& outcome, GapSt
 
 TEST(GapController, WithoutADotItRetreats) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([](const Pose&, Image& image) {
+  stage.rig().set_frame_fault([](const Pose&, Image& image) {
     std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{12});
     return true;
   });
@@ -41,7 +41,7 @@ TEST(GapController, WithoutADotItRetreats) {
 
 TEST(GapController, ADotThatVanishesOnTheWayStopsIt) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([&](const Pose& X, Image& image) {
+  stage.rig().set_frame_fault([&](const Pose& X, Image& image) {
     if (stage.height(X) < 0.7e-3) std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{12});
     return true;
   });
@@ -51,7 +51,7 @@ TEST(GapController, ADotThatVanishesOnTheWayStopsIt) {
 
 TEST(GapController, ASaturatedDotStopsIt) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([](const Pose&, Image& image) {
+  stage.rig().set_frame_fault([](const Pose&, Image& image) {
     for (auto& p : image.pixels) p = p > 40 ? 255 : p;
     return true;
   });
@@ -65,7 +65,7 @@ TEST(GapController, AnEdgeThatHidesAQuarterOfTheDotStopsItWhereverItStands) {
   for (const double degrees : {0.0, 90.0, 200.0, 300.0}) {
     Stage stage(on_slope(10));
     const Vec2 side(std::cos(from_deg(degrees)), std::sin(from_deg(degrees)));
-    stage.rig().set_mischief([&](const Pose& X, Image& image) {
+    stage.rig().set_frame_fault([&](const Pose& X, Image& image) {
       hide_beyond(*exact_dot(hexapod(), on_slope(10).world, stage.rig().truth(X)) + 1.5 * side, side, image);
       return true;
     });
@@ -79,7 +79,7 @@ TEST(GapController, AFrameThatIsLostOrStaleNowAndThenIsAskedForAgain) {
   for (const bool lost : {true, false}) {
     Stage stage(on_slope(0));
     int frame = 0;
-    stage.rig().set_mischief([&](const Pose&, Image&) {
+    stage.rig().set_frame_fault([&](const Pose&, Image&) {
       const bool now = ++frame % 3 == 0;
       stage.rig().port().repeat_frames(now && !lost ? 2 : 0);
       return !now || !lost;
@@ -92,7 +92,7 @@ TEST(GapController, AFrameThatIsLostOrStaleNowAndThenIsAskedForAgain) {
 
 TEST(GapController, ARepeatedFrameStopsIt) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([&](const Pose& X, Image&) {
+  stage.rig().set_frame_fault([&](const Pose& X, Image&) {
     if (stage.height(X) < 1.9e-3) stage.rig().port().repeat_frames(kForGood);
     return true;
   });
@@ -114,7 +114,7 @@ TEST(GapController, APictureThatStandsStillStopsItWhereverItFreezes) {
   for (double at : {1.9e-3, 0.6e-3, 0.3e-3, 0.15e-3, 0.08e-3, 0.05e-3}) {
     Stage stage(on_slope(0));
     std::optional<Vec2> frozen;
-    stage.rig().set_mischief([&](const Pose& X, Image& image) {
+    stage.rig().set_frame_fault([&](const Pose& X, Image& image) {
       if (stage.height(X) > at) return true;
       if (!frozen) frozen = exact_dot(hexapod(), on_slope(0).world, stage.rig().truth(X));
       stage.rig().draw_spot(*frozen, 190, image);
@@ -130,7 +130,7 @@ TEST(GapController, APictureThatStandsStillStopsItWhereverItFreezes) {
 
 TEST(GapController, ADotOffItsLineIsImplausible) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([&](const Pose& X, Image& image) {
+  stage.rig().set_frame_fault([&](const Pose& X, Image& image) {
     const Vec2 dot = *exact_dot(hexapod(), on_slope(0).world, stage.rig().truth(X));
     stage.rig().draw_spot(dot + Vec2(20, 20), 190, image);  // across the track, which runs left and down
     return true;
@@ -143,7 +143,7 @@ TEST(GapController, ADotOffItsLineIsImplausible) {
 
 TEST(GapController, AReadingThatTheMotionDoesNotExplainIsImplausible) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([&](const Pose& X, Image& image) {
+  stage.rig().set_frame_fault([&](const Pose& X, Image& image) {
     if (stage.height(X) > 1.5e-3) return true;
     Pose elsewhere = stage.rig().truth(X);
     elsewhere.translation().z() += 1e-3;
@@ -157,7 +157,7 @@ TEST(GapController, AReadingThatTheMotionDoesNotExplainIsImplausible) {
 
 TEST(GapController, APictureOfAnotherRegionIsImplausible) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([](const Pose&, Image& image) {
+  stage.rig().set_frame_fault([](const Pose&, Image& image) {
     image.region.x += 8;
     return true;
   });
@@ -168,7 +168,7 @@ TEST(GapController, APictureOfAnotherRegionIsImplausible) {
 
 TEST(GapController, ACameraThatDeliversNothingStopsIt) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([](const Pose&, Image&) { return false; });
+  stage.rig().set_frame_fault([](const Pose&, Image&) { return false; });
   const GapOutcome outcome = stage.run();
   expect_stopped_and_retreated(stage, outcome, GapStop::port_failed);
   EXPECT_THAT(outcome.why, HasSubstr("no frame"));
@@ -188,7 +188,7 @@ TEST(GapController, AStartTooCloseIsTakenAgainFromAbove) {
 
 TEST(GapController, TooCloseTwiceGivesUp) {
   Stage stage(on_slope(0));
-  stage.rig().set_mischief([&](const Pose&, Image& image) {
+  stage.rig().set_frame_fault([&](const Pose&, Image& image) {
     Pose near = make_pose(Quat::Identity(), Vec3(0, 0, 0.05 + 0.06e-3));  // always 0.06 mm
     stage.rig().draw_spot(*exact_dot(hexapod(), on_slope(0).world, near), 190, image);
     return true;

@@ -199,9 +199,9 @@ TEST(PowerCut, IsStickyAndEndsThePrintWithAReason) {
   options.gap_control = control::GapControl::off;
   const auto result = control::print(program, rig.machine, *rig.port, options);
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.fault, Fault::power);
-  EXPECT_EQ(result.status, Status::faulted);
-  EXPECT_EQ(result.stop_reason, "the machine reports a fault: power cut");
+  EXPECT_EQ(result.stop.fault, Fault::power);
+  EXPECT_EQ(result.stop.status, Status::faulted);
+  EXPECT_EQ(result.stop.why, "the machine reports a fault: power cut");
   EXPECT_LT(result.duration, 1.5);  // 0.5 s, and the half second that shows where the tool goes
   EXPECT_EQ(rig.port->urgent(machine::UrgentCommand::clear_fault), Status::faulted);
   EXPECT_EQ(rig.port->state().fault, Fault::power);

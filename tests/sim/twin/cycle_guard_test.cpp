@@ -74,6 +74,7 @@ class PortCycle : public testing::TestWithParam<Case> {
     ASSERT_EQ(port.submit(all.first(300), 1), Status::ok);
     ASSERT_EQ(port.wait_until(0.2), Status::ok);
     Status submitted = Status::faulted, waited = Status::faulted;
+    Status held = Status::faulted, resumed = Status::faulted, switched = Status::faulted;
     double seen = 0;
     const Calls made = calls_of([&] {
       submitted = port.submit(all.subspan(300, 400), 1);
@@ -81,14 +82,17 @@ class PortCycle : public testing::TestWithParam<Case> {
         waited = port.wait_until(0.2 + 1e-3 * cycle);
         const machine::AxisState state = port.state();
         seen += state.position[0] + port.now();
-        if (cycle == 100) port.urgent(machine::UrgentCommand::hold);
-        if (cycle == 230) port.urgent(machine::UrgentCommand::resume);
-        port.set_outputs({500, 0.5}, 2);
+        if (cycle == 100) held = port.urgent(machine::UrgentCommand::hold);
+        if (cycle == 230) resumed = port.urgent(machine::UrgentCommand::resume);
+        switched = port.set_outputs({500, 0.5}, 2);
       }
     });
     EXPECT_EQ(made, Calls{});
     EXPECT_EQ(submitted, Status::ok);
     EXPECT_EQ(waited, Status::ok) << port.engine_failure();
+    EXPECT_EQ(held, Status::ok);
+    EXPECT_EQ(resumed, Status::ok);
+    EXPECT_EQ(switched, Status::ok);
     EXPECT_TRUE(std::isfinite(seen));
   }
 

@@ -67,8 +67,8 @@ TEST(FollowingOnTheTwin, RetreatsWhenTheDotIsLostWhilePrinting) {
   const Print print = follow(*plant, 3e-3);
   EXPECT_FALSE(print.result.completed);
   ASSERT_TRUE(print.result.following);
-  EXPECT_STREQ(to_string(print.result.following->stop), "no dot");
-  EXPECT_THAT(print.result.stop_reason, AllOf(HasSubstr("no dot: "), HasSubstr("; retreated by 2.000 mm")));
+  EXPECT_STREQ(to_string(print.result.stop.gap), "no dot");
+  EXPECT_THAT(print.result.stop.why, AllOf(HasSubstr("no dot: "), HasSubstr("; retreated by 2.000 mm")));
   ASSERT_FALSE(print.seen.empty());
   double lowest = 1, farthest = 0;
   for (const Snapshot& s : print.seen) {
@@ -89,7 +89,7 @@ TEST(FollowingOnTheTwin, RetreatsWhenTheDotIsLostWhilePrinting) {
 TEST(SlowFollowingOnTheTwin, KeepsTheGapOnTheMujocoEngine) {
   const auto plant = make_mujoco_plant(hexapod(), make_as_built(hexapod(), "sampled", 7));
   const Print print = follow(*plant);
-  ASSERT_TRUE(print.result.completed) << print.result.stop_reason;
+  ASSERT_TRUE(print.result.completed) << print.result.stop.why;
   int inside = 0, all = 0;
   double lowest = 1;
   double fed = 0;

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "control/gap/confidence.h"
+
 namespace understudy::control {
 
-/// Of an approach: looks from heights that sink.
+/// Of an approach: samples from heights that sink.
 class ApproachResponseTest {
  public:
   /// `floor` [m] is what must be left in any case; `blind` [m] what may be travelled before the first proof.
@@ -25,19 +27,19 @@ class ApproachResponseTest {
       return;
     }
     sure_ = std::min(sure_, gap - height);
-    const Look look{height, gap, sigma};
-    count_stall(look);
+    const Sample sample{height, gap, sigma};
+    count_stall(sample);
     // Where noise is more than it is told to be, a single step proves nothing and all of them together do.
-    // Whichever of two looks was the dot: the lower of their dead reckonings is safe.
-    for (const Look& from : {last_, anchor_}) {
-      if (!followed(from, look)) continue;
+    // Whichever of two samples was the dot: the lower of their dead reckonings is safe.
+    for (const Sample& from : {last_, anchor_}) {
+      if (!followed(from, sample)) continue;
       proved_ = true;
-      // By the look before the step: the one after it may be the first at something else.
+      // By the sample before the step: the one after it may be the first at something else.
       sure_ = std::min(from.gap - from.height, gap - height);
-      anchor_ = look;
+      anchor_ = sample;
       break;
     }
-    if (evident(last_, look)) last_ = look;
+    if (evident(last_, sample)) last_ = sample;
   }
 
   bool proved() const { return proved_; }
@@ -48,40 +50,39 @@ class ApproachResponseTest {
  private:
   static constexpr double kStallStep = 15e-6;  // [m], a step whose effect must show
   static constexpr double kStallShare = 0.3;   // of a step: a gap that closes by less has not followed
-  static constexpr double kEvident = 6;        // standard deviations of two looks: a third of it may be noise
-  static constexpr double kScaleError = 0.15;  // of a step: wrong slope or calibration
+  static constexpr double kEvident = 6;        // standard deviations of two samples: a third of it may be noise
 
-  struct Look {
+  struct Sample {
     double height = 0, gap = 0, sigma = 0;
   };
 
-  static double noise(const Look& a, const Look& b) { return std::hypot(a.sigma, b.sigma); }
-  static bool evident(const Look& from, const Look& to) {
+  static double noise(const Sample& a, const Sample& b) { return std::hypot(a.sigma, b.sigma); }
+  static bool evident(const Sample& from, const Sample& to) {
     return from.height - to.height >= std::max(kStallStep, kEvident * noise(from, to));
   }
-  static bool followed(const Look& from, const Look& to) {
+  static bool followed(const Sample& from, const Sample& to) {
     const double moved = from.height - to.height;
     return evident(from, to) &&
            std::abs(from.gap - to.gap - moved) <= kScaleError * moved + kEvident / 3 * noise(from, to);
   }
 
   /// Steps too small to show add up.
-  void count_stall(const Look& look) {
-    const double moved = stall_.height - look.height;
+  void count_stall(const Sample& sample) {
+    const double moved = stall_.height - sample.height;
     if (moved < kStallStep) return;
-    stalls_ = stall_.gap - look.gap >= kStallShare * moved ? 0 : stalls_ + 1;
-    stall_ = look;
+    stalls_ = stall_.gap - sample.gap >= kStallShare * moved ? 0 : stalls_ + 1;
+    stall_ = sample;
   }
 
   double floor_, blind_;
   bool begun_ = false, proved_ = false;
   double sure_ = 0;             // [m], gap less height: no more is proved
-  Look stall_, last_, anchor_;  // anchor: at the last proof, or the first
+  Sample stall_, last_, anchor_;  // anchor: at the last proof, or the first
   int stalls_ = 0;
 };
 
 /// Of a print: a sequential test (Page's CUSUM) of the follower's line against a reading that stands still.
-/// Where nothing but noise is seen, it takes exp(threshold) looks on average to err once.
+/// Where nothing but noise is seen, it takes exp(threshold) samples on average to err once.
 class CusumTest {
  public:
   /// From here: so far the readings have followed.
@@ -120,7 +121,7 @@ class CusumTest {
   double highest() const { return highest_; }  ///< [m], of the corrections since the last proof
 
  private:
-  static constexpr double kThreshold = 10;  // exp(10) looks are nine minutes
+  static constexpr double kThreshold = 10;  // exp(10) samples are nine minutes
 
   double level_ = 0;
   double variance_ = std::numeric_limits<double>::infinity();

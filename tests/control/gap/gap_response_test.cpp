@@ -43,7 +43,7 @@ Led approach_a_ghost(const Ghost& ghost, double error, std::uint64_t seed) {
   const std::size_t begin = rig.port().history().size();
   std::optional<Vec2> at;
   Random random(seed, "ghost");
-  rig.set_mischief([&](const Pose& X, Image& image) {
+  rig.set_frame_fault([&](const Pose& X, Image& image) {
     if (!at && X.translation().z() > X_WT_S.translation().z() + ghost.below) return true;
     Pose seen = rig.truth(X);
     seen.translation().z() += ghost.offset;
@@ -124,7 +124,7 @@ TEST(Ghost, InTheMicroscopeStopsThePrintAboveTheFloor) {
   GapRig rig(hexapod(), low_by(0));
   std::optional<Vec2> at;
   Random random(5, "ghost");
-  rig.set_mischief([&](const Pose& X, Image& image) {
+  rig.set_frame_fault([&](const Pose& X, Image& image) {
     if (X.translation().x() < 2e-3) return true;
     Pose seen = rig.truth(X);
     seen.translation().z() += 45e-6;
@@ -136,8 +136,8 @@ TEST(Ghost, InTheMicroscopeStopsThePrintAboveTheFloor) {
   options.gap_control = GapControl::continuous;
   const PrintResult result = print(bead_program(), hexapod(), rig.port(), options);
   EXPECT_FALSE(result.completed);
-  EXPECT_THAT(result.stop_reason, HasSubstr("no progress: "));
-  EXPECT_THAT(result.stop_reason, HasSubstr("; retreated by 2.000 mm"));
+  EXPECT_THAT(result.stop.why, HasSubstr("no progress: "));
+  EXPECT_THAT(result.stop.why, HasSubstr("; retreated by 2.000 mm"));
   for (const auto& s : rig.port().history())
     if (s.line >= 6) {
       ASSERT_GT(rig.gap_at(rig.commanded(s.position)), 0.05e-3) << "at " << s.time;
