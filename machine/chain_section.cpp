@@ -158,16 +158,16 @@ void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription&
   ChainAxis& axis = chain.axes[index];
   if (map.recording() && !listed && model.kinematics.parameters.empty()) axis = any_urdf_axis(map);
   read_range(map, axis);
-  model.kinematics.home.push_back(read_home(map, axis));
+  model.kinematics.home[index] = read_home(map, axis);
   map.section("drive", "motor and gear",
               [&](YamlMap& drive) { read_drive(drive, axis.angle, machine.drives[index]); });
-  model.play.push_back(axis.angle ? map.quantity("play_arcmin", {0, 600}, "total free travel")
-                                  : map.quantity("play_um", {0, 2000}, "total free travel"));
+  model.play[index] = axis.angle ? map.quantity("play_arcmin", {0, 600}, "total free travel")
+                                 : map.quantity("play_um", {0, 2000}, "total free travel");
   const std::string friction = axis.angle ? "friction_newton_metre" : "friction_n";
-  model.friction.push_back(
+  model.friction[index] =
       map.has(friction)
           ? map.quantity(friction, {0, 1000}, "a smaller load leaves the axis where it is within its play")
-          : 0.0);
+          : 0.0;
   // A link that a URDF has told may be told anew.
   const bool told = index < model.links.size() && model.links[index].mass > 0;
   if (index >= model.links.size()) model.links.emplace_back();

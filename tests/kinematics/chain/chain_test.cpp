@@ -276,7 +276,7 @@ TEST(OpenChain, RatesOfRedundantAxesAreTheShortestForTheirTwist) {
     d.kind = "chain";
     do d.chain = random_chain(random, 8);
     while (d.chain.tool_axis < 0);
-    d.home.assign(8, 0.1);
+    d.home.fill(0.1);
     d.length_scale = 0.3;
     const auto machine = make_chain_mechanism(d);
     const Axes q = random_axes_of(random, 1);

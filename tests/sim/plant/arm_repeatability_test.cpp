@@ -62,7 +62,7 @@ double repeatability(const std::vector<Vec3>& attained) {
 /// Mean over the poses and over repeated tests. `random_sides` false: every approach from the same side.
 double test_arm(double play, bool random_sides, const Placement& placement = {}) {
   auto machine = machine::load_machine("arm");
-  machine.chain().friction.assign(kAxes, kFriction);
+  std::fill_n(machine.chain().friction.begin(), kAxes, kFriction);
   AsBuilt built = make_as_built(machine, "nominal", 1);
   built.axis_play.fill(play);
   QuasistaticSampler sampler(machine, built);

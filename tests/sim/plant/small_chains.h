@@ -41,10 +41,10 @@ inline machine::MachineDescription small_chain(const std::vector<SmallAxis>& axe
     axis.point = a.point;
     axis.parent = static_cast<int>(i) - 1;
     chain.axes.push_back(axis);
-    model.kinematics.home.push_back(a.home);
+    model.kinematics.home[i] = a.home;
     model.links.push_back({a.mass, a.centre, a.inertia * Mat3::Identity(), {}});
-    model.play.push_back(a.play);
-    model.friction.push_back(a.friction);
+    model.play[i] = a.play;
+    model.friction[i] = a.friction;
     m.drives[i].lead = a.angle ? from_deg(3.6) : from_mm(5);
     m.drives[i].steps_per_turn = 200;
     m.drives[i].microsteps = 16;
