@@ -14,7 +14,7 @@ struct Identifiability {
   Status status = Status::ok;
   std::string message;  ///< what is missing and what to do; empty when ok
   std::vector<std::string> warnings;
-  PerStrut<int> strut_rank{};  ///< of strut_unknowns; 0 where it did not come so far
+  kinematics::PerStrut<int> strut_rank{};  ///< of strut_unknowns; 0 where it did not come so far
   int strut_unknowns = 0;      ///< 7, and 1 more for each of dev and play
   int rank = 0;                ///< of Unknowns::count(): dev is one unknown of all struts
   double condition = 0;        ///< largest of the struts': ratio of singular values

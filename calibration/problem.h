@@ -38,7 +38,7 @@ struct PoseSample {
   /// measured = (p + e_p, exp(e_w) R). Positive definite.
   Mat6 covariance = Mat6::Identity();
   StrutLengths displacement{};  ///< [m], of the drives: commanded strut length less the nominal l_i0
-  PerStrut<Approach> approach{};
+  kinematics::PerStrut<Approach> approach{};
 };
 
 /// What is estimated beside the 42 parameters.

@@ -11,6 +11,8 @@ function(understudy_room name)
     target_link_libraries(understudy_${name} PUBLIC understudy::${used})
   endforeach()
   target_link_libraries(understudy_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+  set_property(TARGET understudy_${name} PROPERTY EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY UNDERSTUDY_LIBRARIES understudy_${name})
   understudy_precompiled(understudy_${name})
 endfunction()
 

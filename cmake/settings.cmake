@@ -2,7 +2,7 @@
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-if(NOT CMAKE_BUILD_TYPE)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
@@ -16,18 +16,26 @@ if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
 endif()
 
-add_library(understudy_settings INTERFACE)
 # The same inputs must give the same bytes: no contraction that depends on inlining.
-target_compile_options(understudy_settings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off
+add_compile_options(
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>  # clang counts it to -Wconversion, GCC does not
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 sees overlaps in std::string that are not there (PR 105651)
   $<$<BOOL:${UNDERSTUDY_WERROR}>:-Werror>)
 if(UNDERSTUDY_SANITIZE)
-  target_compile_options(understudy_settings INTERFACE
+  add_compile_options(
     -fsanitize=${UNDERSTUDY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
-  target_link_options(understudy_settings INTERFACE -fsanitize=${UNDERSTUDY_SANITIZE})
+  add_link_options(-fsanitize=${UNDERSTUDY_SANITIZE})
 endif()
-target_include_directories(understudy_settings INTERFACE ${PROJECT_SOURCE_DIR})
+
+# What every room's users inherit: C++20, and headers found from the top, here or where they are installed.
+set(UNDERSTUDY_HEADERS include/understudy)
+add_library(understudy_settings INTERFACE)
+target_compile_features(understudy_settings INTERFACE cxx_std_20)
+target_include_directories(understudy_settings INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${UNDERSTUDY_HEADERS}>)
+set_property(TARGET understudy_settings PROPERTY EXPORT_NAME settings)
+set_property(GLOBAL APPEND PROPERTY UNDERSTUDY_LIBRARIES understudy_settings)
 
 # understudy_precompiled(TARGET): one precompiled header for every room and test.
 function(understudy_precompiled target)
@@ -37,8 +45,8 @@ function(understudy_precompiled target)
   if(NOT TARGET understudy_precompiled)
     find_package(Eigen3 3.4 REQUIRED NO_MODULE)
     find_package(GTest REQUIRED)
-    file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "")
-    add_library(understudy_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cpp CONTENT "")
+    add_library(understudy_precompiled OBJECT ${PROJECT_BINARY_DIR}/precompiled.cpp)
     target_link_libraries(understudy_precompiled PRIVATE understudy_settings Eigen3::Eigen GTest::gmock)
     target_precompile_headers(understudy_precompiled PRIVATE
       <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>

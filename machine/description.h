@@ -226,7 +226,8 @@ struct MachineDescription {
 /// nearest known one), values of the wrong type or unit and impossible values (with the limit).
 MachineDescription load_machine(const std::string& name_or_path);
 
-/// Folder with the shipped models: $UNDERSTUDY_MODELS, the source tree's, or the installed one.
+/// Folder with the shipped models: $UNDERSTUDY_MODELS, the installed one beside the program, or the source
+/// tree's.
 std::filesystem::path models_folder();
 
 /// Names under models_folder() that hold a machine.yaml, sorted.

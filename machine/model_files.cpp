@@ -30,9 +30,11 @@ fs::path models_folder() {
 
 fs::path shipped_models_folder() {
   std::error_code error;
-  if (fs::is_directory(UNDERSTUDY_SOURCE_MODELS, error)) return UNDERSTUDY_SOURCE_MODELS;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  return (executable.parent_path() / "../share/understudy/models").lexically_normal();
+  const fs::path installed = (executable.parent_path() / "../share/understudy/models").lexically_normal();
+  if (!fs::is_directory(installed, error) && fs::is_directory(UNDERSTUDY_SOURCE_MODELS, error))
+    return UNDERSTUDY_SOURCE_MODELS;
+  return installed;
 }
 
 std::vector<std::string> machine_names() {

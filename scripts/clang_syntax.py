@@ -40,9 +40,14 @@ def entries(build):
     return {os.path.relpath(entry["file"]): entry for entry in json.loads(path.read_text())}
 
 
+def object_of(entry):
+    words = shlex.split(entry["command"])
+    return words[words.index("-o") + 1]
+
+
 def compiled(build):
     return {name for name, entry in entries(build).items()
-            if (pathlib.Path(entry["directory"]) / entry["output"]).exists()}
+            if (pathlib.Path(entry["directory"]) / object_of(entry)).exists()}
 
 
 def main():

@@ -44,7 +44,7 @@ stage_format() {
 }
 
 stage_rooms() {
-  cmake -DROOT="$PWD" -P cmake/check_includes.cmake
+  python3 scripts/check_includes.py "$PWD"
   python3 scripts/check_citations.py "$PWD"
 }
 

@@ -12,7 +12,7 @@ using calibration::HexapodParameters;
 using calibration::kStruts;
 using exchange::Json;
 
-Json points_mm(const PerStrut<Vec3>& points) {
+Json points_mm(const kinematics::PerStrut<Vec3>& points) {
   Json list = Json::array();
   for (const Vec3& p : points) list.push_back(exchange::point_mm(p));
   return list;
@@ -39,7 +39,7 @@ Json sample_value(const HexapodParameters& nominal, const calibration::PoseSampl
   return value;
 }
 
-void read_points(const Json& answer, const std::string& key, PerStrut<Vec3>& points) {
+void read_points(const Json& answer, const std::string& key, kinematics::PerStrut<Vec3>& points) {
   const Json& rows = exchange::list(answer, key, kStruts);
   for (std::size_t i = 0; i < kStruts; ++i)
     points[i] = exchange::point(rows[i], fmt::format("{}[{}]", key, i));
