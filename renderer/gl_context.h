@@ -13,25 +13,20 @@
 namespace understudy::renderer {
 
 // libepoxy and GLEW need GLX or EGL; OSMesa hands out its own functions.
-#define UNDERSTUDY_GL_FUNCTIONS(X)                                                                           \
-  X(ActiveTexture)                                                                                           \
-  X(AttachShader)                                                                                            \
-  X(BindBuffer)                                                                                              \
-  X(BindFramebuffer)                                                                                         \
-  X(BindRenderbuffer)                                                                                        \
-  X(BindTexture) X(BindVertexArray) X(BlitFramebuffer) X(BufferData) X(CheckFramebufferStatus) X(Clear)      \
-      X(ClearBufferfv) X(CompileShader) X(CreateProgram) X(CreateShader) X(DeleteBuffers)                    \
-          X(DeleteFramebuffers) X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader) X(DeleteTextures)    \
-              X(DeleteVertexArrays) X(ColorMask) X(DepthFunc) X(Disable) X(DrawArrays) X(Enable)             \
-                  X(EnableVertexAttribArray) X(FramebufferRenderbuffer) X(FramebufferTexture2D)              \
-                      X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures) X(GenVertexArrays) \
-                          X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog)               \
-                              X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) X(PixelStorei)             \
-                                  X(PolygonOffset) X(ReadPixels) X(RenderbufferStorageMultisample)           \
-                                      X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) X(Uniform1f) \
-                                          X(Uniform1i) X(Uniform2f) X(Uniform2i) X(Uniform3f) X(Uniform3fv)  \
-                                              X(Uniform4f) X(UniformMatrix3fv) X(UniformMatrix4fv)           \
-                                                  X(UseProgram) X(VertexAttribPointer) X(Viewport)
+// clang-format off
+#define UNDERSTUDY_GL_FUNCTIONS(X) \
+  X(ActiveTexture) X(AttachShader) X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) X(BindTexture) \
+  X(BindVertexArray) X(BlitFramebuffer) X(BufferData) X(CheckFramebufferStatus) X(Clear) X(ClearBufferfv) \
+  X(CompileShader) X(CreateProgram) X(CreateShader) X(DeleteBuffers) X(DeleteFramebuffers) \
+  X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader) X(DeleteTextures) X(DeleteVertexArrays) \
+  X(ColorMask) X(DepthFunc) X(Disable) X(DrawArrays) X(Enable) X(EnableVertexAttribArray) \
+  X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) \
+  X(GenTextures) X(GenVertexArrays) X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) \
+  X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(PolygonOffset) X(ReadPixels) \
+  X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) \
+  X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform2i) X(Uniform3f) X(Uniform3fv) X(Uniform4f) \
+  X(UniformMatrix3fv) X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
+// clang-format on
 
 struct GlFunctions {
 #define UNDERSTUDY_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
