@@ -84,10 +84,10 @@ std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine,
   }
   GapSurface bottle;
   bottle.name = "bottle 31 mm";
-  bottle.part = read_fixture(find_fixture("bottle"), machine);
+  bottle.part = rehearsal::read_fixture(rehearsal::find_fixture("bottle"), machine);
   toolpath::GcodeOptions gcode;
   gcode.X_WT_home = X_WT_home;
-  gcode.rotary = rotary_words(machine);
+  gcode.rotary = rehearsal::rotary_words(machine);
   bottle.program = toolpath::read_gcode(program, gcode);
   const auto first = std::find_if(bottle.program.steps.begin(), bottle.program.steps.end(),
                                   [](const Step& s) { return s.kind == StepKind::print; });
