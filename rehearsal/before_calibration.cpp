@@ -50,7 +50,7 @@ const kinematics::Chain& drawn_chain(const MachineDescription& machine) {
 const char* difference(const MachineDescription& a, const MachineDescription& b) {
   if (a.name != b.name) return "another machine";
   const bool drawn_alike =
-      a.chain ? same(drawn_chain(a), drawn_chain(b)) : same(a.hexapod().design, b.hexapod().design);
+      a.is_chain() ? same(drawn_chain(a), drawn_chain(b)) : same(a.hexapod().design, b.hexapod().design);
   if (!drawn_alike) return "drawn differently";
   return same(a.X_WB, b.X_WB) ? nullptr : "placed differently";
 }

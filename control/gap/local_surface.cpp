@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "control/motion/motion_planner.h"
 #include "control/motion/path_kinematics.h"
 #include "core/error.h"
 

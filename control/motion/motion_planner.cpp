@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "control/motion/path_grid.h"
+#include "core/assert.h"
 #include "core/error.h"
 
 namespace understudy::control {
@@ -228,7 +229,9 @@ void MotionPlanner::State::point_on_front(double elapsed, PlannedPoint& point) {
   point.setpoint.line = segment.line;
   point.setpoint.filament = segment.filament_at(point.fraction);
   ChannelArray slope{};
-  kinematics.evaluate(segment, s, axes_now, slope);
+  const auto solved = kinematics.evaluate(segment, s, axes_now, slope);
+  UNDERSTUDY_ASSERT(solved == kinematics::SolveStatus::ok || solved == kinematics::SolveStatus::singular,
+                    "push() has looked along the whole segment");
   point.setpoint.position = axes_now;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kinematics.axis_count()); ++i)
     point.setpoint.velocity[i] = slope[i] * speed;
@@ -252,7 +255,9 @@ bool MotionPlanner::State::next(PlannedPoint& point) {
     point.fraction = 1;
     point.setpoint.line = segment.line;
     point.setpoint.filament = filament_rest;
-    kinematics.axes_at(segment, segment.length, axes_now);
+    const auto solved = kinematics.axes_at(segment, segment.length, axes_now);
+    UNDERSTUDY_ASSERT(solved == kinematics::SolveStatus::ok || solved == kinematics::SolveStatus::singular,
+                      "push() has looked at the segment's end");
     point.setpoint.position = axes_now;
     piece_time = time;
     resting = true;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/assert.h"
 #include "kinematics/chain/chain_mechanism.h"
 
 namespace understudy::kinematics {
@@ -48,8 +49,10 @@ SolveStatus lengthening(const HexapodGeometry& geometry, const ScrewCoupling& co
 ScrewCoupling screw_coupling(const HexapodGeometry& geometry, const HexapodJoints& joints,
                              const Pose& X_BT_home, double lead) {
   ScrewCoupling coupling{lead, joints, {}};
-  for (int i = 0; i < kStruts; ++i)
-    joint_rotation(geometry, joints, X_BT_home, i, coupling.angle_at_home[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < kStruts; ++i) {
+    const auto solved = joint_rotation(geometry, joints, X_BT_home, i, coupling.angle_at_home[i]);
+    UNDERSTUDY_ASSERT(solved == SolveStatus::ok, "a machine's struts reach its home pose");
+  }
   return coupling;
 }
 

@@ -12,6 +12,10 @@
 
 namespace understudy::sim {
 
+using kinematics::AxisVector;
+using kinematics::PerAxis;
+using kinematics::PerStrut;
+
 /// What a drive is asked for during one step, at the step's beginning: motor side, as-built zero.
 struct DriveCommand {
   kinematics::AxisVector position{};  ///< [m or rad]; hexapod: drive displacement

@@ -19,6 +19,8 @@
 namespace understudy::sim {
 
 using kinematics::AxisVector;
+using kinematics::column;
+using kinematics::elements;
 using AxisMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kinematics::kMaxAxes, kinematics::kMaxAxes>;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/error.h"
 #include "core/units.h"
 #include "kinematics/hexapod/hexapod_passive_rotation.h"
 #include "sim/plant/joint_constants.h"
@@ -102,7 +103,9 @@ SeriesPlay HexapodMechanics::built_play(int axis) const { return play_[axis]; }
 
 kinematics::AxisVector HexapodMechanics::home() const {
   kinematics::StrutLengths lengths{};
-  kinematics::inverse(geometry_, coupling_, X_BT_home_, lengths);
+  if (const auto solved = kinematics::inverse(geometry_, coupling_, X_BT_home_, lengths);
+      solved != kinematics::SolveStatus::ok)
+    throw MachineError(fmt::format("the machine as built cannot take its home pose: {}", to_string(solved)));
   kinematics::AxisVector home{};
   std::copy(lengths.begin(), lengths.end(), home.begin());
   return home;
@@ -116,7 +119,8 @@ Vec6 HexapodMechanics::residual(const AxisVector& position) const {
     r(i) = std::sqrt(d.squaredNorm() - dev2) - position[i];
     if (coupling_.lead == 0) continue;
     double angle = 0;
-    kinematics::passive_rotation(geometry_, coupling_, X_BT_, i, angle);
+    if (kinematics::passive_rotation(geometry_, coupling_, X_BT_, i, angle) != kinematics::SolveStatus::ok)
+      continue;  // the search goes on by the length alone
     r(i) -= coupling_.lead / (2 * std::numbers::pi) * angle;
   }
   return r;
