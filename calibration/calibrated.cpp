@@ -1,6 +1,7 @@
 #include "calibration/calibrated.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -69,24 +70,39 @@ Calibration refused(const Problem& problem, Status status, const std::string& me
   return result;
 }
 
+Calibration refused(const Problem& problem, const Identifiability& found) {
+  Calibration result = refused(problem, found.status, found.message);
+  result.pose = found.pose;
+  return result;
+}
+
+std::optional<std::size_t> add_residuals(const Problem& problem, const Unknowns& unknowns,
+                                         Calibration& result) {
+  result.residuals.clear();
+  result.chi_square = 0;
+  std::optional<std::size_t> beyond_reach;
+  for (std::size_t j = 0; j < problem.samples.size(); ++j) {
+    const PoseSample& sample = problem.samples[j];
+    const HexapodParameters& machine = result.parameters;
+    const auto reached = kinematics::forward(machine.geometry, strut_lengths(machine, sample), sample.X_BT);
+    if (!beyond_reach && reached.status != kinematics::SolveStatus::ok) beyond_reach = j;
+    result.residuals.push_back(pose_error(sample.X_BT, reached.X_BT));
+    if (!result.used[j]) continue;
+    const Twist& e = result.residuals.back();
+    result.chi_square += e.dot(sample.covariance.llt().solve(e));
+  }
+  const auto used = std::count(result.used.begin(), result.used.end(), true);
+  result.degrees_of_freedom = 6 * static_cast<int>(used) - unknowns.count();
+  return beyond_reach;
+}
+
 Calibration calibrated(const Problem& problem, const Fit& fit, const Unknowns& unknowns,
                        const std::vector<bool>& used) {
   Calibration result;
   result.parameters = fit.machine;
   result.iterations = fit.iterations;
   result.used = used;
-  int used_count = 0;
-  for (std::size_t j = 0; j < problem.samples.size(); ++j) {
-    const PoseSample& sample = problem.samples[j];
-    const auto reached =
-        kinematics::forward(fit.machine.geometry, strut_lengths(fit.machine, sample), sample.X_BT);
-    result.residuals.push_back(pose_error(sample.X_BT, reached.X_BT));
-    if (!used[j]) continue;
-    const Twist& e = result.residuals.back();
-    result.chi_square += e.dot(sample.covariance.llt().solve(e));
-    ++used_count;
-  }
-  result.degrees_of_freedom = 6 * used_count - unknowns.count();
+  add_residuals(problem, unknowns, result);
   result.status = fit.converged ? Status::ok : Status::not_converged;
   if (!fit.converged) {
     result.message =

@@ -170,7 +170,10 @@ Identifiability check_identifiability(const Problem& problem, const Unknowns& un
     found.message = std::move(message);
     return found;
   };
-  if (std::string fault = input_fault(problem); !fault.empty()) return stop(Status::bad_input, fault);
+  if (const Fault fault = input_fault(problem); !fault.message.empty()) {
+    found.pose = fault.pose;
+    return stop(Status::bad_input, fault.message);
+  }
   const std::size_t have = problem.samples.size();
   const std::size_t distinct = distinct_poses(problem, unknowns, found.warnings);
   const auto needed = static_cast<std::size_t>((unknowns.count() + kStruts - 1) / kStruts);

@@ -22,8 +22,16 @@ const char* to_string(Status status) {
       return "rank deficient";
     case Status::not_converged:
       return "not converged";
+    case Status::unsupported:
+      return "unsupported";
+    case Status::no_answer:
+      return "no answer";
   }
   return "unknown";
+}
+
+Fault fault_of_pose(std::size_t j, const std::string& what) {
+  return {"pose " + std::to_string(j + 1) + ": " + what, j};
 }
 
 StrutLengths displacements(const HexapodGeometry& nominal, const StrutLengths& lengths) {

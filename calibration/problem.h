@@ -6,7 +6,9 @@
 // k-th of strut i; behind them `dev` where it is unknown, then the play of the six struts where that is.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,24 +69,26 @@ struct Options {
   std::uint64_t seed = 1;  ///< of estimators that draw subsets
 };
 
-enum class Status {
-  ok,
-  bad_input,         ///< a number, a pose or a covariance that is none
-  too_few_poses,     ///< fewer equations than unknowns
-  repeated_poses,    ///< enough poses, too few different ones
-  dead_measurement,  ///< a strut or an axis never changes
-  no_rotation,       ///< the platform kept its orientation, or turned about one axis only
-  rank_deficient,    ///< parameters that these poses cannot tell apart
-  not_converged
+enum class [[nodiscard]] Status{
+    ok,
+    bad_input,         ///< a number, a pose or a covariance that is none
+    too_few_poses,     ///< fewer equations than unknowns
+    repeated_poses,    ///< enough poses, too few different ones
+    dead_measurement,  ///< a strut or an axis never changes
+    no_rotation,       ///< the platform kept its orientation, or turned about one axis only
+    rank_deficient,    ///< parameters that these poses cannot tell apart
+    not_converged,
+    unsupported,  ///< the estimator is not made for this kind of machine
+    no_answer     ///< a plug-in gave none that can be used
 };
 const char* to_string(Status status);
 
-struct Calibration {
+/// What every estimator reports of any machine, in addition to its parameters.
+struct Estimation {
   Status status = Status::not_converged;
   std::string message;                ///< one line that says what is missing; empty when ok
+  std::optional<std::size_t> pose;    ///< index of the sample at fault, where it is one
   std::vector<std::string> warnings;  ///< where the data do not support the model
-  HexapodParameters parameters;       ///< the last iterate where not converged, else the nominal
-  ParameterMatrix covariance;         ///< of the estimated parameters, for the stated noise; empty unless ok
   std::vector<Twist> residuals;       ///< of each sample, measured less model, as in PoseSample::covariance
   std::vector<bool> used;             ///< false: rejected as an outlier
   int iterations = 0;
@@ -92,6 +96,20 @@ struct Calibration {
   int degrees_of_freedom = 0;
   bool ok() const { return status == Status::ok; }
 };
+
+struct Calibration : Estimation {
+  HexapodParameters parameters;  ///< the last iterate where not converged, else the nominal
+  /// Of the estimated parameters, for the stated noise; empty unless ok, and where a plug-in gives none.
+  ParameterMatrix covariance;
+};
+
+/// What is wrong with the samples. `message` is empty when nothing is, and names the pose, from 1.
+struct Fault {
+  std::string message;
+  std::optional<std::size_t> pose;
+};
+/// "pose 8: " and `what`, with j = 7.
+Fault fault_of_pose(std::size_t j, const std::string& what);
 
 /// Displacements of lengths that a controller commanded with `nominal`.
 StrutLengths displacements(const HexapodGeometry& nominal, const StrutLengths& lengths);

@@ -18,10 +18,6 @@ constexpr double kStill = 1e-6;       // [m], far below any useful travel
 constexpr double kWithinNoise = 5;    // standard deviations: the range of 100 normal numbers
 constexpr double kStillAngle = 1e-5;  // [rad]
 
-std::string numbered(std::size_t j, const char* what) {
-  return "pose " + std::to_string(j + 1) + ": " + what;
-}
-
 /// Positive definite to rounding: metres and radians are compared through their own variances.
 bool usable_covariance(const Mat6& S) {
   if (!S.allFinite() || !(S.diagonal().minCoeff() > 0)) return false;
@@ -52,24 +48,25 @@ double range(const Problem& problem, Value value) {
 
 }  // namespace
 
-std::string input_fault(const Problem& problem) {
-  if (problem.samples.empty()) return "there is no pose";
+Fault input_fault(const Problem& problem) {
+  if (problem.samples.empty()) return {"there is no pose", {}};
   const HexapodParameters& nominal = problem.nominal;
   for (std::size_t j = 0; j < problem.samples.size(); ++j) {
     const PoseSample& sample = problem.samples[j];
-    if (!kinematics::is_rigid(sample.X_BT)) return numbered(j, "the measured pose is not finite and rigid");
+    if (!kinematics::is_rigid(sample.X_BT))
+      return fault_of_pose(j, "the measured pose is not finite and rigid");
     if (!(sample.X_BT.translation().norm() < kLongest))
-      return numbered(j, "the measured tip is more than 10 m from the base: is it in metres?");
+      return fault_of_pose(j, "the measured tip is more than 10 m from the base: is it in metres?");
     if (!usable_covariance(sample.covariance))
-      return numbered(j, "the covariance is not symmetric and positive definite");
+      return fault_of_pose(j, "the covariance is not symmetric and positive definite");
     for (std::size_t i = 0; i < kStruts; ++i)
       if (!(std::abs(sample.displacement[i]) < kLongest)) {
         const std::string part = "the displacement of strut " + std::to_string(i + 1);
-        return numbered(j, (part + " is not a finite length below 10 m").c_str());
+        return fault_of_pose(j, part + " is not a finite length below 10 m");
       }
     StrutLinearisation at;
     if (!linearise(nominal, sample, sample.X_BT, at))
-      return numbered(j, "a strut of the nominal machine would be shorter than dev there");
+      return fault_of_pose(j, "a strut of the nominal machine would be shorter than dev there");
   }
   return {};
 }

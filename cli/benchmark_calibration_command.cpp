@@ -14,15 +14,17 @@
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "core/units.h"
+#include "report/calibration_benchmark_report.h"
+#include "report/page/calibration_benchmark_page.h"
 #include "studies/calibration/calibration_benchmark.h"
 #include "studies/calibration/camera_study.h"
-#include "studies/calibration/study_tables.h"
+#include "studies/calibration/estimator_study_tables.h"
 
 namespace understudy::cli {
 namespace {
 
 struct BenchmarkCall {
-  rehearsal::CalibrationBenchmarkRequest request;
+  studies::CalibrationBenchmarkRequest request;
   std::string folder, from = "poses", choice = "random", method = "pinhole";
   std::vector<std::string> disturbances, noise{"20um:0.2mrad"};
   std::vector<int> poses{8, 12, 24};
@@ -69,21 +71,21 @@ void check_ranges(const BenchmarkCall& call) {
     if (n < 1 || n > 1000) throw InputError(fmt::format("--poses {} is outside 1..1000", n));
 }
 
-rehearsal::CalibrationBenchmarkRequest request_of(const BenchmarkCall& call) {
+studies::CalibrationBenchmarkRequest request_of(const BenchmarkCall& call) {
   check_ranges(call);
-  rehearsal::CalibrationBenchmarkRequest request = call.request;
+  studies::CalibrationBenchmarkRequest request = call.request;
   if (call.from != "poses" && call.from != "pixels") refuse("--from", call.from, "poses pixels");
-  if (call.from == "pixels") request.from = rehearsal::MeasuredFrom::pixels;
+  if (call.from == "pixels") request.from = studies::MeasuredFrom::pixels;
   if (call.choice != "random" && call.choice != "d-optimal")
     refuse("--choice", call.choice, "random d-optimal");
-  if (call.choice == "d-optimal") request.choice = calibration::PoseChoice::d_optimal;
+  if (call.choice == "d-optimal") request.choice = studies::PoseChoice::d_optimal;
   request.stand.method = method_of(call.method);
   request.stand.boards = {from_mm(call.board_offset_mm), 1e-3 * call.board_rotation_mrad, 0};
   request.poses.assign(call.poses.begin(), call.poses.end());
   request.noise.clear();
   for (const std::string& word : call.noise) request.noise.push_back(noise_of(word));
   for (const std::string& word : call.disturbances)
-    request.disturbances.push_back(rehearsal::disturbance_named(word));
+    request.disturbances.push_back(studies::disturbance_named(word));
   request.command = command_line();
   return request;
 }
@@ -93,7 +95,7 @@ int run_tables(const BenchmarkCall& call) {
   if (machine.is_chain())
     throw InputError(fmt::format("--tables prints figures of the hexapod, not of {}", machine.name));
   const auto mechanism = machine.make_mechanism();
-  calibration::StudySetting setting;
+  studies::StudySetting setting;
   setting.nominal = machine.hexapod().geometry;
   setting.mechanism = mechanism.get();
   setting.region = calibration::reference_region(machine.X_BT_home);
@@ -102,22 +104,22 @@ int run_tables(const BenchmarkCall& call) {
     fmt::print("{}\n", text);
     std::fflush(stdout);
   };
-  calibration::study_tables(setting, {}, line);
+  studies::study_tables(setting, {}, line);
   line("");
   // The boards' mean offsets of a draw make most of the error: 400 draws know its RMS to 3 %.
-  rehearsal::camera_study_table(400, call.request.threads, line);
+  studies::camera_study_table(400, call.request.threads, line);
   return kGood;
 }
 
 int run_calibration(const BenchmarkCall& call) {
   if (call.tables) return run_tables(call);
-  const rehearsal::CalibrationBenchmarkRequest request = request_of(call);
+  const studies::CalibrationBenchmarkRequest request = request_of(call);
   const std::string folder = call.folder.empty() ? "out/benchmark-calibration" : call.folder;
   OutputFolder out(folder, "benchmark.json");
-  rehearsal::CalibrationBenchmark benchmark;
+  studies::CalibrationBenchmark benchmark;
   {
     ProgressLine line;
-    benchmark = rehearsal::run_benchmark(
+    benchmark = studies::run_benchmark(
         request, [&](double share, const std::string& what) { line.show(share, what); });
   }
   write_file(out.path() / "benchmark.json", rehearsal::benchmark_json(benchmark));
@@ -127,7 +129,9 @@ int run_calibration(const BenchmarkCall& call) {
   const std::filesystem::path written(folder);
   fmt::print("{}\n{}\n{}\n", rehearsal::benchmark_table(benchmark), (written / "benchmark.json").string(),
              (written / "report.html").string());
-  return kGood;
+  const std::vector<std::string> silent = studies::without_answer(benchmark);
+  for (const std::string& name : silent) fmt::print(stderr, "{}: solved no problem at all\n", name);
+  return silent.empty() ? kGood : kNo;
 }
 
 void add_condition_options(CLI::App& command, BenchmarkCall& call) {

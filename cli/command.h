@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -17,15 +19,22 @@ void add_scenario(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_kinematics(CLI::App& app, Action& action);  ///< axes, poses
-void add_calibrate(CLI::App& app, Action& action);   ///< calibrate, sample-poses
+void add_calibrate(CLI::App& app, Action& action);
+void add_sample_poses(CLI::App& app, Action& action);
 void add_render(CLI::App& app, Action& action);
 void add_workspace(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
+void add_export_mjcf(CLI::App& command, Action& action);
 void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap
 void add_benchmark_calibration(CLI::App& benchmark, Action& action);
 void add_benchmark_gap(CLI::App& benchmark, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_inspection(CLI::App& app, Action& action);  ///< machines, doctor
+
+/// The commands that need the twin; none where the build is without it (cmake --preset controller).
+void add_twin_commands(CLI::App& app, Action& action);
+/// Names of the commands that this build leaves out; empty with the twin.
+std::vector<std::string> left_out_commands();
 
 /// Words of the command line, quoted where a shell needs it: how a user repeats this run.
 void remember_command_line(int argc, char** argv);

@@ -1,19 +1,24 @@
 #include "cli/doctor.h"
 
 #include <exception>
-#include <functional>
 
 #include <fmt/format.h>
 
-#include "core/units.h"
 #include "core/version.h"
 #include "machine/description.h"
-#include "renderer/scene_view.h"
-#include "sim/as_built/as_built.h"
-#include "sim/plant/plant.h"
 
 namespace understudy::cli {
 namespace {
+
+std::string try_models() {
+  const auto names = machine::machine_names();
+  for (const auto& name : names) machine::load_machine(name);
+  return fmt::format("{} machines in {}", names.size(), machine::models_folder().string());
+}
+
+}  // namespace
+
+}  // namespace
 
 HealthCheck attempt(const std::string& name, const std::function<std::string()>& what) {
   try {
@@ -23,45 +28,10 @@ HealthCheck attempt(const std::string& name, const std::function<std::string()>&
   }
 }
 
-std::string try_models() {
-  const auto names = machine::machine_names();
-  for (const auto& name : names) machine::load_machine(name);
-  return fmt::format("{} machines in {}", names.size(), machine::models_folder().string());
-}
-
-std::string try_plant() {
-  const auto machine = machine::load_machine("hexapod");
-  const auto plant = sim::make_mujoco_plant(machine, sim::make_as_built(machine, "nominal", 1));
-  kinematics::StrutLengths lengths{};
-  if (kinematics::inverse(machine.hexapod().geometry, machine.X_BT_home, lengths) !=
-      kinematics::SolveStatus::ok)
-    throw std::runtime_error("home cannot be reached");
-  kinematics::AxisVector home{};
-  for (std::size_t i = 0; i < lengths.size(); ++i)
-    home[i] = lengths[i] - machine.hexapod().geometry.length_offset[i];
-  plant->reset(home);
-  for (int i = 0; i < 100; ++i) plant->step({home, {}});
-  return fmt::format("{}, closure {:.3f} um at rest", plant->engine(), to_um(plant->closure_error()));
-}
-
-std::string try_renderer() {
-  renderer::PictureScene scene;
-  scene.shapes.push_back({{"ball", geometry::Sphere{0.01}}, {1, 0, 0}});
-  scene.eye_W = Vec3(0.1, 0, 0);
-  scene.width = scene.height = 64;
-  const auto picture = renderer::render_picture(scene);
-  const auto* middle = &picture.rgb[static_cast<std::size_t>(3 * (32 * 64 + 32))];
-  if (!(middle[0] > middle[1] + 20)) throw std::runtime_error("a red ball does not look red");
-  return "OSMesa renders off screen";
-}
-
-}  // namespace
-
 std::vector<HealthCheck> self_test() {
-  return {{"understudy", true, kVersion},
-          attempt("models", try_models),
-          attempt("mujoco", try_plant),
-          attempt("renderer", try_renderer)};
+  std::vector<HealthCheck> checks{{"understudy", true, kVersion}, attempt("models", try_models)};
+  for (const HealthCheck& check : twin_self_test()) checks.push_back(check);
+  return checks;
 }
 
 }  // namespace understudy::cli

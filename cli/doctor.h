@@ -1,6 +1,7 @@
 // Does this installation work? Each part is tried, not looked up.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,5 +15,11 @@ struct HealthCheck {
 
 /// Loads the models, steps the plant, renders a frame. Never throws: a failure is an entry.
 std::vector<HealthCheck> self_test();
+
+/// The part of it that needs the twin; says so where the build is without it.
+std::vector<HealthCheck> twin_self_test();
+
+/// What `what` returns, or the message of what it throws.
+HealthCheck attempt(const std::string& name, const std::function<std::string()>& what);
 
 }  // namespace understudy::cli

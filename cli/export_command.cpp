@@ -8,26 +8,15 @@
 #include "core/output_file.h"
 #include "machine/description.h"
 #include "machine/urdf_writer.h"
-#include "sim/as_built/as_built.h"
-#include "sim/plant/plant.h"
 
 namespace understudy::cli {
 namespace {
 
-struct ExportRequest {
-  std::string machine = "hexapod", as_built = "nominal", output;
-  std::uint64_t seed = 1;
+struct UrdfRequest {
+  std::string machine, output;
 };
 
-int export_mjcf(const ExportRequest& r) {
-  const auto machine = machine::load_machine(r.machine);
-  const auto as_built = sim::make_as_built(machine, r.as_built, r.seed);
-  write_file(r.output, sim::write_mjcf(machine, as_built, machine.X_WB * machine.X_BT_home));
-  fmt::print("{}\n", r.output);
-  return kGood;
-}
-
-int export_urdf(const ExportRequest& r) {
+int export_urdf(const UrdfRequest& r) {
   const auto machine = machine::load_machine(r.machine);
   if (!machine.is_chain())
     throw InputError(
@@ -51,14 +40,8 @@ int export_urdf(const ExportRequest& r) {
 void add_export(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("export", "Write a machine's model for other programs");
   command->require_subcommand(1);
-  auto request = std::make_shared<ExportRequest>();
-  auto* mjcf = command->add_subcommand("mjcf", "MuJoCo's XML, assembled at home");
-  mjcf->add_option("--machine", request->machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
-  mjcf->add_option("--as-built", request->as_built, "nominal, sampled, manufactured")->capture_default_str();
-  mjcf->add_option("--seed", request->seed, "of the as-built errors")->capture_default_str();
-  mjcf->add_option("-o,--output", request->output, "file to write")->required();
-  mjcf->callback([=, &action] { action = [=] { return export_mjcf(*request); }; });
+  auto request = std::make_shared<UrdfRequest>();
+  add_export_mjcf(*command, action);
   auto* urdf =
       command->add_subcommand("urdf", "URDF of an open chain: links \"work\" and \"tool\" at its ends");
   urdf->add_option("--machine", request->machine, "name under models/ or a machine.yaml")->required();

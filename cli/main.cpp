@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
 
@@ -29,10 +30,22 @@ void check_first_word(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> known;
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return;
+  const std::vector<std::string> left_out = cli::left_out_commands();
+  if (std::find(left_out.begin(), left_out.end(), argv[1]) != left_out.end())
+    throw InputError(fmt::format("this build is without the twin: {} needs it", argv[1]));
   const std::string nearest = nearest_word(std::string(argv[1]), known);
   throw InputError(
       fmt::format("unknown command '{}'{}", argv[1],
                   nearest.empty() ? ": see understudy --help" : "; did you mean '" + nearest + "'?"));
+}
+
+std::string footer() {
+  const std::string status =
+      "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed.\n";
+  const std::vector<std::string> left_out = cli::left_out_commands();
+  if (left_out.empty())
+    return status + "Start with: understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out";
+  return status + fmt::format("This build is without the twin: it leaves out {}.", fmt::join(left_out, ", "));
 }
 
 int run(int argc, char** argv) {
@@ -40,20 +53,13 @@ int run(int argc, char** argv) {
                "understudy");
   app.set_version_flag("--version", std::string("understudy ") + kVersion);
   app.require_subcommand(1);
-  app.footer(
-      "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed.\n"
-      "Start with: understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out");
+  app.footer(footer());
   cli::Action action;
-  cli::add_rehearse(app, action);
-  cli::add_scenario(app, action);
-  cli::add_sweep(app, action);
+  cli::add_twin_commands(app, action);
   cli::add_plan(app, action);
   cli::add_kinematics(app, action);
   cli::add_calibrate(app, action);
-  cli::add_render(app, action);
-  cli::add_workspace(app, action);
   cli::add_export(app, action);
-  cli::add_benchmark(app, action);
   cli::add_schema(app, action);
   cli::add_inspection(app, action);
   check_first_word(app, argc, argv);

@@ -10,7 +10,7 @@
 #include "cli/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/fixture.h"
+#include "machine/fixture_file.h"
 #include "toolpath/lattice/lattice_fill.h"
 #include "toolpath/lattice/lattice_json.h"
 #include "toolpath/lattice/lattice_planner.h"
@@ -53,7 +53,7 @@ toolpath::Lattice lattice_of(const LatticeRequest& r) {
   const double strut = from_mm(r.strut_mm);
   const auto fill = r.part.starts_with("box:")
                         ? toolpath::fill_box(box_size(r.part), strut)
-                        : toolpath::fill_part(*geometry::read_stl(rehearsal::find_fixture(r.part)), strut);
+                        : toolpath::fill_part(*geometry::read_stl(machine::find_fixture(r.part)), strut);
   if (fill.dropped > 0)
     fmt::print(stderr, "warning: {} nodes within the part have no struts to the table and were left out\n",
                fill.dropped);

@@ -5,7 +5,7 @@
 #include "cli/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/fixture.h"
+#include "machine/fixture_file.h"
 #include "toolpath/planners/planar_slicer.h"
 
 namespace understudy::cli {
@@ -24,8 +24,8 @@ int plan_planar(const PlanarRequest& r) {
   if (!(r.pitch_mm >= 0 && r.pitch_mm <= 100))
     throw InputError(fmt::format("--pitch {:g} is outside 0..100", r.pitch_mm));
   const auto machine = printing_machine(r.options.machine);
-  const auto part = geometry::read_stl(rehearsal::find_fixture(r.part));
-  const auto core = r.core.empty() ? nullptr : geometry::read_stl(rehearsal::find_fixture(r.core));
+  const auto part = geometry::read_stl(machine::find_fixture(r.part));
+  const auto core = r.core.empty() ? nullptr : geometry::read_stl(machine::find_fixture(r.core));
   toolpath::PlanarPlan plan;
   plan.layer_height = from_mm(r.layer_mm);
   plan.bead_width = from_mm(r.options.bead_width_mm);

@@ -5,7 +5,7 @@
 #include "cli/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/fixture.h"
+#include "machine/fixture_file.h"
 #include "toolpath/planners/curve_csv.h"
 #include "toolpath/planners/section_rows.h"
 #include "toolpath/planners/surface_planner.h"
@@ -55,7 +55,7 @@ std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const Surfa
 int plan_surface(const SurfaceRequest& r) {
   check(r);
   const auto machine = printing_machine(r.options.machine);
-  const auto mesh = geometry::read_stl(rehearsal::find_fixture(r.part));
+  const auto mesh = geometry::read_stl(machine::find_fixture(r.part));
   toolpath::SurfacePlan plan;
   plan.gap = machine.gap.aim;
   plan.standoff = machine.gap.standoff;

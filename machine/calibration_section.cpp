@@ -18,8 +18,9 @@ void read_record(YamlMap& map, CalibrationRecord& record) {
   record.measurements = map.text("measurements", "name of the table of measured poses");
   record.measurements_sha256 = map.text("measurements_sha256", "checksum of its bytes");
   record.poses = map.integer("poses", 1, 1000000, "rows of that table");
-  record.tip_sigma =
-      map.quantity("tip_sigma_um", {0, 1e5}, "3D uncertainty of the tip, 1 sigma, RMS over the work space");
+  if (map.has("tip_sigma_um"))
+    record.tip_sigma =
+        map.quantity("tip_sigma_um", {0, 1e5}, "3D uncertainty of the tip, 1 sigma, RMS over the work space");
 }
 
 void check_near(const YamlMap& map, const std::string& key, const std::string& what, double apart) {

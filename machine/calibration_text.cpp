@@ -1,5 +1,6 @@
 // The section `calibration` as text, and the file around it.
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -68,10 +69,11 @@ std::string calibration_section(const MachineDescription& machine) {
   const CalibrationRecord& record = *machine.calibration;
   std::string out = fmt::format(
       "{}\n  # By understudy calibrate: the controller uses this in place of `geometry`.\n"
-      "  estimator: {}\n  measurements: {}\n  measurements_sha256: {}\n  poses: {}\n"
-      "  tip_sigma_um: {:.3f}   # RMS over the work space\n",
-      kKey, record.estimator, quoted(record.measurements), quoted(record.measurements_sha256), record.poses,
-      to_um(record.tip_sigma));
+      "  estimator: {}\n  measurements: {}\n  measurements_sha256: {}\n  poses: {}\n",
+      kKey, quoted(record.estimator), quoted(record.measurements), quoted(record.measurements_sha256),
+      record.poses);
+  if (std::isfinite(record.tip_sigma))
+    out += fmt::format("  tip_sigma_um: {:.3f}   # RMS over the work space\n", to_um(record.tip_sigma));
   return out + (machine.is_chain() ? axes_text(machine.chain().kinematics.chain)
                                    : struts_text(machine.hexapod().geometry));
 }

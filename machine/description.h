@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -150,7 +151,8 @@ struct CalibrationRecord {
   std::string measurements;         ///< name of the file that was measured
   std::string measurements_sha256;  ///< hexadecimal
   int poses = 0;
-  double tip_sigma = 0;  ///< [m], RMS over the work space of the tip's 3D uncertainty
+  /// [m], RMS over the work space of the tip's 3D uncertainty; NaN: not known, of a plug-in's calibration.
+  double tip_sigma = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The gap between tip and surface (Song 2015, 3.3).

@@ -1,18 +1,14 @@
 #include "rehearsal/fixture.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/units.h"
 #include "sim/collision/collision.h"
 
 namespace understudy::rehearsal {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr double kSinks = 0.05e-3;  // [m]: an object that was modelled to stand on the table may round so far
@@ -45,20 +41,6 @@ void check_home(const std::string& path, const std::shared_ptr<const geometry::M
 }
 
 }  // namespace
-
-std::string find_fixture(const std::string& fixture) {
-  if (fs::is_regular_file(fixture)) return fixture;
-  const fs::path parts = machine::models_folder() / "parts";
-  const fs::path named = parts / (fixture + ".stl");
-  if (fs::is_regular_file(named)) return named.string();
-  std::vector<std::string> known;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(parts, ignored))
-    if (entry.path().extension() == ".stl") known.push_back(entry.path().stem().string());
-  std::sort(known.begin(), known.end());
-  throw InputError(
-      fmt::format("no fixture {}: neither a file nor one of {}", fixture, fmt::join(known, ", ")));
-}
 
 std::shared_ptr<const geometry::Mesh> read_fixture(const std::string& path,
                                                    const machine::MachineDescription& machine) {

@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "machine/fixture_file.h"
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings.h"
 #include "rehearsal/fixture.h"
@@ -75,7 +76,8 @@ TwinSetup prepare(const RehearsalRequest& request) {
         machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);
     check_process(setup.program, setup.machine, setup.material);
   }
-  if (!request.fixture.empty()) setup.part = read_fixture(find_fixture(request.fixture), setup.machine);
+  if (!request.fixture.empty())
+    setup.part = read_fixture(machine::find_fixture(request.fixture), setup.machine);
   setup.as_built = sim::make_as_built(setup.machine, request.as_built, request.seed);
   setup.engine = request.engine;
   setup.seed = request.seed;

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/fixture.h"
+#include "machine/fixture_file.h"
 #include "sim/surface/as_printed.h"
 #include "sim/surface/deviation.h"
 #include "sim/surface/roughness.h"
@@ -61,7 +61,7 @@ SurfaceTask prepare_surface(const SurfaceRequest& request) {
   const std::string& file = request.as_printed;
   if (!file.empty() && !file.ends_with(".stl") && !file.ends_with(".ply"))
     throw InputError("--as-printed " + file + ": ends in neither .stl nor .ply");
-  if (!request.intended.empty()) task.intended = geometry::read_stl(find_fixture(request.intended));
+  if (!request.intended.empty()) task.intended = geometry::read_stl(machine::find_fixture(request.intended));
   const auto& v = request.profile_mm;
   if (!v.empty() && (v.size() != 6 || Vec3(v[3] - v[0], v[4] - v[1], v[5] - v[2]).norm() < 1e-3))
     throw InputError("--profile: six numbers that tell two points apart, x,y,z,x,y,z in mm");

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "machine/description.h"
-#include "studies/calibration/study_tables.h"
+#include "studies/calibration/estimator_study_tables.h"
 
 namespace understudy::bench {
 namespace {

@@ -63,6 +63,12 @@ std::vector<std::string> chain_parameter_names(const Chain& chain) {
   return names;
 }
 
+int independent_parameters(const Chain& chain) {
+  int count = 6;
+  for (const ChainAxis& axis : chain.axes) count += axis.angle ? 4 : 2;
+  return count;
+}
+
 Eigen::MatrixXd chain_rows(const ChainParameters& machine, const std::vector<double>& readings) {
   const Chain& chain = machine.chain;
   const std::vector<double> q = positions(machine, readings);

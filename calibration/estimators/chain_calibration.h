@@ -26,26 +26,26 @@ struct ChainParameters {
   std::vector<double> zero;  ///< [m] or [rad], one an axis; empty: all 0
 };
 
-struct ChainCalibration {
-  Status status = Status::not_converged;
-  std::string message;
+struct ChainProblem {
+  ChainParameters nominal;
+  std::vector<ChainSample> samples;
+};
+
+/// Residuals are in S.
+struct ChainCalibration : Estimation {
   ChainParameters parameters;          ///< the nominal ones unless ok or not converged
   std::vector<std::string> estimated;  ///< names of what was estimated: "j2 tilt u", "tool x"
   std::vector<std::string> redundant;  ///< what these poses cannot tell beside the others
   Eigen::MatrixXd covariance;          ///< of `estimated`; [m], [rad]
-  std::vector<Twist> residuals;        ///< of each sample, measured less model, in S
-  std::vector<bool> used;              ///< false: rejected as an outlier
-  std::vector<std::string> warnings;
-  int iterations = 0;
-  double chi_square = 0;  ///< of the used samples
-  int degrees_of_freedom = 0;
-  bool ok() const { return status == Status::ok; }
 };
 
 Pose forward(const ChainParameters& machine, const std::vector<double>& readings);
 
 /// Names of all parameters, in the order in which a redundant one gives way to those before it.
 std::vector<std::string> chain_parameter_names(const kinematics::Chain& chain);
+
+/// How many of them poses can tell: 4 of an axis that turns, 2 of one that slides, 6 of tool and frame.
+int independent_parameters(const kinematics::Chain& chain);
 
 /// d (tip, rotation) / d parameters, in S.
 Eigen::MatrixXd chain_rows(const ChainParameters& machine, const std::vector<double>& readings);
@@ -55,7 +55,7 @@ ChainParameters moved(const ChainParameters& from, const Eigen::VectorXd& by);
 
 /// Gauss-Newton on the likelihood of the measured poses. Never throws.
 ChainCalibration calibrate_chain(const ChainParameters& nominal, const std::vector<ChainSample>& samples,
-                                 int max_iterations = 30);
+                                 int max_iterations = Options{}.max_iterations);
 
 /// The same over the poses that agree, three quarters of them at least (trimmed_search.h); the others are
 /// named in a warning. Refuses poses too few to leave one out. Never throws.

@@ -14,18 +14,17 @@ namespace {
 constexpr double kRedundant = 1e-6;
 constexpr double kStepDone = 1e-14;  // of step^T H step: 1e-7 standard deviations
 
-std::string input_fault(const ChainParameters& nominal, const std::vector<ChainSample>& samples) {
+Fault input_fault(const ChainParameters& nominal, const std::vector<ChainSample>& samples) {
   for (std::size_t j = 0; j < samples.size(); ++j) {
     const ChainSample& s = samples[j];
-    const std::string pose = "pose " + std::to_string(j + 1) + ": ";
     if (s.axes.size() != nominal.chain.axes.size())
-      return pose + std::to_string(s.axes.size()) + " axis readings for " +
-             std::to_string(nominal.chain.axes.size()) + " axes";
+      return fault_of_pose(j, std::to_string(s.axes.size()) + " axis readings for " +
+                                  std::to_string(nominal.chain.axes.size()) + " axes");
     if (!std::all_of(s.axes.begin(), s.axes.end(), [](double q) { return std::isfinite(q); }))
-      return pose + "an axis reading is not finite";
-    if (!kinematics::is_rigid(s.X_ST)) return pose + "the measured pose is not finite and rigid";
+      return fault_of_pose(j, "an axis reading is not finite");
+    if (!kinematics::is_rigid(s.X_ST)) return fault_of_pose(j, "the measured pose is not finite and rigid");
     if (!s.covariance.allFinite() || s.covariance.llt().info() != Eigen::Success)
-      return pose + "the covariance is not positive definite";
+      return fault_of_pose(j, "the covariance is not positive definite");
   }
   return {};
 }
@@ -52,7 +51,9 @@ ChainLikelihood::ChainLikelihood(const ChainParameters& nominal, const std::vect
     : nominal_(nominal), samples_(samples), names_(chain_parameter_names(nominal.chain)) {
   refusal_.parameters = nominal;
   refusal_.used.assign(samples.size(), true);
-  refusal_.message = input_fault(nominal, samples);
+  const Fault fault = input_fault(nominal, samples);
+  refusal_.message = fault.message;
+  refusal_.pose = fault.pose;
   if (refusal_.message.empty())
     check();
   else
@@ -70,8 +71,7 @@ void ChainLikelihood::check() {
          ? refusal_.estimated
          : refusal_.redundant)
         .push_back(names_[k]);
-  int possible = 6;
-  for (const kinematics::ChainAxis& axis : nominal_.chain.axes) possible += axis.angle ? 4 : 2;
+  const int possible = independent_parameters(nominal_.chain);
   if (static_cast<int>(unknowns_.size()) >= possible) return;
   const bool few = 6 * static_cast<int>(samples_.size()) < possible;
   refusal_.status = few ? Status::too_few_poses : Status::rank_deficient;

@@ -48,7 +48,7 @@ class IkResidual final : public Estimator {
  public:
   Calibration calibrate(const Problem& problem, const Options& options) const override {
     const Identifiability found = check_identifiability(problem, {});
-    if (found.status != Status::ok) return refused(problem, found.status, found.message);
+    if (found.status != Status::ok) return refused(problem, found);
     const std::vector<bool> all(problem.samples.size(), true);
     StrutResiduals objective(problem);
     Calibration result =

@@ -9,6 +9,9 @@ class MaximumLikelihood final : public Estimator {
   Calibration calibrate(const Problem& problem, const Options& options) const override {
     return maximum_likelihood(problem, unknowns(), options);
   }
+  ChainCalibration calibrate_chain(const ChainProblem& problem, const Options& options) const override {
+    return calibration::calibrate_chain(problem.nominal, problem.samples, options.max_iterations);
+  }
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ bool PoseErrorObjective::term(std::size_t j, const HexapodParameters& machine, P
 
 Calibration maximum_likelihood(const Problem& problem, const Unknowns& unknowns, const Options& options) {
   const Identifiability found = check_identifiability(problem, unknowns);
-  if (found.status != Status::ok) return refused(problem, found.status, found.message);
+  if (found.status != Status::ok) return refused(problem, found);
   const std::vector<bool> all(problem.samples.size(), true);
   // One step at the measured poses lands within micrometres, without forward kinematics from afar.
   WhitenedResiduals at_measured(problem);

@@ -39,7 +39,7 @@ class Robust final : public Estimator {
  public:
   Calibration calibrate(const Problem& problem, const Options& options) const override {
     const Identifiability found = check_identifiability(problem, {});
-    if (found.status != Status::ok) return refused(problem, found.status, found.message);
+    if (found.status != Status::ok) return refused(problem, found);
     HexapodPoseFit model(problem);
     const std::vector<bool> used = agreeing_poses(
         model, {problem.samples.size(), kGeometryParameters, options.max_iterations, options.seed});
@@ -53,6 +53,9 @@ class Robust final : public Estimator {
     if (const std::string warning = rejection_warning(used); !warning.empty())
       result.warnings.push_back(warning);
     return result;
+  }
+  ChainCalibration calibrate_chain(const ChainProblem& problem, const Options& options) const override {
+    return calibrate_chain_robust(problem.nominal, problem.samples, options);
   }
 };
 

@@ -1,21 +1,19 @@
 #include "calibration/machine/calibrate_chain.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "calibration/absorb_zeros.h"
 #include "calibration/calibrated.h"
-#include "calibration/machine/calibrate_tip.h"
+#include "calibration/machine/estimation_report.h"
+#include "calibration/machine/tip_map.h"
 #include "core/error.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::calibration {
 namespace {
-
-using calibration::ChainCalibration;
-using calibration::ChainParameters;
 
 /// How far every listed parameter of `found` is from `drawn`, in the order of chain_parameter_names().
 std::vector<double> changes(const ChainParameters& drawn, const ChainParameters& found) {
@@ -46,7 +44,7 @@ bool is_angle(const std::string& name, const kinematics::Chain& chain) {
 }
 
 std::vector<ParameterLine> parameter_lines(const ChainParameters& drawn, const ChainCalibration& found) {
-  const auto names = calibration::chain_parameter_names(drawn.chain);
+  const auto names = chain_parameter_names(drawn.chain);
   const auto values = changes(drawn, found.parameters);
   std::vector<ParameterLine> lines;
   for (std::size_t k = 0; k < found.estimated.size(); ++k) {
@@ -54,21 +52,9 @@ std::vector<ParameterLine> parameter_lines(const ChainParameters& drawn, const C
     const bool angle = is_angle(name, drawn.chain);
     const double unit = angle ? kDegree : kMillimetre;
     const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    const auto row = static_cast<Eigen::Index>(k);
-    lines.push_back(
-        {name, angle ? "deg" : "mm", 0, values[at] / unit, std::sqrt(found.covariance(row, row)) / unit});
+    lines.push_back({name, angle ? "deg" : "mm", 0, values[at] / unit, sigma_of(found.covariance, k) / unit});
   }
   return lines;
-}
-
-void check_rank(const Measurements& measurements, const ChainCalibration& found) {
-  if (found.ok()) return;
-  std::size_t number = 0;
-  int line = 0;
-  if (std::sscanf(found.message.c_str(), "pose %zu:", &number) == 1 && number >= 1 &&
-      number <= measurements.poses.size())
-    line = measurements.poses[number - 1].line;
-  throw InputError({measurements.file, line, 0}, found.message);
 }
 
 /// An axis that stood still, named: the rank alone does not say which.
@@ -85,53 +71,48 @@ void check_axes_moved(const Measurements& measurements, const machine::MachineDe
   }
 }
 
+TipCovariance tip_covariance(const MachineCalibration& result, const ChainCalibration& found,
+                             const Measurements& measurements) {
+  if (found.covariance.size() == 0) return {};
+  const TipCovariance tip = chain_tip(result.machine, found);
+  if (!measurements.frame) return tip;
+  return in_frame(tip, *measurements.frame, middle_of_tips(measurements), result.machine.X_WB);
+}
+
+void check_invertible(const machine::MachineDescription& nominal) {
+  if (nominal.mechanism == "arm" || nominal.mechanism == "chain") return;
+  throw InputError(
+      fmt::format("a calibrated '{}' would have no inverse kinematics: only hexapod, arm and "
+                  "chain can be calibrated",
+                  nominal.mechanism));
+}
+
 }  // namespace
 
 void calibrate_chain_machine(const Measurements& measurements, const machine::MachineDescription& nominal,
-                             CalibrateResult& result) {
-  const bool robust = result.estimator == "robust";
-  if (!robust && result.estimator != "maximum_likelihood")
-    throw InputError(fmt::format(
-        "estimator {} is for hexapods; an open chain has maximum_likelihood and robust", result.estimator));
-  if (nominal.mechanism != "arm" && nominal.mechanism != "chain")
-    throw InputError(
-        fmt::format("a calibrated '{}' would have no inverse kinematics: only hexapod, arm and "
-                    "chain can be calibrated",
-                    nominal.mechanism));
+                             const Estimator& estimator, MachineCalibration& result) {
+  check_invertible(nominal);
   check_axes_moved(measurements, nominal);
-  const ChainParameters drawn{nominal.chain().kinematics.chain, {}};
-  const auto samples = chain_samples(measurements, nominal);
-  const ChainCalibration found = robust ? calibration::calibrate_chain_robust(drawn, samples)
-                                        : calibration::calibrate_chain(drawn, samples);
-  check_rank(measurements, found);
+  const ChainProblem problem{{nominal.chain().kinematics.chain, {}}, chain_samples(measurements, nominal)};
+  const ChainCalibration found = estimator.calibrate_chain(problem);
+  check_found(found, measurements, result.estimator);
   kinematics::ChainDescription& known = result.machine.chain().kinematics;
   if (known.design.axes.empty()) known.design = known.chain;
-  known.chain = zeros_absorbed(found.parameters);
+  known.chain = absorb_zeros(found.parameters);
   result.machine.X_BT_home = kinematics::forward(known.chain, known.home);
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    PoseResidual r;
-    r.line = measurements.poses[j].line;
-    r.used = found.used[j];
-    r.before = calibration::pose_error(samples[j].X_ST, calibration::forward(drawn, samples[j].axes));
-    r.after = found.residuals[j];
-    r.whitened = samples[j].covariance.llt().matrixL().solve(r.after);
+  for (std::size_t j = 0; j < problem.samples.size(); ++j) {
+    const ChainSample& sample = problem.samples[j];
+    PoseResidual r = pose_residual(found, sample.covariance, j, measurements.poses[j].line);
+    r.before = pose_error(sample.X_ST, forward(problem.nominal, sample.axes));
     result.poses.push_back(r);
   }
-  result.parameters = parameter_lines(drawn, found);
+  result.parameters = parameter_lines(problem.nominal, found);
   result.redundant = found.redundant;
-  const Eigen::VectorXd scale = found.covariance.diagonal().cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd correlation = scale.asDiagonal() * found.covariance * scale.asDiagonal();
-  correlation.diagonal().setZero();
-  result.correlation_max = correlation.cwiseAbs().maxCoeff();
-  result.chi_square = found.chi_square;
-  result.degrees_of_freedom = found.degrees_of_freedom;
-  result.iterations = found.iterations;
-  result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+  report_estimation(found, found.covariance, result);
   const std::string misfit =
-      calibration::misfit_warning(found.chi_square, found.degrees_of_freedom, "outliers, play, bending");
+      misfit_warning(found.chi_square, found.degrees_of_freedom, "outliers, play, bending");
   if (!misfit.empty()) result.warnings.push_back(misfit);
-  result.tip = tip_map(nominal, result.machine,
-                       in_frame(chain_tip(result.machine, found), measurements, nominal.X_WB));
+  result.tip = tip_map(nominal, result.machine, tip_covariance(result, found, measurements));
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::calibration

@@ -1,11 +1,13 @@
 #pragma once
 
-#include "calibration/machine/calibrate.h"
+#include "calibration/estimators/estimator.h"
+#include "calibration/machine/machine_calibration.h"
+#include "calibration/machine/measurement_table.h"
 
-namespace understudy::rehearsal {
+namespace understudy::calibration {
 
-/// The open chain's half of calibrate(): axes, tool and measuring frame by maximum_likelihood or robust.
+/// The open chain's half of calibrate_machine(): axes, tool and measuring frame.
 void calibrate_chain_machine(const Measurements& measurements, const machine::MachineDescription& nominal,
-                             CalibrateResult& result);
+                             const Estimator& estimator, MachineCalibration& result);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::calibration

@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-namespace understudy::rehearsal {
+namespace understudy::calibration {
 namespace {
 
 constexpr double kLever = 30e-3;  // [m], of the targets: what a turn of them is worth beside a shift
@@ -73,4 +73,4 @@ MeasuringFrame measuring_frame(std::vector<SharedError>& poses) {
           std::sqrt(squares.tail<6>().mean())};
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::calibration

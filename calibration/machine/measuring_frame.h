@@ -6,7 +6,7 @@
 
 #include "core/frames.h"
 
-namespace understudy::rehearsal {
+namespace understudy::calibration {
 
 /// 1 sigma of the frame in which poses were measured, about the middle of the measured tips.
 struct MeasuringFrame {
@@ -32,4 +32,4 @@ struct SharedError {
 /// the devices. All poses must tell of equally many.
 MeasuringFrame measuring_frame(std::vector<SharedError>& poses);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::calibration

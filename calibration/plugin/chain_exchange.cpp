@@ -1,4 +1,4 @@
-#include "calibration/plugin/chain_exchange.h"
+#include "calibration/plugin/exchange.h"
 
 #include <cmath>
 
@@ -7,11 +7,9 @@
 #include "calibration/plugin/exchange_json.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::calibration {
 namespace {
 
-using calibration::ChainParameters;
-using calibration::ChainSample;
 using exchange::Json;
 using exchange::Wrong;
 
@@ -91,7 +89,6 @@ void read_pose(const Json& answer, const std::string& key, Pose& X) {
 }
 
 void read_parameters(const Json& answer, ChainParameters& machine) {
-  exchange::check_schema(answer, "understudy.chain-calibration-answer/1");
   const Json& axes = exchange::list(answer, "axes", machine.chain.axes.size());
   machine.zero.resize(axes.size(), 0.0);
   for (std::size_t i = 0; i < axes.size(); ++i)
@@ -102,9 +99,9 @@ void read_parameters(const Json& answer, ChainParameters& machine) {
 
 }  // namespace
 
-std::string chain_problem_json(const ChainParameters& nominal, const std::vector<ChainSample>& samples) {
-  Json value;
-  value["schema"] = "understudy.chain-calibration-problem/1";
+std::string problem_json(const ChainProblem& problem) {
+  const ChainParameters& nominal = problem.nominal;
+  Json value = exchange::problem_value("chain");
   Json& machine = value["nominal"];
   machine["axes"] = Json::array();
   for (std::size_t i = 0; i < nominal.chain.axes.size(); ++i)
@@ -114,22 +111,13 @@ std::string chain_problem_json(const ChainParameters& nominal, const std::vector
   machine["tool"] = pose_value(nominal.chain.X_OT_zero);
   machine["work"] = pose_value(nominal.chain.X_OS_zero);
   value["samples"] = Json::array();
-  for (const ChainSample& sample : samples) value["samples"].push_back(sample_value(nominal.chain, sample));
+  for (const ChainSample& sample : problem.samples)
+    value["samples"].push_back(sample_value(nominal.chain, sample));
   return value.dump() + "\n";
 }
 
-ChainPluginAnswer read_chain_answer(const std::string& text, const ChainParameters& nominal) {
-  return exchange::read_answer<ChainPluginAnswer>(text, nominal, read_parameters);
+std::string read_answer(const std::string& text, ChainParameters& parameters) {
+  return exchange::read_parameters(text, parameters, read_parameters);
 }
 
-ChainPluginAnswer ask_chain_plugin(const std::string& command, const ChainParameters& nominal,
-                                   const std::vector<ChainSample>& samples, const PluginLimits& limits,
-                                   double& seconds) {
-  std::string output;
-  const std::string failure =
-      exchange::ask(command, chain_problem_json(nominal, samples), limits, seconds, output);
-  if (failure.empty()) return read_chain_answer(output, nominal);
-  return {false, failure, nominal};
-}
-
-}  // namespace understudy::rehearsal
+}  // namespace understudy::calibration

@@ -3,26 +3,18 @@
 
 #include <string>
 
-#include "calibration/plugin/plugin.h"
-#include "calibration/problem.h"
+#include "calibration/estimators/estimator.h"
 
-namespace understudy::rehearsal {
+namespace understudy::calibration {
 
-/// One line of JSON, schema "understudy.calibration-problem/1".
-std::string problem_json(const calibration::Problem& problem);
+/// One line of JSON, schema "understudy.calibration-problem/2".
+std::string problem_json(const Problem& problem);
+std::string problem_json(const ChainProblem& problem);
 
-struct PluginAnswer {
-  bool ok = false;
-  std::string failure;  ///< one line; empty when ok
-  calibration::HexapodParameters parameters;
-};
+/// Reads schema "understudy.calibration-answer/2" into `parameters`: what it does not tell stays as it is.
+/// Never throws: returns one line that says what is wrong, and then leaves `parameters` alone; empty when all
+/// is read.
+std::string read_answer(const std::string& text, HexapodParameters& parameters);
+std::string read_answer(const std::string& text, ChainParameters& parameters);
 
-/// Reads schema "understudy.calibration-answer/1": what it does not tell stays as in `nominal`. Never throws:
-/// nonsense is a failure that says what is wrong.
-PluginAnswer read_answer(const std::string& text, const calibration::HexapodParameters& nominal);
-
-/// The whole exchange. `seconds`: the plug-in's wall time.
-PluginAnswer ask_plugin(const std::string& command, const calibration::Problem& problem,
-                        const PluginLimits& limits, double& seconds);
-
-}  // namespace understudy::rehearsal
+}  // namespace understudy::calibration

@@ -4,12 +4,25 @@
 
 #include <fmt/format.h>
 
+#include "calibration/plugin/child_process.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal::exchange {
+namespace understudy::calibration::exchange {
 namespace {
 
 constexpr double kNonsense = 10e3;  // [mm]: no joint of a machine is so far out
+constexpr const char* kAnswer = "understudy.calibration-answer/2";
+
+/// An object with that schema and without "failure".
+void check_schema(const Json& answer) {
+  if (!answer.is_object()) throw Wrong("is not an object");
+  const Json told = answer.contains("schema") ? answer.at("schema") : Json();
+  if (told != kAnswer)
+    throw Wrong(fmt::format("its schema is {}, not \"{}\"", brief(told.dump(), 60), kAnswer));
+  if (!answer.contains("failure")) return;
+  const Json& why = answer.at("failure");
+  throw Wrong("says: " + brief(why.is_string() ? why.get<std::string>() : why.dump()));
+}
 
 }  // namespace
 
@@ -59,19 +72,18 @@ Vec3 point(const Json& value, const std::string& where) {
   return p;
 }
 
-void check_schema(const Json& answer, const std::string& schema) {
-  if (!answer.is_object()) throw Wrong("is not an object");
-  const Json told = answer.contains("schema") ? answer.at("schema") : Json();
-  if (told != schema)
-    throw Wrong(fmt::format("its schema is {}, not \"{}\"", brief(told.dump(), 60), schema));
-  if (!answer.contains("failure")) return;
-  const Json& why = answer.at("failure");
-  throw Wrong("says: " + brief(why.is_string() ? why.get<std::string>() : why.dump()));
+Json problem_value(const std::string& machine) {
+  Json value;
+  value["schema"] = "understudy.calibration-problem/2";
+  value["machine"] = machine;
+  return value;
 }
 
 std::string read_json(const std::string& text, const std::function<void(const Json&)>& read) {
   try {
-    read(Json::parse(text));
+    const Json answer = Json::parse(text);
+    check_schema(answer);
+    read(answer);
     return {};
   } catch (const Wrong& wrong) {
     return std::string("answer ") + wrong.what();
@@ -80,17 +92,4 @@ std::string read_json(const std::string& text, const std::function<void(const Js
   }
 }
 
-std::string ask(const std::string& command, const std::string& problem, const PluginLimits& limits,
-                double& seconds, std::string& output) {
-  const PluginRun run = run_plugin(command, problem, limits);
-  seconds = run.seconds;
-  output = run.output;
-  if (!run.ok) return run.failure;
-  if (run.output.find_first_not_of(" \t\r\n") != std::string::npos) return {};
-  std::string failure = "wrote nothing to standard output";
-  if (!brief(run.error_output).empty())
-    failure += fmt::format("; standard error: \"{}\"", brief(run.error_output));
-  return failure;
-}
-
-}  // namespace understudy::rehearsal::exchange
+}  // namespace understudy::calibration::exchange

@@ -1,4 +1,4 @@
-// Private to the exchange with plug-ins: what both of its schemas are written and read with.
+// Private to the exchange with plug-ins: what both kinds of machine are written and read with.
 #pragma once
 
 #include <functional>
@@ -7,10 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calibration/plugin/plugin.h"
 #include "core/frames.h"
 
-namespace understudy::rehearsal::exchange {
+namespace understudy::calibration::exchange {
 
 using Json = nlohmann::ordered_json;
 
@@ -29,24 +28,20 @@ double number(const Json& value, const std::string& where, double limit, const c
 double length_mm(const Json& value, const std::string& where);  ///< [m]
 const Json& list(const Json& parent, const std::string& key, std::size_t count);
 Vec3 point(const Json& value, const std::string& where);  ///< [m]
-/// Of an object with that schema and without "failure".
-void check_schema(const Json& answer, const std::string& schema);
+/// A problem for this kind of machine ("hexapod", "chain"), with its schema and nothing else yet.
+Json problem_value(const std::string& machine);
 
-/// Reads `text` by `read`; the failure in one line, or empty.
+/// Checks the answer's schema and that it is no failure, then reads it by `read`. One line that says what is
+/// wrong, or empty.
 std::string read_json(const std::string& text, const std::function<void(const Json&)>& read);
 
-/// An answer (ok, failure, parameters) whose parameters are the nominal ones where it fails.
-template <typename Answer, typename Parameters, typename Read>
-Answer read_answer(const std::string& text, const Parameters& nominal, const Read& read) {
-  Answer answer{false, {}, nominal};
-  answer.failure = read_json(text, [&](const Json& json) { read(json, answer.parameters); });
-  answer.ok = answer.failure.empty();
-  if (!answer.ok) answer.parameters = nominal;
-  return answer;
+/// The same into a copy of `parameters`, which takes its place only when all is read.
+template <typename Parameters, typename Read>
+std::string read_parameters(const std::string& text, Parameters& parameters, const Read& read) {
+  Parameters told = parameters;
+  const std::string wrong = read_json(text, [&](const Json& json) { read(json, told); });
+  if (wrong.empty()) parameters = told;
+  return wrong;
 }
 
-/// Runs the plug-in: its output, or a failure in one line.
-std::string ask(const std::string& command, const std::string& problem, const PluginLimits& limits,
-                double& seconds, std::string& output);
-
-}  // namespace understudy::rehearsal::exchange
+}  // namespace understudy::calibration::exchange

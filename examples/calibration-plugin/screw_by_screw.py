@@ -164,7 +164,7 @@ def calibrate(problem):
         machine = machine.moved(x)
         if max(abs(v) for v in x) < STEP_DONE_MM:
             break
-    return {"schema": "understudy.chain-calibration-answer/1",
+    return {"schema": "understudy.calibration-answer/2",
             "axes": [{k: axis[k] for k in ("direction", "point_mm", "zero_mm_rad")} for axis in machine.axes],
             "tool": {"position_mm": machine.tool[1], "quaternion_wxyz": quaternion_of(machine.tool[0])},
             "work": {"position_mm": machine.work[1], "quaternion_wxyz": quaternion_of(machine.work[0])}}
@@ -173,11 +173,11 @@ def calibrate(problem):
 def main():
     problem = json.load(sys.stdin)
     try:
-        if problem["schema"] != "understudy.chain-calibration-problem/1":
+        if problem["machine"] != "chain":
             raise ValueError("this program calibrates open chains only")
         answer = calibrate(problem)
     except ValueError as why:
-        answer = {"schema": "understudy.chain-calibration-answer/1", "failure": str(why)}
+        answer = {"schema": "understudy.calibration-answer/2", "failure": str(why)}
     json.dump(answer, sys.stdout)
 
 

@@ -72,7 +72,7 @@ def calibrate(problem):
     poses = [(s["position_mm"], rotation(s["quaternion_wxyz"])) for s in samples]
     if len(poses) < 7:
         raise ValueError("fewer than 7 poses")
-    answer = {"schema": "understudy.calibration-answer/1",
+    answer = {"schema": "understudy.calibration-answer/2",
               "base_joints_mm": [], "platform_joints_mm": [], "length_offsets_mm": []}
     for i in range(6):
         start = (nominal["base_joints_mm"][i] + nominal["platform_joints_mm"][i]
@@ -89,7 +89,7 @@ def main():
     try:
         answer = calibrate(json.load(sys.stdin))
     except ValueError as why:
-        answer = {"schema": "understudy.calibration-answer/1", "failure": str(why)}
+        answer = {"schema": "understudy.calibration-answer/2", "failure": str(why)}
     json.dump(answer, sys.stdout)
 
 

@@ -1,24 +1,22 @@
-// report.html of the calibration benchmark: ranking, charts and every figure in one file.
+#include "report/page/calibration_benchmark_page.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/units.h"
 #include "core/version.h"
-#include "report/page/html_text.h"
+#include "report/chart/svg_chart.h"
+#include "report/markup.h"
 #include "report/page/page_parts.h"
-#include "studies/calibration/calibration_benchmark.h"
 
-namespace understudy::rehearsal {
+namespace understudy::report {
 namespace {
 
-// Okabe and Ito 2008: told apart by colour-blind eyes, too.
-constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
-constexpr double kWidth = 520, kHeight = 300, kLeft = 64, kRight = 12, kTop = 12, kBottom = 40;
+using namespace studies;
 
-const char* colour(std::size_t entrant) { return kColours[entrant % kColours.size()]; }
+const char* colour(std::size_t entrant) { return series_colour(entrant); }
 
 std::string um(double metres) { return std::isfinite(metres) ? fmt::format("{:.1f}", to_um(metres)) : "–"; }
 
@@ -61,15 +59,6 @@ std::vector<Family> families(const CalibrationBenchmark& benchmark) {
   return all;
 }
 
-/// Both axes logarithmic.
-struct Scale {
-  double low = 1, high = 2, from = 0, to = 1;
-  double at(double value) const {
-    return from + (to - from) * (std::log(std::clamp(value, low, high)) - std::log(low)) /
-                      (std::log(high) - std::log(low));
-  }
-};
-
 Scale error_scale(const CalibrationBenchmark& benchmark) {
   double low = 1e300, high = 0;
   for (const ConditionScore& c : benchmark.conditions) {
@@ -82,37 +71,25 @@ Scale error_scale(const CalibrationBenchmark& benchmark) {
     }
   }
   low = std::pow(10, std::floor(std::log10(std::min(low, high))));
-  return {low, std::max(10 * low, 1.1 * high), kHeight - kBottom, kTop};
+  return Scale::logarithmic(low, std::max(10 * low, 1.1 * high));
 }
 
-std::string line(const std::vector<std::pair<double, double>>& points, const std::string& style) {
-  std::string path;
-  for (const auto& [x, y] : points) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x, y);
-  return path.empty() ? "" : fmt::format("<path d=\"{}\" fill=\"none\" {}/>\n", path, style);
-}
-
-std::string grid(const Family& family, const Scale& x, const Scale& y) {
-  std::string svg;
-  for (double decade = y.low; decade <= y.high; decade *= 10)
-    for (const double digit : {1.0, 2.0, 5.0}) {
-      const double value = decade * digit, height = y.at(value);
-      if (value > y.high) break;
-      svg += fmt::format(
-          "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#d9dee2\"/>"
-          "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:g}</text>\n",
-          kLeft, kWidth - kRight, height, height, kLeft - 6, height + 4, value);
-    }
-  for (const ConditionScore* c : family)
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                       x.at(static_cast<double>(c->condition.poses)), kHeight - kBottom + 16,
-                       c->condition.poses);
-  svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">poses</text>", (kLeft + kWidth) / 2,
-                     kHeight - 6);
-  svg += fmt::format(
-      "<text x=\"14\" y=\"{0}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {0})\">"
-      "tip error, median [µm]</text>\n",
-      kHeight / 2 - 10);
-  return svg;
+/// Medians of one entrant, each with its figures.
+void draw_entrant(const CalibrationBenchmark& benchmark, const Family& family, std::size_t e,
+                  SvgChart& plot) {
+  // Entrants that agree would hide each other.
+  const double aside =
+      4 * (static_cast<double>(e) - 0.5 * static_cast<double>(benchmark.entrants.size() - 1));
+  std::vector<ChartPoint> points;
+  for (const ConditionScore* c : family) {
+    const EntrantScore& s = c->scores[e];
+    if (!std::isfinite(s.median)) continue;
+    points.push_back({static_cast<double>(c->condition.poses), to_um(s.median), aside});
+    plot.dot(points.back(), colour(e),
+             fmt::format("{}, {} poses: {} µm, p95 {} µm", benchmark.entrants[e].name, c->condition.poses,
+                         um(s.median), um(s.p95)));
+  }
+  plot.line(points, fmt::format("stroke=\"{}\" stroke-width=\"1.5\" opacity=\"0.7\"", colour(e)));
 }
 
 std::string chart(const CalibrationBenchmark& benchmark, const Family& family, const Scale& y) {
@@ -121,43 +98,25 @@ std::string chart(const CalibrationBenchmark& benchmark, const Family& family, c
     fewest = std::min(fewest, static_cast<double>(c->condition.poses));
     most = std::max(most, static_cast<double>(c->condition.poses));
   }
-  const Scale x{0.85 * fewest, 1.15 * most, kLeft, kWidth - kRight};
-  std::string svg =
-      fmt::format("<svg viewBox=\"0 0 {} {}\" font-size=\"12\" font-family=\"inherit\" role=\"img\">\n",
-                  kWidth, kHeight) +
-      grid(family, x, y);
-  std::vector<std::pair<double, double>> bound, before;
+  SvgChart plot({.width = 520, .left = 64, .top = 12}, Scale::logarithmic(0.85 * fewest, 1.15 * most), y);
+  plot.y_axis("tip error, median [µm]");
+  plot.x_name("poses");
+  std::vector<ChartPoint> bound, before;
   for (const ConditionScore* c : family) {
-    const double at = x.at(static_cast<double>(c->condition.poses));
-    if (c->bound > 0) bound.emplace_back(at, y.at(to_um(c->bound)));
-    before.emplace_back(at, y.at(to_um(c->uncalibrated)));
+    const auto at = static_cast<double>(c->condition.poses);
+    plot.x_tick(at, fmt::format("{}", c->condition.poses));
+    if (c->bound > 0) bound.push_back({at, to_um(c->bound)});
+    before.push_back({at, to_um(c->uncalibrated)});
   }
-  svg += line(bound, "stroke=\"#5a6570\" stroke-dasharray=\"5 4\"");
-  svg += line(before, "stroke=\"#5a6570\" stroke-dasharray=\"1 4\" stroke-width=\"2\"");
-  for (std::size_t e = 0; e < benchmark.entrants.size(); ++e) {
-    std::vector<std::pair<double, double>> points;
-    // Entrants that agree would hide each other.
-    const double aside =
-        4 * (static_cast<double>(e) - 0.5 * static_cast<double>(benchmark.entrants.size() - 1));
-    for (const ConditionScore* c : family) {
-      const EntrantScore& s = c->scores[e];
-      if (!std::isfinite(s.median)) continue;
-      const double at = x.at(static_cast<double>(c->condition.poses)) + aside, height = y.at(to_um(s.median));
-      points.emplace_back(at, height);
-      svg += fmt::format(
-          "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"><title>{}, {} poses: {} µm, "
-          "p95 {} µm</title></circle>\n",
-          at, height, colour(e), html_text(benchmark.entrants[e].name), c->condition.poses, um(s.median),
-          um(s.p95));
-    }
-    svg += line(points, fmt::format("stroke=\"{}\" stroke-width=\"1.5\" opacity=\"0.7\"", colour(e)));
-  }
+  plot.line(bound, "stroke=\"#5a6570\" stroke-dasharray=\"5 4\"");
+  plot.line(before, "stroke=\"#5a6570\" stroke-dasharray=\"1 4\" stroke-width=\"2\"");
+  for (std::size_t e = 0; e < benchmark.entrants.size(); ++e) draw_entrant(benchmark, family, e, plot);
   const Condition& c = family.front()->condition;
   const bool pixels = benchmark.request.from == MeasuredFrom::pixels;
   std::string caption = described(c.disturbance, pixels);
   if (!pixels)
     caption += fmt::format(", {:g} µm and {:g} mrad", to_um(c.noise.position), 1e3 * c.noise.rotation);
-  return fmt::format("<figure>{}</svg><figcaption>{}</figcaption></figure>\n", svg, caption);
+  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", plot.finish(), caption);
 }
 
 std::string ranking(const CalibrationBenchmark& benchmark) {
@@ -237,4 +196,4 @@ std::string benchmark_page(const CalibrationBenchmark& benchmark) {
       html_text(benchmark.request.command), benchmark.machine_sha256);
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::report

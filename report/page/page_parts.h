@@ -19,8 +19,3 @@ extern const std::string_view kDygraphStyle;
 extern const std::string_view kDygraphLicence;
 
 }  // namespace understudy::report
-
-// Until the calibration pages are of this namespace.
-namespace understudy::rehearsal {
-using report::kPageStyle;
-}

@@ -9,25 +9,27 @@
 
 #include <fmt/format.h>
 
+#include "calibration/plugin/plugin_estimator.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 namespace {
 
 using Progress = std::function<void(double, const std::string&)>;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Method> entrants_of(const CalibrationBenchmarkRequest& request, bool chain) {
-  std::vector<Method> entrants;
+  const auto kind = chain ? calibration::MachineKind::chain : calibration::MachineKind::hexapod;
   std::vector<std::string> names = request.estimators;
-  if (names.empty() && chain) names = {"chain", "robust"};
-  if (names.empty())
-    for (const auto& entry : calibration::estimators()) names.push_back(entry.name);
-  for (const std::string& name : names) entrants.push_back({name, false});
-  for (const std::string& command : request.plugins) entrants.push_back({command, true});
+  if (names.empty()) names = calibration::estimator_names(kind);
+  std::vector<Method> entrants;
+  for (const std::string& name : names)
+    entrants.push_back({name, false, calibration::make_estimator(name, kind)});
+  for (const std::string& command : request.plugins)
+    entrants.push_back({command, true, calibration::make_plugin_estimator(command, request.plugin_limits)});
   for (std::size_t i = 0; i < entrants.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (entrants[i].name == entrants[j].name)
@@ -146,7 +148,6 @@ CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, c
   TrialSetting setting;
   setting.machine = &machine;
   setting.entrants = benchmark.entrants;
-  setting.plugin_limits = request.plugin_limits;
   setting.choice = request.choice;
   setting.seed = request.seed;
 
@@ -183,6 +184,13 @@ CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, c
   return benchmark;
 }
 
+std::vector<std::string> without_answer(const CalibrationBenchmark& benchmark) {
+  std::vector<std::string> names;
+  for (const Standing& standing : benchmark.ranking)
+    if (standing.failures == standing.runs) names.push_back(benchmark.entrants[standing.entrant].name);
+  return names;
+}
+
 std::string to_string(const Condition& condition, MeasuredFrom from) {
   const std::string noise = from == MeasuredFrom::pixels
                                 ? "from pixels"
@@ -191,4 +199,4 @@ std::string to_string(const Condition& condition, MeasuredFrom from) {
   return fmt::format("{} poses, {}, {}", condition.poses, noise, to_string(condition.disturbance));
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

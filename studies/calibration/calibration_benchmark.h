@@ -9,7 +9,7 @@
 
 #include "studies/calibration/calibration_trial.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 enum class MeasuredFrom { poses, pixels };
 
@@ -18,13 +18,13 @@ struct CalibrationBenchmarkRequest {
   int trials = 20;                      ///< built machines, of seeds seed, seed + 1 ...
   std::vector<std::string> estimators;  ///< empty: all that the machine has
   std::vector<std::string> plugins;     ///< commands
-  PluginLimits plugin_limits;
+  calibration::ProcessLimits plugin_limits;
   MeasuredFrom from = MeasuredFrom::poses;
   StandOptions stand;  ///< from pixels; its seed is the benchmark's
   std::vector<std::size_t> poses{8, 12, 24};
   std::vector<calibration::MeasurementNoise> noise{calibration::kReferenceNoise};
   std::vector<Disturbance> disturbances;  ///< empty: all that the machine can have
-  calibration::PoseChoice choice = calibration::PoseChoice::random;
+  PoseChoice choice = PoseChoice::random;
   std::uint64_t seed = 1;
   int threads = 1;
   std::string command;  ///< how it was called, for the record
@@ -70,14 +70,10 @@ struct CalibrationBenchmark {
 CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request,
                                    const std::function<void(double, const std::string&)>& progress = {});
 
-/// benchmark.json. Wall times are under "timing" alone.
-std::string benchmark_json(const CalibrationBenchmark& benchmark);
-/// report.html: one file, without scripts or network.
-std::string benchmark_page(const CalibrationBenchmark& benchmark);
-/// For a terminal.
-std::string benchmark_table(const CalibrationBenchmark& benchmark);
+/// Names of the entrants that solved no problem at all.
+std::vector<std::string> without_answer(const CalibrationBenchmark& benchmark);
 
 /// "8 poses, 20 um and 0.2 mrad, outliers".
 std::string to_string(const Condition& condition, MeasuredFrom from);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

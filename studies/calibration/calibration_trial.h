@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "calibration/plugin/plugin.h"
+#include "calibration/estimators/estimator.h"
 #include "machine/description.h"
+#include "studies/calibration/estimator_study.h"
 #include "studies/calibration/pixel_measurement.h"
-#include "studies/calibration/study.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 /// What is wrong beside the measurement's stated noise. One at a time.
 enum class Disturbance {
@@ -34,10 +34,11 @@ struct Condition {
   Disturbance disturbance = Disturbance::none;
 };
 
-/// Who solves: an estimator of ours, or a command.
+/// Who solves. What is a plug-in and what is ours matters to the page alone.
 struct Method {
   std::string name;
   bool plugin = false;
+  std::shared_ptr<const calibration::Estimator> estimator;
 };
 
 struct Answer {
@@ -46,6 +47,9 @@ struct Answer {
   double seconds = 0;          ///< wall time
   bool ok() const { return failure.empty(); }
 };
+
+/// Why it is no answer, without figures that differ from machine to machine; empty where it is one.
+std::string failure_of(const calibration::Estimation& found);
 
 struct Trial {
   double bound = 0;                  ///< [m], Cramer-Rao bound's RMS of the tip; 0: none
@@ -58,8 +62,7 @@ struct Trial {
 struct TrialSetting {
   const machine::MachineDescription* machine = nullptr;
   std::vector<Method> entrants;
-  PluginLimits plugin_limits;
-  calibration::PoseChoice choice = calibration::PoseChoice::random;
+  PoseChoice choice = PoseChoice::random;
   std::uint64_t seed = 1;
   std::size_t held_out = 60;
   /// From pixels where set: the stand, and the one with misplaced boards where that is asked for.
@@ -75,11 +78,10 @@ class TrialRunner {
   virtual Trial run(const Condition& condition, int machine, renderer::CalibrationView* view) const = 0;
 };
 std::unique_ptr<TrialRunner> make_hexapod_trials(const TrialSetting& setting);
-/// Of an open chain: its estimators are "chain", the likelihood, and "robust". Throws InputError for others
-/// of ours and for pixels.
+/// Of an open chain. Throws InputError for pixels.
 std::unique_ptr<TrialRunner> make_chain_trials(const TrialSetting& setting);
 
 /// A problem whose answer leaves the machine worse than it was is not solved.
 void judge(const std::vector<double>& uncalibrated, Answer& answer);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

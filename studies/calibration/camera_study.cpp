@@ -11,7 +11,7 @@
 #include "core/units.h"
 #include "vision/boards/stereo_pose.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 namespace {
 
 using vision::SightMethod;
@@ -113,4 +113,4 @@ void camera_study_table(int draws, int threads, const std::function<void(const s
   }
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

@@ -7,7 +7,7 @@
 
 #include "vision/boards/view_ray.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 struct CameraStudySetting {
   double pixel = 0.1;       ///< [px], 1 sigma of corners and targets in u and v
@@ -23,4 +23,4 @@ double camera_study(const CameraStudySetting& setting, vision::SightMethod metho
 /// Five rows by three methods, the reference's figures in brackets; `line` gets each line without its end.
 void camera_study_table(int draws, int threads, const std::function<void(const std::string&)>& line);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

@@ -12,7 +12,7 @@
 #include "core/units.h"
 #include "vision/boards/chessboard.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 namespace {
 
 constexpr double kDepth = 50e-3;         // [m] from the first layer to the last
@@ -113,11 +113,11 @@ double radius_px(const CalibrationRig& rig) {
 
 }  // namespace
 
-MeasuringFrame take_out_frame(std::vector<PixelPose>& poses) {
-  std::vector<SharedError> shared;
+calibration::MeasuringFrame take_out_frame(std::vector<PixelPose>& poses) {
+  std::vector<calibration::SharedError> shared;
   for (const PixelPose& pose : poses)
     if (pose.ok()) shared.push_back({pose.X_BT.translation(), pose.shared, Mat6::Zero()});
-  const MeasuringFrame frame = measuring_frame(shared);
+  const calibration::MeasuringFrame frame = calibration::measuring_frame(shared);
   std::size_t next = 0;
   for (PixelPose& pose : poses)
     if (pose.ok()) pose.covariance = pose.detection + shared[next++].left;
@@ -221,4 +221,4 @@ PixelPose MeasuringStand::measure(renderer::CalibrationView& view, const Pose& X
   return pose;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

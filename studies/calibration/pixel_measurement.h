@@ -14,7 +14,7 @@
 #include "renderer/calibration_view.h"
 #include "vision/boards/stereo_pose.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 
 struct StandOptions {
   vision::SightMethod method = vision::SightMethod::pinhole;
@@ -36,7 +36,7 @@ struct PixelPose {
 
 /// Takes what all poses share out of their covariances: the frame is left, and told. Poses that failed stay
 /// as they are.
-MeasuringFrame take_out_frame(std::vector<PixelPose>& poses);
+calibration::MeasuringFrame take_out_frame(std::vector<PixelPose>& poses);
 
 /// Two cameras, calibrated from pictures of boards, as they stand before a hexapod. What is measured uses the
 /// designed set-up only; lenses (2 to 8 px of distortion at the picture's edge), focal lengths (0.3 %), and
@@ -72,4 +72,4 @@ class MeasuringStand {
   vision::StereoModel model_;
 };
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

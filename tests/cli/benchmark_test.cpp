@@ -20,8 +20,10 @@ TEST(BenchmarkCommand, WritesFiguresAndAPageAndRanksTheEntrants) {
   const Folder folder;
   const Outcome outcome =
       understudy(kSmall + "-j 2 --plugin 'echo nonsense' --plugin 'exit 3' --out " + (folder / "out"));
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "") << "no progress outside a terminal";
+  // Two entrants solved nothing: the answer is no, and all figures are there.
+  ASSERT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, ::testing::AllOf(HasSubstr("echo nonsense: solved no problem at all"),
+                                            HasSubstr("exit 3: solved no problem at all")));
   EXPECT_EQ(folder.entries(), 1);
   EXPECT_THAT(outcome.out, HasSubstr("ranking"));
   EXPECT_THAT(outcome.out, HasSubstr("exit 3: 4 x ended with status 3"));
@@ -35,6 +37,24 @@ TEST(BenchmarkCommand, WritesFiguresAndAPageAndRanksTheEntrants) {
   const std::string page = read_file(folder.path() / "out" / "report.html");
   EXPECT_THAT(page, HasSubstr("<svg"));
   EXPECT_THAT(page, ::testing::Not(HasSubstr("http")));
+}
+
+TEST(BenchmarkCommand, ChosenEstimatorsThatSolveAreAGoodAnswer) {
+  const Folder folder;
+  const Outcome outcome = understudy(kSmall + "-j 2 --out " + (folder / "out"));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "") << "no progress outside a terminal";
+}
+
+TEST(BenchmarkCommand, APlugInThatMayNotRunIsNoAnswer) {
+  const Folder folder;
+  const std::string script = folder.write("plugin.sh", "#!/bin/sh\n");
+  const Outcome outcome = understudy(
+      "benchmark calibration --trials 2 --poses 12 --disturbances none --estimators robust --plugin " +
+      script + " --out " + (folder / "out"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("solved no problem at all"));
+  EXPECT_THAT(outcome.out, HasSubstr("2 of 2 failed"));
 }
 
 TEST(BenchmarkCommand, NothingIsLeftWhereItIsInterrupted) {

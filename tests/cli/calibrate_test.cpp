@@ -211,5 +211,19 @@ TEST(Render, RefusesInOneLineAndWritesNothing) {
   }
 }
 
+TEST(Calibrate, APlugInStandsInForAnEstimator) {
+  const Folder folder;
+  const std::string command = "calibrate " + kSample + " -o " + (folder / "m.yaml");
+  const Outcome good = understudy(command + " --plugin 'python3 " + kSource +
+                                  "/examples/calibration-plugin/strut_by_strut.py'");
+  EXPECT_EQ(good.status, 0) << good.err;
+  EXPECT_THAT(good.out, HasSubstr("not known"));
+  const Outcome bad =
+      understudy("calibrate " + kSample + " -o " + (folder / "n.yaml") + " --plugin 'exit 4'");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, HasSubstr("plug-in: exit 4: ended with status 4"));
+  EXPECT_EQ(folder.entries(), 1) << "nothing is written where there is no machine";
+}
+
 }  // namespace
 }  // namespace understudy::cli_test

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace understudy::rehearsal {
+namespace understudy::calibration {
 namespace {
 
 constexpr std::size_t kDevices = 2000;
@@ -82,4 +82,4 @@ TEST(MeasuringFrame, MovesAPointByItsShiftItsTurnAndItsStrain) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::calibration

@@ -9,8 +9,10 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "report/calibration_benchmark_report.h"
+#include "report/page/calibration_benchmark_page.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 namespace {
 
 using nlohmann::json;
@@ -33,7 +35,7 @@ const EntrantScore& score(const CalibrationBenchmark& benchmark, Disturbance d, 
 }
 
 json comparable(const CalibrationBenchmark& benchmark) {
-  json value = json::parse(benchmark_json(benchmark));
+  json value = json::parse(report::benchmark_json(benchmark));
   value.erase("timing");
   return value;
 }
@@ -116,10 +118,10 @@ TEST(CalibrationBenchmark, CountsFailuresWithTheirReasons) {
   // A failure counts as no calibration, so failing everywhere is last.
   EXPECT_GT(b.ranking.back().score, 3);
   EXPECT_EQ(b.ranking.back().failures, 4);
-  const json value = json::parse(benchmark_json(b));
+  const json value = json::parse(report::benchmark_json(b));
   EXPECT_TRUE(value["conditions"][0]["results"][0]["median_um"].is_null());
-  EXPECT_THAT(benchmark_table(b), HasSubstr("failed"));
-  const std::string page = benchmark_page(b);
+  EXPECT_THAT(report::benchmark_table(b), HasSubstr("failed"));
+  const std::string page = report::benchmark_page(b);
   EXPECT_THAT(page, HasSubstr("not one JSON value: &quot;no&quot;"));
   EXPECT_THAT(page, ::testing::Not(HasSubstr(">nan")));
 }
@@ -167,10 +169,10 @@ TEST(CalibrationBenchmark, TheArmIsEnteredByItsOwnEstimators) {
   std::set<std::string> disturbances;
   for (const ConditionScore& c : b.conditions) disturbances.insert(to_string(c.condition.disturbance));
   EXPECT_EQ(disturbances, (std::set<std::string>{"none", "outliers", "boards", "play"}));
-  const EntrantScore clean = score(b, Disturbance::none, "chain");
+  const EntrantScore clean = score(b, Disturbance::none, "maximum_likelihood");
   EXPECT_EQ(clean.failures, 0);
   EXPECT_NEAR(clean.efficiency, 1, 0.35);  // 12 runs of about 15 independent parts
-  EXPECT_GT(score(b, Disturbance::outliers, "chain").median, 2 * clean.median);
+  EXPECT_GT(score(b, Disturbance::outliers, "maximum_likelihood").median, 2 * clean.median);
   // 18 of 20 poses left: sqrt(20 / 18) = 1.05, and a little for the worse design.
   EXPECT_LT(score(b, Disturbance::outliers, "robust").median, 1.3 * clean.median);
   EXPECT_GT(score(b, Disturbance::none, "robust").efficiency, 0.95 * clean.efficiency);
@@ -204,5 +206,26 @@ TEST(CalibrationBenchmark, RefusesWhatAMachineCannotHave) {
   EXPECT_THAT(message(request), HasSubstr("hexapod's platform"));
 }
 
+// The same likelihood: the same answer as ours within the noise, each problem solved by both.
+TEST(CalibrationBenchmark, APlugInEntersForTheArm) {
+  CalibrationBenchmarkRequest request;
+  request.machine = "arm";
+  request.trials = 1;
+  request.poses = {14};
+  request.disturbances = {Disturbance::none};
+  request.plugins = {"python3 " UNDERSTUDY_SOURCE_DIR "/examples/calibration-plugin/screw_by_screw.py",
+                     "echo '{}'"};
+  request.plugin_limits.time = 60;
+  request.estimators = {"maximum_likelihood"};
+  const CalibrationBenchmark b = run_benchmark(request);
+  ASSERT_EQ(b.entrants.size(), 3u);
+  const auto& scores = b.conditions[0].scores;
+  EXPECT_EQ(scores[1].failures, 0);
+  EXPECT_NEAR(scores[1].median, scores[0].median, 0.02 * scores[0].median);
+  ASSERT_EQ(scores[2].failures, 1);
+  EXPECT_THAT(scores[2].reasons.begin()->first, HasSubstr("schema is null"));
+  EXPECT_THAT(without_answer(b), ::testing::ElementsAre("echo '{}'"));
+}
+
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

@@ -7,7 +7,7 @@
 
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::studies {
 namespace {
 
 /// Camera 1 tells Y and Z, camera 2 X and Z: two lateral errors as they are, one halved in variance.
@@ -43,4 +43,4 @@ TEST(SlowCameraStudy, MisplacedBoardsCostTheirMeanOffsetAndHardlyMore) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::studies

@@ -5,11 +5,13 @@
 
 #include <map>
 
-#include "studies/calibration/study.h"
+#include "studies/calibration/estimator_study.h"
 #include "tests/calibration/calibration_rig.h"
 
-namespace understudy::calibration {
+namespace understudy::studies {
 namespace {
+
+using namespace calibration;
 
 StudySetting setting(std::uint64_t seed) {
   StudySetting s;
@@ -116,4 +118,4 @@ TEST(SlowCalibrationTables, EfficienciesAtTwelveTwentyFourAndFiftyPoses) {
 }
 
 }  // namespace
-}  // namespace understudy::calibration
+}  // namespace understudy::studies

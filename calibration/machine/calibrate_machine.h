@@ -1,0 +1,26 @@
+// From a table of measured poses to a calibrated machine (docs/calibration-data.md).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calibration/machine/machine_calibration.h"
+#include "calibration/plugin/child_process.h"
+
+namespace understudy::calibration {
+
+struct CalibrationRequest {
+  std::string measurements;         ///< path of a CSV
+  std::string machine = "hexapod";  ///< name or path
+  std::string estimator;            ///< empty: maximum_likelihood, or the plug-in where there is one
+  std::string plugin;               ///< command in place of an estimator of ours
+  ProcessLimits plugin_limits{.time = 60};
+  std::optional<MeasurementNoise> noise;  ///< of poses, where the file has none
+  std::string command;                    ///< for the record: how a user repeats this
+};
+
+/// Throws InputError, with file and line where one row is at fault, for all that check_identifiability() and
+/// read_measurements() refuse, and for a plug-in that gives no machine.
+MachineCalibration calibrate_machine(const CalibrationRequest& request);
+
+}  // namespace understudy::calibration

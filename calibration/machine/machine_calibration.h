@@ -1,0 +1,53 @@
+// What calibrating a machine yields, and what its user must know about it (docs/calibration-data.md).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/machine/measuring_frame.h"
+#include "calibration/machine/tip_map.h"
+#include "calibration/synthetic.h"
+#include "machine/description.h"
+
+namespace understudy::calibration {
+
+/// One measured pose against the model. Whitened: six numbers that are standard normal where the stated noise
+/// is right and nothing was fitted.
+struct PoseResidual {
+  int line = 0;
+  bool used = true;                 ///< false: rejected as an outlier
+  Twist before, after;              ///< measured less model, (tip [m], rotation vector [rad]) in B
+  Twist whitened;                   ///< of `after`
+  std::vector<double> strut;        ///< [m] length of each strut by the measured pose, less by its drive
+  std::vector<double> strut_sigma;  ///< [m] what the pose's noise alone makes of it
+};
+
+struct ParameterLine {
+  std::string name, unit;
+  double before = 0, after = 0;  ///< in `unit`
+  double sigma = 0;              ///< in `unit`; NaN where a plug-in gave no covariance
+};
+
+struct MachineCalibration {
+  machine::MachineDescription machine;  ///< calibrated, with its record
+  std::string file;                     ///< of the measurements
+  std::string estimator, command;
+  bool noise_given = false;
+  MeasurementNoise noise;               ///< that was assumed, unless given
+  std::optional<MeasuringFrame> frame;  ///< as the file tells it; its share is in `tip`
+  std::vector<PoseResidual> poses;
+  std::vector<ParameterLine> parameters;
+  std::vector<std::string> redundant;  ///< parameters that no pose can tell beside the others
+  double correlation_max = 0;          ///< between any two parameters, absolute
+  double chi_square = 0;
+  int degrees_of_freedom = 0;
+  int iterations = 0;
+  TipMap tip;
+  std::vector<std::string> warnings;
+};
+
+/// RMS of tip residuals [m] over the poses that were used.
+double residual_rms(const MachineCalibration& result, bool before);
+
+}  // namespace understudy::calibration

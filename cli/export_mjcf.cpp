@@ -1,0 +1,41 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "core/output_file.h"
+#include "machine/description.h"
+#include "sim/as_built/as_built.h"
+#include "sim/plant/plant.h"
+
+namespace understudy::cli {
+namespace {
+
+struct MjcfRequest {
+  std::string machine = "hexapod", as_built = "nominal", output;
+  std::uint64_t seed = 1;
+};
+
+int export_mjcf(const MjcfRequest& r) {
+  const auto machine = machine::load_machine(r.machine);
+  const auto as_built = sim::make_as_built(machine, r.as_built, r.seed);
+  write_file(r.output, sim::write_mjcf(machine, as_built, machine.X_WB * machine.X_BT_home));
+  fmt::print("{}\n", r.output);
+  return kGood;
+}
+
+}  // namespace
+
+void add_export_mjcf(CLI::App& command, Action& action) {
+  auto request = std::make_shared<MjcfRequest>();
+  auto* mjcf = command.add_subcommand("mjcf", "MuJoCo's XML, assembled at home");
+  mjcf->add_option("--machine", request->machine, "name under models/ or a machine.yaml")
+      ->capture_default_str();
+  mjcf->add_option("--as-built", request->as_built, "nominal, sampled, manufactured")->capture_default_str();
+  mjcf->add_option("--seed", request->seed, "of the as-built errors")->capture_default_str();
+  mjcf->add_option("-o,--output", request->output, "file to write")->required();
+  mjcf->callback([=, &action] { action = [=] { return export_mjcf(*request); }; });
+}
+
+}  // namespace understudy::cli

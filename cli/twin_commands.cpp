@@ -1,0 +1,61 @@
+// What the build with the twin adds.
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "cli/doctor.h"
+#include "core/units.h"
+#include "machine/description.h"
+#include "renderer/scene_view.h"
+#include "sim/as_built/as_built.h"
+#include "sim/plant/plant.h"
+
+namespace understudy::cli {
+namespace {
+
+std::string try_plant() {
+  const auto machine = machine::load_machine("hexapod");
+  const auto plant = sim::make_mujoco_plant(machine, sim::make_as_built(machine, "nominal", 1));
+  kinematics::StrutLengths lengths{};
+  if (kinematics::inverse(machine.hexapod().geometry, machine.X_BT_home, lengths) !=
+      kinematics::SolveStatus::ok)
+    throw std::runtime_error("home cannot be reached");
+  kinematics::AxisVector home{};
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    home[i] = lengths[i] - machine.hexapod().geometry.length_offset[i];
+  plant->reset(home);
+  for (int i = 0; i < 100; ++i) plant->step({home, {}});
+  return fmt::format("{}, closure {:.3f} um at rest", plant->engine(), to_um(plant->closure_error()));
+}
+
+std::string try_renderer() {
+  renderer::PictureScene scene;
+  scene.shapes.push_back({{"ball", geometry::Sphere{0.01}}, {1, 0, 0}});
+  scene.eye_W = Vec3(0.1, 0, 0);
+  scene.width = scene.height = 64;
+  const auto picture = renderer::render_picture(scene);
+  const auto* middle = &picture.rgb[static_cast<std::size_t>(3 * (32 * 64 + 32))];
+  if (!(middle[0] > middle[1] + 20)) throw std::runtime_error("a red ball does not look red");
+  return "OSMesa renders off screen";
+}
+
+}  // namespace
+
+void add_twin_commands(CLI::App& app, Action& action) {
+  add_rehearse(app, action);
+  add_scenario(app, action);
+  add_sweep(app, action);
+  add_sample_poses(app, action);
+  add_render(app, action);
+  add_workspace(app, action);
+  add_benchmark(app, action);
+}
+
+std::vector<std::string> left_out_commands() { return {}; }
+
+std::vector<HealthCheck> twin_self_test() {
+  return {attempt("mujoco", try_plant), attempt("renderer", try_renderer)};
+}
+
+}  // namespace understudy::cli

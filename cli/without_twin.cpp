@@ -1,0 +1,23 @@
+// Stands for twin_commands.cpp and export_mjcf.cpp in the build without the twin.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/command.h"
+#include "cli/doctor.h"
+
+namespace understudy::cli {
+
+void add_twin_commands(CLI::App&, Action&) {}
+void add_export_mjcf(CLI::App&, Action&) {}
+
+std::vector<std::string> left_out_commands() {
+  return {"rehearse", "scenario", "sweep", "sample-poses", "render", "workspace", "benchmark"};
+}
+
+std::vector<HealthCheck> twin_self_test() {
+  return {{"twin", true,
+           fmt::format("left out of this build, and with it {}, export mjcf",
+                       fmt::join(left_out_commands(), ", "))}};
+}
+
+}  // namespace understudy::cli

@@ -1,0 +1,35 @@
+// Where to drive a machine to have it calibrated, and what a twin would measure there.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "calibration/machine/measurement_table.h"
+
+namespace understudy::studies {
+
+struct SamplePosesRequest {
+  std::string machine = "hexapod";  ///< name or path
+  int count = 24;
+  std::string design = "d-optimal";     ///< or random
+  int candidates = 300;                 ///< that d-optimal poses are chosen from
+  std::optional<std::string> as_built;  ///< of a twin that is measured (sim::make_as_built); else none is
+  /// Measure the twin with two rendered cameras (pixel_measurement.h) in place of drawn noise: a hexapod
+  /// only.
+  bool from_pixels = false;
+  /// Of the measured poses; also what d-optimal poses are chosen for.
+  calibration::MeasurementNoise noise = calibration::kReferenceNoise;
+  std::uint64_t seed = 1;
+};
+
+/// Poses within the machine's limits with the axes that its model computes for them. Measured: where the
+/// twin's geometry puts the tool then, with noise; its play is left out. Else the poses asked for, to be
+/// replaced by measured ones. Throws InputError; MachineError where nothing can be rendered. `progress` gets
+/// 0..1.
+calibration::Measurements sample_poses(const SamplePosesRequest& request,
+                                       const machine::MachineDescription& machine,
+                                       const std::function<void(double)>& progress = {});
+
+}  // namespace understudy::studies
