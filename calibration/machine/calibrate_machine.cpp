@@ -57,7 +57,7 @@ MachineCalibration calibrate_machine(const CalibrationRequest& request) {
   warn_of_noise(request, result);
   const auto estimator =
       estimator_of(request, result.estimator, nominal.is_chain() ? MachineKind::chain : MachineKind::hexapod);
-  if (nominal.chain)
+  if (nominal.is_chain())
     calibrate_chain_machine(measurements, nominal, *estimator, result);
   else
     calibrate_hexapod(measurements, nominal, *estimator, result);

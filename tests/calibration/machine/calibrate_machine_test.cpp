@@ -177,7 +177,7 @@ TEST_F(Calibrate, ACalibratedMachineCanBeCalibratedAgain) {
   request.measurements = table(machine::load_machine(path.string()), 5, 100);
   const MachineCalibration again = calibrate_machine(request);
   const double twice = open_loop_rms(again.machine, 5);
-  // Reference B: about 35 um with 12 random poses, 9 um with 100.
+  // docs/reference.md#calibration-figures: about 35 um with 12 random poses, 9 um with 100.
   EXPECT_LT(twice, once);
   EXPECT_LT(twice, 20e-6);
 }
