@@ -113,6 +113,14 @@ SolveStatus Mechanism::pose_at_turns(const RotaryTarget& /*at*/, Pose& /*X_BT*/)
   return SolveStatus::bad_input;
 }
 
+SolveStatus Mechanism::pose_at_slides(const RotaryTarget& /*at*/, Pose& /*X_BT*/) const {
+  return SolveStatus::bad_input;
+}
+
+SolveStatus Mechanism::slides_at_turns(const RotaryTarget& /*at*/, Vec3& /*slides*/) const {
+  return SolveStatus::bad_input;
+}
+
 SolveStatus Mechanism::axes_at_turns(const RotaryTarget& /*at*/, const RotaryTarget& /*rate*/,
                                      std::span<double> /*axes*/, std::span<double> /*axis_rates*/) const {
   return SolveStatus::bad_input;

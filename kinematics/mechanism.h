@@ -5,13 +5,13 @@
 // answer.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/frames.h"
 #include "kinematics/axis_vector.h"
+#include "kinematics/rotary_words.h"
 
 namespace understudy::kinematics {
 
@@ -49,17 +49,6 @@ struct AxisRange {
   double lower = 0, upper = 0;  ///< [m] or [rad]
 };
 
-/// Which axes a program may turn by words of its own.
-struct RotaryAxes {
-  std::size_t b = 0, c = 0;
-};
-
-/// The tip and those axes, or the rates of both.
-struct RotaryTarget {
-  Vec3 p_BT{0, 0, 0};   ///< [m]
-  double b = 0, c = 0;  ///< [rad], of any number of turns
-};
-
 class Mechanism {
  public:
   virtual ~Mechanism() = default;
@@ -92,11 +81,16 @@ class Mechanism {
   virtual void check(const Pose& X_BT, std::span<const double> axes,
                      std::vector<LimitViolation>& violations) const = 0;
 
-  /// Of a machine with rotary words B and C; the two functions below are for these, `bad_input` elsewhere.
-  virtual std::optional<RotaryAxes> rotary_axes() const { return std::nullopt; }
+  /// The two rotary words of a machine that has them, else none. The functions below are for the former,
+  /// `bad_input` elsewhere.
+  virtual std::span<const RotaryWord> rotary_words() const { return {}; }
+  /// The pose with the tip and both turns as given (tool-centre-point coordinates).
   virtual SolveStatus pose_at_turns(const RotaryTarget& at, Pose& X_BT) const;
-  /// The axes that hold the tip there with B and C as they are, branch and turns included, singular or not,
-  /// and what they do while tip and turns move at `rate`.
+  /// The pose with the slides and both turns as given (machine coordinates), and the slides of a tip.
+  virtual SolveStatus pose_at_slides(const RotaryTarget& at, Pose& X_BT) const;
+  virtual SolveStatus slides_at_turns(const RotaryTarget& at, Vec3& slides) const;
+  /// The axes that hold the tip there with the turns as they are, branch included, singular or not, and what
+  /// they do while tip and turns move at `rate`.
   virtual SolveStatus axes_at_turns(const RotaryTarget& at, const RotaryTarget& rate, std::span<double> axes,
                                     std::span<double> axis_rates) const;
 };

@@ -1,27 +1,43 @@
 #include "rehearsal/rotary_words.h"
 
-#include "kinematics/chain/five_axis.h"
+#include <cassert>
+#include <memory>
 
 namespace understudy::rehearsal {
+namespace {
 
-// Its axes carry the work, on which the world stands: W is the kinematics' S.
+using kinematics::SolveStatus;
+
+/// A mechanism with rotary words has an answer for finite numbers, and a program's are.
+void expect_ok([[maybe_unused]] SolveStatus status) { assert(status == SolveStatus::ok); }
+
+}  // namespace
+
 std::optional<toolpath::RotaryWords> rotary_words(const machine::MachineDescription& machine) {
-  if (machine.mechanism != "five-axis" || !machine.is_chain()) return std::nullopt;
-  const kinematics::ChainDescription& chain = machine.chain().kinematics;
-  const std::vector<double>& p = chain.parameters;
-  const kinematics::FiveAxisGeometry geometry{p[0], p[1], p[2], p[3]};
-  toolpath::RotaryWords words;
-  words.b_home = chain.home[3];
-  words.c_home = chain.home[4];
-  words.tip_pose = kinematics::five_axis_tip_pose;
-  words.slides_pose = [geometry](const Vec3& slides, double b, double c) -> Pose {
-    return kinematics::five_axis_pose(geometry, {slides.x(), slides.y(), slides.z(), b, c});
+  const std::shared_ptr<const kinematics::Mechanism> mechanism = machine.make_mechanism();
+  const auto words = mechanism->rotary_words();
+  if (words.empty()) return std::nullopt;
+  const Pose X_WB = machine.X_WB, X_BW = X_WB.inverse();
+  toolpath::RotaryWords rotary;
+  rotary.letters = {words[0].letter, words[1].letter};
+  rotary.b_home = words[0].home;
+  rotary.c_home = words[1].home;
+  rotary.tip_pose = [mechanism, X_WB, X_BW](const Vec3& p_WT, double b, double c) -> Pose {
+    Pose X_BT = Pose::Identity();
+    expect_ok(mechanism->pose_at_turns({X_BW * p_WT, b, c}, X_BT));
+    return X_WB * X_BT;
   };
-  words.slides = [geometry](const Vec3& p_WT, double b, double c) -> Vec3 {
-    const kinematics::FiveAxes axes = kinematics::five_axis_at_tip(geometry, p_WT, b, c);
-    return {axes[0], axes[1], axes[2]};
+  rotary.slides_pose = [mechanism, X_WB](const Vec3& slides, double b, double c) -> Pose {
+    Pose X_BT = Pose::Identity();
+    expect_ok(mechanism->pose_at_slides({slides, b, c}, X_BT));
+    return X_WB * X_BT;
   };
-  return words;
+  rotary.slides = [mechanism, X_BW](const Vec3& p_WT, double b, double c) -> Vec3 {
+    Vec3 slides = Vec3::Zero();
+    expect_ok(mechanism->slides_at_turns({X_BW * p_WT, b, c}, slides));
+    return slides;
+  };
+  return rotary;
 }
 
 }  // namespace understudy::rehearsal

@@ -1,4 +1,4 @@
-// What the rotary words B and C of a program mean on the machine that is to run it.
+// What the rotary words of a program mean on the machine that is to run it.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace understudy::rehearsal {
 
-/// Those of a five-axis machine; nothing for any other, whose programs tell orientation by W I J K.
+/// Those that its mechanism has; nothing for a machine without, whose programs state orientation by W I J K.
 std::optional<toolpath::RotaryWords> rotary_words(const machine::MachineDescription& machine);
 
 }  // namespace understudy::rehearsal

@@ -21,7 +21,7 @@ PathKinematics::PathKinematics(const kinematics::Mechanism& mechanism, const Pos
       X_WB_(X_WB),
       X_BW_(X_WB.inverse()),
       axis_count_(mechanism.axis_count()),
-      rotary_axes_(mechanism.rotary_axes()) {}
+      rotary_words_(mechanism.rotary_words()) {}
 
 PathSegment PathKinematics::segment(const toolpath::Step& step, const Pose& X_WT_begin,
                                     const kinematics::AxisVector& axes_begin,
@@ -29,15 +29,16 @@ PathSegment PathKinematics::segment(const toolpath::Step& step, const Pose& X_WT
   const bool moves = toolpath::moves(step);
   if (moves && step.rotary) require_turns(step);
   std::optional<PathSegment::Rotary> rotary;
-  if (rotary_axes_) {
-    const toolpath::RotaryTurns from{axes_begin[rotary_axes_->b], axes_begin[rotary_axes_->c]};
+  if (!rotary_words_.empty()) {
+    const toolpath::RotaryTurns from{rotary_words_[0].reading(axes_begin),
+                                     rotary_words_[1].reading(axes_begin)};
     if (!moves || step.rotary) rotary = {from, moves ? *step.rotary : from};
   }
   return make_segment(step, X_WT_begin, rotary, limits);
 }
 
 void PathKinematics::require_turns(const toolpath::Step& step) const {
-  if (!rotary_axes_) refuse(step.line, "B and C on a machine without rotary axes");
+  if (rotary_words_.empty()) refuse(step.line, "B and C on a machine without rotary axes");
   Pose X_BT;
   if (mechanism_.pose_at_turns({X_BW_ * step.X_WT.translation(), step.rotary->b, step.rotary->c}, X_BT) !=
       SolveStatus::ok)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "control/motion/path_segment.h"
@@ -64,7 +65,7 @@ class PathKinematics {
   const kinematics::Mechanism& mechanism_;
   Pose X_WB_, X_BW_;
   int axis_count_;
-  std::optional<kinematics::RotaryAxes> rotary_axes_;
+  std::span<const kinematics::RotaryWord> rotary_words_;
 };
 
 }  // namespace understudy::control

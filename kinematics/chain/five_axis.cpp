@@ -43,7 +43,9 @@ FiveAxisGeometry geometry_of(std::span<const double> p) { return {p[0], p[1], p[
 class FiveAxis final : public ChainMechanism {
  public:
   explicit FiveAxis(const ChainDescription& description)
-      : ChainMechanism(description, false), geometry_(geometry_of(description.parameters)) {}
+      : ChainMechanism(description, false),
+        geometry_(geometry_of(description.parameters)),
+        words_{{{'B', kB, 1, description.home[kB]}, {'C', kC, 1, description.home[kC]}}} {}
 
   // The branch that breaks fewer ranges; of equal ones the nearer to `previous`.
   SolveStatus inverse(const Pose& X_ST, std::span<const double> previous,
@@ -67,11 +69,24 @@ class FiveAxis final : public ChainMechanism {
     return SolveStatus::ok;
   }
 
-  std::optional<RotaryAxes> rotary_axes() const override { return RotaryAxes{kB, kC}; }
+  std::span<const RotaryWord> rotary_words() const override { return words_; }
 
   SolveStatus pose_at_turns(const RotaryTarget& at, Pose& X_ST) const override {
     if (!finite(at)) return SolveStatus::bad_input;
     X_ST = five_axis_tip_pose(at.p_BT, at.b, at.c);
+    return SolveStatus::ok;
+  }
+
+  SolveStatus pose_at_slides(const RotaryTarget& at, Pose& X_ST) const override {
+    if (!finite(at)) return SolveStatus::bad_input;
+    X_ST = five_axis_pose(geometry_, {at.p_BT.x(), at.p_BT.y(), at.p_BT.z(), at.b, at.c});
+    return SolveStatus::ok;
+  }
+
+  SolveStatus slides_at_turns(const RotaryTarget& at, Vec3& slides) const override {
+    if (!finite(at)) return SolveStatus::bad_input;
+    const FiveAxes axes = five_axis_at_tip(geometry_, at.p_BT, at.b, at.c);
+    slides = {axes[kX], axes[kY], axes[kZ]};
     return SolveStatus::ok;
   }
 
@@ -112,6 +127,7 @@ class FiveAxis final : public ChainMechanism {
   }
 
   FiveAxisGeometry geometry_;
+  std::array<RotaryWord, 2> words_;
 };
 
 }  // namespace

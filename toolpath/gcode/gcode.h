@@ -2,9 +2,9 @@
 //
 // Words: G0 G1 G4 G20 G21 G28 G90 G91 G92 G93 G94, M82 M83 M104 M109 M106 M107 M221 M30 and T, modal, with ;
 // and ( ) comments, E for filament length; what slicers write beside it and the twin has no use for is a
-// list. Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K alone, the tool axis; or B C, the
-// turning axes of a machine that has them, with G43.4 and G49. Lengths mm (or inch under G20), angles
-// degrees, feeds mm/min.
+// list. Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K alone, the tool axis; or two of A
+// B C, the turning axes of a machine that has them, with G43.4 and G49. Lengths mm (or inch under G20),
+// angles degrees, feeds mm/min.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,8 @@
 
 namespace understudy::toolpath {
 
-/// What B and C mean on a machine that has such axes. Angles in [rad], of any number of turns.
+/// What the two rotary words mean on a machine that has them; b and c are the first and the second. Angles in
+/// [rad], of any number of turns.
 struct RotaryWords {
   enum class Coordinates {
     tip,      ///< X Y Z is p_WT (tool-centre-point coordinates, G43.4)
@@ -27,6 +28,7 @@ struct RotaryWords {
     crossing,
   };
   Coordinates coordinates = Coordinates::tip;  ///< before the program says which
+  std::string letters = "BC";                  ///< of both, out of A, B, C
   double b_home = 0, c_home = 0;               ///< at X_WT_home
   /// X_WT of a tip at p_WT.
   std::function<Pose(const Vec3& p_WT, double b, double c)> tip_pose;
@@ -39,7 +41,7 @@ struct RotaryWords {
 struct GcodeOptions {
   Pose X_WT_home = Pose::Identity();  ///< where the tool starts and where G28 takes it
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
-  std::optional<RotaryWords> rotary = std::nullopt;  ///< without it B and C are errors
+  std::optional<RotaryWords> rotary = std::nullopt;  ///< without it A, B and C are errors
   // Of the dialect.
   char extruder_letter = 'E';  ///< of filament: E or A
   Vec3 offset_W{0, 0, 0};      ///< [m], the program's origin in W

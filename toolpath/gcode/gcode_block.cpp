@@ -131,7 +131,10 @@ void Block::add(const Word& word, bool first) {
   }
   check_letter(word);
   Word parameter = word;
-  if (word.letter == letters_.extruder) parameter.letter = 'E';
+  if (word.letter == letters_.extruder)
+    parameter.letter = 'E';
+  else if (const auto turn = letters_.rotary.find(word.letter); turn != std::string::npos)
+    parameter.letter = "BC"[turn];
   if (std::strchr(kParameters, parameter.letter) == nullptr && !word.bare)
     fail(word, fmt::format("unknown word '{}'", word.text));
   if (find(parameter.letter) != nullptr)
@@ -144,13 +147,14 @@ void Block::check_letter(const Word& word) const {
   if (word.letter == 'E')
     fail(word, fmt::format("'{}': this program's extruder is on {}", word.text, letters_.extruder));
   if (std::strchr("ABC", word.letter) == nullptr) return;
-  if (!letters_.rotary)
+  if (letters_.rotary.empty())
     fail(word,
          fmt::format("'{}': this machine has no rotary axes; orientation is W I J K (quaternion) or I J K "
                      "(tool axis)",
                      word.text));
-  if (word.letter == 'A')
-    fail(word, fmt::format("'{}': the rotary axes of this machine are B and C", word.text));
+  if (letters_.rotary.find(word.letter) == std::string::npos)
+    fail(word, fmt::format("'{}': the rotary axes of this machine are {}", word.text,
+                           fmt::join(letters_.rotary, " and ")));
 }
 
 void Block::check_groups() const {

@@ -35,7 +35,7 @@ enum class Command {
 
 /// How a dialect uses letters.
 struct Letters {
-  bool rotary = false;  ///< B and C are axes
+  std::string rotary;   ///< two of A, B, C, read as B and C; empty: no such axes
   char extruder = 'E';  ///< is read as E
 };
 

@@ -38,12 +38,19 @@ GcodePosition::GcodePosition(const GcodeOptions& options)
     : options_(options), coordinates_(options.rotary ? options.rotary->coordinates : Coordinates::tip) {
   if (options.extruder_letter != 'E' && options.extruder_letter != 'A')
     throw InputError(fmt::format("extruder on '{}': one of E, A", options.extruder_letter));
+  if (options.rotary && options.rotary->letters.find(options.extruder_letter) != std::string::npos)
+    throw InputError(
+        fmt::format("extruder on '{}': that turns an axis of this machine", options.extruder_letter));
   for (const int sign : {options.b_sign, options.c_sign})
     if (std::abs(sign) != 1)
       throw InputError(fmt::format("the sign of a rotary axis is {}: one of -1, 1", sign));
   if (!(options.offset_W.cwiseAbs().maxCoeff() <= kLargestCoordinate))
     throw InputError(fmt::format("the program's offset is beyond {:g} mm", to_mm(kLargestCoordinate)));
   go_home();
+}
+
+std::string GcodePosition::rotary_letters() const {
+  return options_.rotary ? fmt::format("{} ", fmt::join(options_.rotary->letters, " ")) : "";
 }
 
 void GcodePosition::set_coordinates(const Block& block) {
@@ -162,9 +169,8 @@ void GcodePosition::refuse_two_orientations(const Block& block) const {
     block.fail(*vector,
                fmt::format("'{}': tool axis words need tool-centre-point coordinates (G43.4)", vector->text));
   if (rotary != nullptr && vector != nullptr)
-    block.fail(*rotary,
-               fmt::format("'{}' cannot share a line with '{}': orientation is either B C or W I J K",
-                           rotary->text, vector->text));
+    block.fail(*rotary, fmt::format("'{}' cannot share a line with '{}': orientation is either {}or W I J K",
+                                    rotary->text, vector->text, rotary_letters()));
 }
 
 void GcodePosition::read_lengths(Block& block, double unit, bool relative) {
@@ -204,9 +210,9 @@ bool GcodePosition::read_turns(Block& block, bool relative) {
 void GcodePosition::require_turns(const Word& word, const Block& block, bool both_given) const {
   if (turns_ || both_given) return;
   block.fail(word,
-             fmt::format("'{}' after an orientation by I J K: B and C are not known before a line with both, "
+             fmt::format("'{}' after an orientation by I J K: {} are not known before a line with both, "
                          "absolute (G90), or G28",
-                         word.text));
+                         word.text, fmt::join(options_.rotary->letters, " and ")));
 }
 
 std::optional<Quat> GcodePosition::read_orientation(Block& block) const {

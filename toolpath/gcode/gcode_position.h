@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/gcode_block.h"
@@ -19,7 +20,8 @@ class GcodePosition {
   const Pose& X_WT() const { return X_WT_; }
   /// How the turning axes stand; nothing where the machine has none or the program does not say.
   const std::optional<RotaryTurns>& turns() const { return turns_; }
-  bool has_rotary_words() const { return options_.rotary.has_value(); }
+  /// "B C ", for messages; empty where the machine has none.
+  std::string rotary_letters() const;
 
   // All of these throw InputError with place.
 

@@ -16,7 +16,7 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
   program.file = file;
   program.sha256 = sha256_hex(text);
   GcodeState state(options);
-  const Letters letters{options.rotary.has_value(), options.extruder_letter};
+  const Letters letters{options.rotary ? options.rotary->letters : "", options.extruder_letter};
   program.steps.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
   std::string_view rest = text;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // byte order mark of some editors

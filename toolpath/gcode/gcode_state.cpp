@@ -156,7 +156,7 @@ void GcodeState::home(Block& block, std::vector<Step>& steps) {
 void GcodeState::set_position(Block& block) {
   const Word& code = *block.find(Command::set_position);
   if (block.find_any("XYZBCE") == nullptr)
-    block.fail(code, fmt::format("G92 names none of X Y Z {}E", position_.has_rotary_words() ? "B C " : ""));
+    block.fail(code, fmt::format("G92 names none of X Y Z {}E", position_.rotary_letters()));
   position_.rename(block, unit_);
   if (const Word* word = block.take('E')) extruder_ = length_of(block, *word, unit_);
 }

@@ -71,8 +71,11 @@ TEST(GcodeBlock, LettersAreAsTheDialectUsesThem) {
   EXPECT_EQ(complaint("G1 X1 A2", extruder_a), "accepted");
   EXPECT_EQ(block("G1 X1 A2", extruder_a).find('E')->value, 2) << "read as E";
   Letters rotary;
-  rotary.rotary = true;
+  rotary.rotary = "BC";
   EXPECT_EQ(complaint("G1 X1 B20 C30", rotary), "accepted");
+  rotary.rotary = "AC";
+  EXPECT_EQ(block("G1 X1 A20 C30", rotary).find('B')->value, 20) << "the first, read as B";
+  EXPECT_THAT(complaint("G1 X1 B20", rotary), HasSubstr("the rotary axes of this machine are A and C"));
 }
 
 TEST(GcodeBlock, CommandsOfASlicerForItsFirmwareHaveNoEffect) {
