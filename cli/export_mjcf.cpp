@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "core/output_file.h"
+#include "machine/default_machine.h"
 #include "machine/description.h"
 #include "sim/as_built/as_built.h"
 #include "sim/plant/plant.h"
@@ -13,7 +14,7 @@ namespace understudy::cli {
 namespace {
 
 struct MjcfRequest {
-  std::string machine = "hexapod", as_built = "nominal", output;
+  std::string machine = machine::kDefaultMachine, as_built = "nominal", output;
   std::uint64_t seed = 1;
 };
 

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/number_table.h"
 #include "core/units.h"
+#include "machine/default_machine.h"
 #include "machine/description.h"
 
 namespace understudy::cli {
@@ -102,7 +103,7 @@ int print_poses(const std::string& name) {
 }  // namespace
 
 void add_kinematics(CLI::App& app, Action& action) {
-  auto machine = std::make_shared<std::string>("hexapod");
+  auto machine = std::make_shared<std::string>(machine::kDefaultMachine);
   auto* axes =
       app.add_subcommand("axes", "Inverse kinematics: poses.csv on standard input, axes on standard output");
   axes->add_option("--machine", *machine, "name under models/ or a machine.yaml")->capture_default_str();

@@ -7,13 +7,14 @@
 #include <CLI/App.hpp>
 
 #include "cli/command.h"
+#include "machine/default_machine.h"
 #include "machine/description.h"
 #include "toolpath/program.h"
 
 namespace understudy::cli {
 
 struct PlanOptions {
-  std::string machine = "hexapod", output;
+  std::string machine = machine::kDefaultMachine, output;
   double feed_mm_per_s = 5, approach_mm_per_s = 1, clearance_mm = 8;
   double bead_width_mm = 0.48, bead_height_mm = 0;  ///< height 0: the machine's gap
   double temperature_c = 230, fan = 0;

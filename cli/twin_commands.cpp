@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/doctor.h"
 #include "core/units.h"
+#include "machine/default_machine.h"
 #include "machine/description.h"
 #include "renderer/scene_view.h"
 #include "sim/as_built/as_built.h"
@@ -15,15 +16,13 @@ namespace understudy::cli {
 namespace {
 
 std::string try_plant() {
-  const auto machine = machine::load_machine("hexapod");
+  const auto machine = machine::load_machine(machine::kDefaultMachine);
   const auto plant = sim::make_mujoco_plant(machine, sim::make_as_built(machine, "nominal", 1));
-  kinematics::StrutLengths lengths{};
-  if (kinematics::inverse(machine.hexapod().geometry, machine.X_BT_home, lengths) !=
-      kinematics::SolveStatus::ok)
-    throw std::runtime_error("home cannot be reached");
   kinematics::AxisVector home{};
-  for (std::size_t i = 0; i < lengths.size(); ++i)
-    home[i] = lengths[i] - machine.hexapod().geometry.length_offset[i];
+  if (machine.make_mechanism()->inverse(machine.X_BT_home, {}, home) != kinematics::SolveStatus::ok)
+    throw std::runtime_error("home cannot be reached");
+  const kinematics::AxisVector zero = machine.drive_zero();
+  for (std::size_t i = 0; i < home.size(); ++i) home[i] -= zero[i];
   plant->reset(home);
   for (int i = 0; i < 100; ++i) plant->step({home, {}});
   return fmt::format("{}, closure {:.3f} um at rest", plant->engine(), to_um(plant->closure_error()));

@@ -15,6 +15,7 @@
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "core/units.h"
+#include "machine/default_machine.h"
 #include "machine/description.h"
 #include "report/picture/png.h"
 #include "report/picture/workspace_picture.h"
@@ -25,7 +26,7 @@ namespace understudy::cli {
 namespace {
 
 struct WorkspaceCall {
-  std::string machine = "hexapod", folder;
+  std::string machine = machine::kDefaultMachine, folder;
   std::optional<double> tilt_deg, azimuth_deg, step_mm;
   std::vector<double> box_mm;
   bool all_azimuths = false;

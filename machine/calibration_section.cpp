@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "kinematics/chain/chain_kind.h"
 
 namespace understudy::machine {
 namespace {
@@ -119,14 +120,26 @@ void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
   machine.X_BT_home = kinematics::forward(chain, model.kinematics.home);
 }
 
+bool may_be_calibrated(const MachineDescription& machine) {
+  return !machine.is_chain() || kinematics::find_chain_kind(machine.mechanism)->may_be_calibrated;
+}
+
+std::string not_calibratable(const MachineDescription& machine) {
+  std::vector<std::string> words{kinematics::kHexapod};
+  for (const kinematics::ChainKind& kind : kinematics::chain_kinds())
+    if (kind.may_be_calibrated) words.push_back(kind.name);
+  return fmt::format("a calibrated '{}' has no inverse kinematics: only {} can be calibrated",
+                     machine.mechanism, fmt::join(words, ", "));
+}
+
 }  // namespace
 
+void require_calibratable(const MachineDescription& machine) {
+  if (!may_be_calibrated(machine)) throw InputError(not_calibratable(machine));
+}
+
 void read_calibration(YamlMap& root, MachineDescription& machine) {
-  if (machine.is_chain() && machine.mechanism != "arm" && machine.mechanism != "chain")
-    return root.refuse("calibration",
-                       fmt::format("a calibrated '{}' has no inverse kinematics here: only hexapod, "
-                                   "arm and chain can have a calibration",
-                                   machine.mechanism));
+  if (!may_be_calibrated(machine)) return root.refuse("calibration", not_calibratable(machine));
   if (!root.has("calibration")) return;
   if (!root.complete() && !root.recording()) return;  // without the geometry there is nothing to compare with
   root.section("calibration", "measured geometry, which the controller uses in place of the drawn one",

@@ -13,6 +13,9 @@ namespace understudy::machine {
 constexpr double kFarFromDrawing = 25e-3;    // [m]
 constexpr double kTurnedFromDrawing = 0.17;  // [rad], 10 deg
 
+/// Throws InputError for a machine whose inverse kinematics cannot follow measured axes.
+void require_calibratable(const MachineDescription& machine);
+
 /// Where the file has one; after the geometry and the axes. Throws InputError for a part that is missing,
 /// told twice, or far from what is drawn.
 void read_calibration(YamlMap& root, MachineDescription& machine);

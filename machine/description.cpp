@@ -78,7 +78,7 @@ void read_motion(YamlMap& map, MachineDescription& machine) {
 }
 
 std::vector<std::string> mechanism_words() {
-  std::vector<std::string> words{"hexapod"};
+  std::vector<std::string> words{kinematics::kHexapod};
   for (const kinematics::ChainKind& kind : kinematics::chain_kinds()) words.push_back(kind.name);
   return words;
 }
@@ -87,7 +87,7 @@ void read_machine(YamlMap& root, MachineDescription& m) {
   m.name = root.text("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
-  const bool chain = m.mechanism != "hexapod";
+  const bool chain = m.mechanism != kinematics::kHexapod;
   if (chain)
     read_chain(root, m);
   else

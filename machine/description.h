@@ -172,7 +172,7 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 
 struct MachineDescription {
   std::string name;
-  std::string mechanism;       ///< "hexapod", or the name of a kinematics::ChainKind
+  std::string mechanism;       ///< kinematics::kHexapod, or the name of a ChainKind
   std::filesystem::path file;  ///< where it was read
   std::string sha256;          ///< of the file's bytes, hexadecimal
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/default_machine.h"
 #include "rehearsal/fault_request.h"
 
 namespace understudy::rehearsal {
@@ -27,8 +28,8 @@ struct SurfaceRequest {
 };
 
 struct RehearsalRequest {
-  std::string program;              ///< path of a G-code file
-  std::string machine = "hexapod";  ///< name or path
+  std::string program;                             ///< path of a G-code file
+  std::string machine = machine::kDefaultMachine;  ///< name or path
   std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
   std::string engine = "mujoco";
   std::string fixture;               ///< STL path, a name under models/parts, or empty: only the table

@@ -11,6 +11,7 @@
 #include "calibration/machine/tip_map.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "machine/calibration_section.h"
 
 namespace understudy::calibration {
 namespace {
@@ -79,19 +80,11 @@ TipCovariance tip_covariance(const MachineCalibration& result, const ChainCalibr
   return in_frame(tip, *measurements.frame, middle_of_tips(measurements), result.machine.X_WB);
 }
 
-void check_invertible(const machine::MachineDescription& nominal) {
-  if (nominal.mechanism == "arm" || nominal.mechanism == "chain") return;
-  throw InputError(
-      fmt::format("a calibrated '{}' would have no inverse kinematics: only hexapod, arm and "
-                  "chain can be calibrated",
-                  nominal.mechanism));
-}
-
 }  // namespace
 
 void calibrate_chain_machine(const Measurements& measurements, const machine::MachineDescription& nominal,
                              const Estimator& estimator, MachineCalibration& result) {
-  check_invertible(nominal);
+  machine::require_calibratable(nominal);
   check_axes_moved(measurements, nominal);
   const ChainProblem problem{{nominal.chain().kinematics.chain, {}}, chain_samples(measurements, nominal)};
   const ChainCalibration found = estimator.calibrate_chain(problem);

@@ -6,14 +6,15 @@
 
 #include "calibration/machine/machine_calibration.h"
 #include "calibration/plugin/child_process.h"
+#include "machine/default_machine.h"
 
 namespace understudy::calibration {
 
 struct CalibrationRequest {
-  std::string measurements;         ///< path of a CSV
-  std::string machine = "hexapod";  ///< name or path
-  std::string estimator;            ///< empty: maximum_likelihood, or the plug-in where there is one
-  std::string plugin;               ///< command in place of an estimator of ours
+  std::string measurements;                        ///< path of a CSV
+  std::string machine = machine::kDefaultMachine;  ///< name or path
+  std::string estimator;  ///< empty: maximum_likelihood, or the plug-in where there is one
+  std::string plugin;     ///< command in place of an estimator of ours
   ProcessLimits plugin_limits{.time = 60};
   std::optional<MeasurementNoise> noise;  ///< of poses, where the file has none
   std::string command;                    ///< for the record: how a user repeats this

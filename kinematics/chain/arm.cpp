@@ -112,6 +112,7 @@ ChainKind arm_kind() {
   // Beyond these an arm is no printer's, or a slip of the unit.
   ChainKind kind;
   kind.name = "arm";
+  kind.may_be_calibrated = true;
   kind.parameters = {
       {"d1_mm", 0, 5000, "height of axis 2 above the base"},
       {"a1_mm", -2000, 2000, "axis 2 before axis 1"},

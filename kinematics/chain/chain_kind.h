@@ -23,6 +23,8 @@ struct ChainKind {
   std::vector<Parameter> parameters;  ///< all of them must be given
   /// The chain of these parameters (SI), limits left open. Empty: the machine file lists its axes itself.
   Chain (*chain)(std::span<const double> parameters) = nullptr;
+  /// Measured axes may take the place of the drawn ones: the drawn chain's inverse then only gives the start.
+  bool may_be_calibrated = false;
   /// nullptr: the numeric inverse serves.
   std::unique_ptr<Mechanism> (*make)(const ChainDescription& description) = nullptr;
 };

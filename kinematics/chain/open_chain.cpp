@@ -141,6 +141,7 @@ SolveStatus OpenChain::inverse(const Pose& X_ST, std::span<const double> previou
 ChainKind open_chain_kind() {
   ChainKind kind;
   kind.name = "chain";
+  kind.may_be_calibrated = true;
   kind.make = [](const ChainDescription& description) -> std::unique_ptr<Mechanism> {
     return std::make_unique<OpenChain>(description);
   };

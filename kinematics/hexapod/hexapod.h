@@ -12,6 +12,7 @@
 namespace understudy::kinematics {
 
 constexpr int kStruts = 6;
+constexpr const char* kHexapod = "hexapod";  ///< word of `mechanism:` in a machine file
 template <typename T>
 using PerStrut = std::array<T, kStruts>;
 using StrutLengths = PerStrut<double>;  ///< [m]

@@ -6,12 +6,13 @@
 #include <string>
 
 #include "core/frames.h"
+#include "machine/default_machine.h"
 
 namespace understudy::report {
 
 struct RenderRequest {
-  std::string kind = "scene";       ///< laser, chessboard, targets, scene
-  std::string machine = "hexapod";  ///< name or path
+  std::string kind = "scene";                      ///< laser, chessboard, targets, scene
+  std::string machine = machine::kDefaultMachine;  ///< name or path
   std::optional<Pose>
       X_WT;        ///< true pose of the tool; else home, and for laser over the table at the gap's aim
   int camera = 0;  ///< 0 or 1, of chessboard and targets

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/default_machine.h"
 #include "studies/calibration/calibration_trial.h"
 
 namespace understudy::studies {
@@ -14,7 +15,7 @@ namespace understudy::studies {
 enum class MeasuredFrom { poses, pixels };
 
 struct CalibrationBenchmarkRequest {
-  std::string machine = "hexapod";
+  std::string machine = machine::kDefaultMachine;
   int trials = 20;                      ///< built machines, of seeds seed, seed + 1 ...
   std::vector<std::string> estimators;  ///< empty: all that the machine has
   std::vector<std::string> plugins;     ///< commands

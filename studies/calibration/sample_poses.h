@@ -7,11 +7,12 @@
 #include <string>
 
 #include "calibration/machine/measurement_table.h"
+#include "machine/default_machine.h"
 
 namespace understudy::studies {
 
 struct SamplePosesRequest {
-  std::string machine = "hexapod";  ///< name or path
+  std::string machine = machine::kDefaultMachine;  ///< name or path
   int count = 24;
   std::string design = "d-optimal";     ///< or random
   int candidates = 300;                 ///< that d-optimal poses are chosen from

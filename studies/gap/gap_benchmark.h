@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "machine/default_machine.h"
 
 namespace understudy::studies {
 
 struct GapBenchmarkRequest {
-  std::string machine = "hexapod";
+  std::string machine = machine::kDefaultMachine;
   std::vector<std::string> parts{"detectors", "approach", "following", "bottle"};
   int trials =
       10;  ///< of approaches and of prints that are followed, a surface and condition; frames tenfold

@@ -181,6 +181,33 @@ TEST(FiveAxis, ProgramWordsAreAxesOrTipAsTheSwitchSays) {
   EXPECT_LE((X.translation() - Vec3(0.1, 0, 0)).norm(), 1e-16);
 }
 
+TEST(FiveAxis, RotaryWordsAreWhatTheMechanismReadsThemAs) {
+  ChainDescription d = described(kOffset);
+  d.home = {0, 0, 0.1, 0.2, -0.3};
+  const auto mechanism = make_chain_mechanism(d);
+  const auto words = mechanism->rotary_words();
+  ASSERT_EQ(words.size(), 2u);
+  EXPECT_EQ(words[0].letter, 'B');
+  EXPECT_EQ(words[1].letter, 'C');
+  EXPECT_EQ(words[0].home, 0.2);
+  EXPECT_EQ(words[1].home, -0.3);
+  Random random(38, "five-axis");
+  for (int n = 0; n < 500; ++n) {
+    const FiveAxes q = random_axes(random);
+    const RotaryTarget slides{{q[0], q[1], q[2]}, words[0].reading(q), words[1].reading(q)};
+    Pose by_axes, by_slides, by_tip;
+    ASSERT_EQ(mechanism->forward(q, mechanism->home(), by_axes), SolveStatus::ok);
+    ASSERT_EQ(mechanism->pose_at_slides(slides, by_slides), SolveStatus::ok);
+    const RotaryTarget tip{by_slides.translation(), slides.b, slides.c};
+    ASSERT_EQ(mechanism->pose_at_turns(tip, by_tip), SolveStatus::ok);
+    Vec3 back;
+    ASSERT_EQ(mechanism->slides_at_turns(tip, back), SolveStatus::ok);
+    EXPECT_LE((by_slides.matrix() - by_axes.matrix()).norm(), 4e-15) << n;
+    EXPECT_LE((by_tip.matrix() - by_axes.matrix()).norm(), 4e-15) << n;
+    EXPECT_LE((back - slides.p_BT).norm(), 1e-15) << n;
+  }
+}
+
 TEST(FiveAxis, UprightIsSingularAndRatesStayFinite) {
   const auto mechanism = make_chain_mechanism(described(kOffset));
   const FiveAxes q{0.01, 0.02, 0.03, 0, 0.5};
