@@ -7,6 +7,8 @@
 #include "cli/command.h"
 #include "core/map_schema.h"
 #include "core/output_file.h"
+#include "machine/description.h"
+#include "machine/material.h"
 #include "machine/model_files.h"
 #include "regression/scenario_file.h"
 #include "report/json_schema.h"
@@ -15,40 +17,58 @@
 namespace understudy::cli {
 namespace {
 
+struct SchemaRequest {
+  std::string output, file, machine = "hexapod";
+};
+
 struct Kind {
   const char* word;
   const char* title;
   MapSchema (*schema)();
+  void (*read)(const SchemaRequest& request);
 };
 
 const Kind kKinds[] = {
-    {"machine", "Understudy: description of a machine", machine::machine_schema},
-    {"material", "Understudy: filament material", machine::material_schema},
-    {"scenario", "Understudy: scenario", regression::scenario_schema},
-    {"as-built", "Understudy: machine as built", sim::as_built_schema},
+    {"machine", "Understudy: description of a machine", machine::machine_schema,
+     [](const SchemaRequest& r) { machine::load_machine(r.file); }},
+    {"material", "Understudy: filament material", machine::material_schema,
+     [](const SchemaRequest& r) { machine::load_material(r.file); }},
+    {"scenario", "Understudy: scenario", regression::scenario_schema,
+     [](const SchemaRequest& r) { regression::load_scenario(r.file); }},
+    {"as-built", "Understudy: machine as built", sim::as_built_schema,
+     [](const SchemaRequest& r) { sim::make_as_built(machine::load_machine(r.machine), r.file, 1); }},
 };
 
-int write_schema(const Kind& kind, const std::string& output) {
+int run_schema(const Kind& kind, const SchemaRequest& request) {
+  if (!request.file.empty()) {
+    kind.read(request);
+    fmt::print("{}: ok\n", request.file);
+    return kGood;
+  }
   const std::string text = report::json_schema(kind.schema(), kind.title);
-  if (output.empty()) {
+  if (request.output.empty()) {
     fmt::print("{}", text);
     return kGood;
   }
-  write_file(output, text);
-  fmt::print("{}\n", output);
+  write_file(request.output, text);
+  fmt::print("{}\n", request.output);
   return kGood;
 }
 
 }  // namespace
 
 void add_schema(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("schema", "Write the JSON Schema of a kind of YAML file, for editors");
+  auto* command = app.add_subcommand(
+      "schema", "Write the JSON Schema of a kind of YAML file, for editors, or check a file");
   command->require_subcommand(1);
-  auto output = std::make_shared<std::string>();
+  auto request = std::make_shared<SchemaRequest>();
   for (const Kind& kind : kKinds) {
     auto* word = command->add_subcommand(kind.word, kind.title);
-    word->add_option("-o,--output", *output, "file to write; without it, standard output");
-    word->callback([=, &action, &kind] { action = [=, &kind] { return write_schema(kind, *output); }; });
+    word->add_option("-o,--output", request->output, "file to write; without it, standard output");
+    word->add_option("--check", request->file, "instead: read this file and say what is wrong with it");
+    if (kind.schema == sim::as_built_schema)
+      word->add_option("--machine", request->machine, "whose errors the file tells")->capture_default_str();
+    word->callback([=, &action, &kind] { action = [=, &kind] { return run_schema(kind, *request); }; });
   }
 }
 

@@ -8,6 +8,7 @@ set(package ${CMAKE_INSTALL_LIBDIR}/cmake/Understudy)
 install(DIRECTORY models/ DESTINATION ${data}/models COMPONENT program
         FILES_MATCHING PATTERN "*.yaml" PATTERN "*.urdf" PATTERN "*.stl")
 install(DIRECTORY scenarios examples DESTINATION ${data} COMPONENT program)
+install(DIRECTORY docs/schemas DESTINATION ${data}/docs COMPONENT program)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 if(TARGET understudy)
   install(TARGETS understudy RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)

@@ -156,7 +156,8 @@ void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription&
                                  index + 1, model.kinematics.kind, chain.axes[index].name));
   }
   ChainAxis& axis = chain.axes[index];
-  if (map.recording() && !listed && model.kinematics.parameters.empty()) axis = any_urdf_axis(map);
+  const bool any_urdf = map.recording() && !listed && model.kinematics.parameters.empty();
+  if (any_urdf) axis = any_urdf_axis(map);
   read_range(map, axis);
   model.kinematics.home[index] = read_home(map, axis);
   map.section("drive", "motor and gear",
@@ -169,7 +170,7 @@ void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription&
           ? map.quantity(friction, {0, 1000}, "a smaller load leaves the axis where it is within its play")
           : 0.0;
   // A link that a URDF has told may be told anew.
-  const bool told = index < model.links.size() && model.links[index].mass > 0;
+  const bool told = any_urdf || (index < model.links.size() && model.links[index].mass > 0);
   if (index >= model.links.size()) model.links.emplace_back();
   if (!told || map.has("link"))
     map.section("link", "what the axis carries, told in O with all axes at 0",
@@ -211,11 +212,7 @@ void read_urdf_chain(YamlMap& map, MachineDescription& machine) {
                     base = map.text("base_link", "the link that carries the work"),
                     tool = map.text("tool_link", "the link that carries the tool");
   const Pose X_LT = read_tool_mount(map);
-  if (map.recording()) {  // one axis for all, whose link the URDF tells
-    model.kinematics.chain.axes.resize(1);
-    model.links.resize(1);
-    model.links[0].mass = 1;
-  }
+  if (map.recording()) model.kinematics.chain.axes.resize(1);  // one axis for all
   if (!map.complete()) return;
   const auto path = machine.file.parent_path() / file;
   const UrdfArm arm = read_urdf(path, base, tool);
