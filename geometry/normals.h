@@ -12,9 +12,9 @@ namespace understudy::geometry {
 Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Duplicates the vertices on creases (the copies go behind the others and `triangles` is rewritten) and
-/// returns the smooth normal of every vertex. Faces are weighted by corner angle, so that the way a flat face
-/// is cut into triangles does not matter, times area, so that the large flat facets of a CAD part keep their
-/// normal beside the small facets of its fillets.
+/// returns the smooth normal of every vertex. Faces are weighted by corner angle, so that the way in which a
+/// flat face is cut into triangles does not matter, times area, so that the large flat facets of a CAD part
+/// keep their normal beside the small facets of its fillets.
 std::vector<Vec3> split_creases(std::vector<Vec3>& vertices, std::vector<std::array<int, 3>>& triangles,
                                 const std::vector<std::array<int, 3>>& neighbours, double crease_angle);
 

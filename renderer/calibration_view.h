@@ -62,7 +62,7 @@ class CalibrationView {
 };
 
 /// True pixels of the board's inner corners, in the order of Board::corner; nothing for those behind the
-/// camera. Those outside the sensor are told as well.
+/// camera. Those outside the sensor are reported as well.
 std::vector<std::optional<Vec2>> true_corners(const BoardScene& scene);
 
 /// Where a sphere's centre is projected to, and the centre of the ellipse that its outline draws: they

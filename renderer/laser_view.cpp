@@ -22,7 +22,7 @@ constexpr int kSegments = 128;            // chord error of a nozzle of 1 mm: 0.
 constexpr double kBeamReach = 2.2;        // radii; beyond, less than 1e-4 of the peak
 constexpr double kNear = 2e-3, kFar = 1;  // [m] before the camera
 constexpr double kTableHalf = 0.25;       // [m] of the table around the tool
-constexpr float kToolAlbedo = 0.6f;       // brass and steel beside matt plastic: 1
+constexpr float kToolAlbedo = 0.6f;       // brass and steel, relative to matt plastic
 const std::vector<int> kViewLayout = {3, 3, 4, 1};
 constexpr std::uint64_t kRoughness = 0x726F756768, kShot = 0x73686F74;  // key the streams of hash_bits
 
@@ -155,14 +155,14 @@ void LaserView::State::add(const Surface& surface, const Pose& X_CF, Owner owner
       for (const std::size_t i : {ia, ib, ic}) put(shadow_data, p_beam[i]);
     }
 
-    const auto beside = [&](const auto& outside) {
+    const auto all_corners = [&](const auto& outside) {
       return outside(p_C[ia]) && outside(p_C[ib]) && outside(p_C[ic]);
     };
-    if (beside([](const Vec3& p) { return p.z() < kNear; }) ||
-        beside([&](const Vec3& p) { return p.x() < low.x() * p.z(); }) ||
-        beside([&](const Vec3& p) { return p.x() > high.x() * p.z(); }) ||
-        beside([&](const Vec3& p) { return p.y() < low.y() * p.z(); }) ||
-        beside([&](const Vec3& p) { return p.y() > high.y() * p.z(); })) {
+    if (all_corners([](const Vec3& p) { return p.z() < kNear; }) ||
+        all_corners([&](const Vec3& p) { return p.x() < low.x() * p.z(); }) ||
+        all_corners([&](const Vec3& p) { return p.x() > high.x() * p.z(); }) ||
+        all_corners([&](const Vec3& p) { return p.y() < low.y() * p.z(); }) ||
+        all_corners([&](const Vec3& p) { return p.y() > high.y() * p.z(); })) {
       continue;
     }
     const Vec3 normal = (p_C[ib] - p_C[ia]).cross(p_C[ic] - p_C[ia]);

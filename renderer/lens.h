@@ -19,7 +19,7 @@ struct Sample {
 enum class Owner { nothing, scenery, tool };  // scenery rests in W: table and part
 inline Owner owner_of(const Sample& s) { return static_cast<Owner>(static_cast<int>(s.owner)); }
 
-/// Sample (i, j) lies at pixel ((i + 1/2) / 2 - 1/2, ...); indices may be negative beside the sensor.
+/// Sample (i, j) lies at pixel ((i + 1/2) / 2 - 1/2, ...); indices may be negative outside the sensor.
 struct SampleGrid {
   int x = 0, y = 0, width = 0, height = 0;
   std::vector<Sample> samples;

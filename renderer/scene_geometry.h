@@ -13,7 +13,7 @@ struct PictureGeometry {
   double radius = 0;           ///< [m], of a sphere that holds everything but the ground
   double ground_fade = 0;      ///< [m]
   std::vector<float> solids;   ///< cast shadows
-  std::vector<float> casters;  ///< what stands in the way of the sky, where that is not all of `solids`
+  std::vector<float> casters;  ///< what hides the sky, where that is not all of `solids`
   std::vector<float> ground;   ///< receives them
   std::vector<float> creases;  ///< thin, towards the eye
 };

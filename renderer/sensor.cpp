@@ -31,7 +31,8 @@ double unit_interval(std::uint64_t bits) { return (static_cast<double>(bits >> 1
 
 double normal(double u, double v) { return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v); }
 
-/// Electrons of a Poisson law; from some forty on, a rounded Gaussian cannot be told from it at 8 bits.
+/// Electrons of a Poisson law; from some forty on, a rounded Gaussian cannot be distinguished from it at 8
+/// bits.
 double photo_electrons(double mean, std::uint64_t key, std::uint64_t counter) {
   const double u = unit_interval(hash_bits(key, counter));
   if (mean > 40) {

@@ -12,8 +12,8 @@ struct Snapshot {
   Pose X_WT = Pose::Identity();             ///< true tool pose
   Pose X_WT_commanded = Pose::Identity();   ///< what the axes command means to the nominal geometry
   kinematics::AxisVector axes_commanded{};  ///< SI, controller's geometry
-  kinematics::AxisVector axes{};            ///< SI, as the port tells the controller
-  kinematics::AxisVector axes_reached{};    ///< SI, where the drives are, whatever the port tells
+  kinematics::AxisVector axes{};            ///< SI, as the port reports it to the controller
+  kinematics::AxisVector axes_reached{};    ///< SI, where the drives are, whatever the port reports
   double filament = 0;                      ///< [m], fed since the start
   double fan = 0;
   double nozzle_temperature = 0;  ///< [K]

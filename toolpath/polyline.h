@@ -1,4 +1,4 @@
-// Measures of a polyline.
+// Measures of a polyline. All [m].
 #pragma once
 
 #include <vector>

@@ -14,7 +14,7 @@ class ProgramBuilder {
   void travel(const Pose& X_WT);
   /// Without filament, at `feed` [m/s].
   void move(const Pose& X_WT, double feed);
-  /// Lays `volume` [m^3] on the way to X_WT.
+  /// Lays `volume` [m^3] on the path to X_WT.
   void print(const Pose& X_WT, double feed, double volume);
   void dwell(double seconds);
 

@@ -8,7 +8,7 @@
 
 namespace understudy::sim {
 
-/// Puts what the file tells into `built`, which holds the machine as drawn. Throws InputError with file,
+/// Reads the values of the file into `built`, which holds the machine as drawn. Throws InputError with file,
 /// line, key and limit; a name that is no file is answered with the words that are known.
 void read_as_built(const std::string& file, AsBuilt& built);
 

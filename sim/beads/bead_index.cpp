@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTie = 2e-9;       // [m], twice the accuracy of a distance
-constexpr double kRounding = 1e-9;  // [m], by which the next step of a way out must go on
+constexpr double kRounding = 1e-9;  // [m], by which the next step of a path out must go on
 // Of the width: a ball about a bead holds its half length and half width, and rounding.
 constexpr double kAround = 0.501;
 
@@ -86,10 +86,10 @@ Around ball_of(const Bead& bead) {
 
 // Whether the ray (of unit direction) passes the ball within `limit`.
 bool meets(const Ray& ray, const Around& ball, double limit) {
-  const Vec3 way = ball.centre - ray.origin;
-  const double along = way.dot(ray.direction);
+  const Vec3 to_centre = ball.centre - ray.origin;
+  const double along = to_centre.dot(ray.direction);
   return along - ball.radius <= limit && along >= -ball.radius &&
-         way.squaredNorm() - along * along <= ball.radius * ball.radius;
+         to_centre.squaredNorm() - along * along <= ball.radius * ball.radius;
 }
 
 BeadTree::Bounds around(const Vec3& p, double reach) {
@@ -115,8 +115,8 @@ BeadTree::Bounds bounds_of(const Core& core, const Pose& X_WS) {
 }
 
 // How far apart a plane between a core and a box holds them, at most their distance; below 0 where none does.
-// First the plane across the shortest way to the box's centre, then, unless that is `enough`, the one across
-// the shortest way to the box's point nearest to where the first way began.
+// First the plane across the shortest line to the box's centre, then, unless that is `enough`, the one across
+// the shortest line to the box's point nearest to where the first line began.
 template <typename Core>
 double bound_of_box(const Core& core, const Pose& X_WS, const BeadTree::Box& box, double enough) {
   const Mat3& R = X_WS.linear();
@@ -267,7 +267,7 @@ std::optional<BeadIndex::Hit> BeadIndex::way_out(const Vec3& p_W, const Vec3& di
   for (double s = 0;;) {
     const Vec3 p = p_W + s * direction_W;
     const bool first = !out;
-    Closest farthest(kInfinity);  // of minus the ways, so that the longest is the least
+    Closest farthest(kInfinity);  // of minus the path lengths, so that the longest is the least
     const auto visit = [&](std::size_t index, const Bead& bead) {
       if (index >= before) return;
       const Around ball = ball_of(bead);
@@ -275,7 +275,7 @@ std::optional<BeadIndex::Hit> BeadIndex::way_out(const Vec3& p_W, const Vec3& di
       const BeadCore core = core_of(bead);
       const double distance = signed_distance(core, p);
       if (first && slack == 0 ? distance >= 0 : distance > slack) return;
-      if (const auto way = leaving(core, p, direction_W)) farthest.offer(-*way, index);
+      if (const auto path = leaving(core, p, direction_W)) farthest.offer(-*path, index);
     };
     tree.search([&] { return around(p, slack); },
                 [&](const BeadTree::Box& box) { return distance_to_box(box, p); }, [&] { return slack; },
@@ -283,9 +283,9 @@ std::optional<BeadIndex::Hit> BeadIndex::way_out(const Vec3& p_W, const Vec3& di
     const auto winner = farthest.winner();
     if (!winner) return out;
     const BeadCore core = core_of(tree.bead(*winner));
-    const double way = *leaving(core, p, direction_W);
-    if (way <= (first && slack == 0 ? 0 : kRounding)) return out;
-    s += way;
+    const double path = *leaving(core, p, direction_W);
+    if (path <= (first && slack == 0 ? 0 : kRounding)) return out;
+    s += path;
     out = Hit{s, p_W + s * direction_W, Vec3::Zero(), *winner};
     out->normal_W = normal_at(core, out->place_W, direction_W);
   }

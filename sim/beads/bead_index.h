@@ -55,7 +55,7 @@ class BeadIndex {
   std::optional<Hit> nearest_surface(const Vec3& p_W, double cutoff, std::size_t before = kAll) const;
   /// From a point inside a bead, or no more than `slack` from one [m], along the unit vector `direction` to
   /// the end of the heap: through every bead that the one before it meets, with at most `slack` of air
-  /// between them. Nothing where the point is in none or the way is over.
+  /// between them. Nothing where the point is in none or the path ends.
   std::optional<Hit> way_out(const Vec3& p_W, const Vec3& direction_W, double slack,
                              std::size_t before = kAll) const;
 

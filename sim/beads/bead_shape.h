@@ -18,8 +18,8 @@ void check(const Bead& bead);
 
 /// Of a solid's core, `solid_radius` around it, to the bead, exact to 2 nm while the cores are apart. Where
 /// they meet, minus both radii and minus how deep the deepest point of the bead's core is in the solid's (to
-/// 0.5 um): not less than the depth of the deepest point of penetration.h, not more than the way that would
-/// part them. Any distance above `enough` where it is not below.
+/// 0.5 um): not less than the depth of the deepest point of penetration.h, not more than the displacement
+/// that would part them. Any distance above `enough` where it is not below.
 template <typename Core>
 Separation separation(const Core& core, double solid_radius, const Pose& X_WS, const BeadCore& bead_W,
                       double enough);

@@ -1,4 +1,4 @@
-// The bodies that may meet, posed by the tool: which pairs to watch, how far apart they are, how far each can
+// The bodies that may meet, posed by the tool: which pairs to check, how far apart they are, how far each can
 // move for a given motion of the tool.
 #pragma once
 

@@ -28,7 +28,7 @@ struct CollisionOptions {
   double margin = 0.02e-3;  ///< [m], above 0: motion between two checks may use up the clearance but for this
   double near = 0.5e-3;     ///< [m]: below, a body other than the nozzle is a near collision
   double nozzle_contact = 0;  ///< [m]: the nozzle touches when its clearance is at or below this
-  /// What has been printed so far, growing between snapshots; nullptr: it is not watched.
+  /// The beads printed so far, growing between snapshots; nullptr: they are not checked.
   const BeadIndex* beads = nullptr;
   /// Number of the first bead that is still under the nozzle, which presses it by design; asked at every
   /// snapshot. Without it no bead is fresh.
@@ -44,7 +44,7 @@ struct CollisionOptions {
 /// Each pair has its own budget of motion, so that a pair is looked at again only when it could have reached
 /// something that matters. What this promises of the interpolated motion:
 /// - a contact deeper than margin / 2 is never missed (nozzle against the part: margin / 8), and nothing is
-///   reported that was not measured at some pose on the way;
+///   reported that was not measured at some pose between the snapshots;
 /// - min_clearance() is at most max(0.05 mm, 1 %), min_nozzle_clearance() at most max(margin / 8, 1 %) above
 ///   the least that was passed, and never below it;
 /// - the depth of a contact is within max(margin, 5 %) of the deepest of its line.

@@ -15,7 +15,7 @@ constexpr double kLongest = 2e-3;          // [m]: sag, cooling and pictures see
 constexpr double kPause = 10e-6;           // [m], path without feed that ends an element; less is jitter
 constexpr double kSettled = 1e-3;          // [m], path without feed after which an element is done
 constexpr double kStraight = 5e-6;         // [m], a path farther beside the element's line begins a new one
-constexpr double kSteepest = 1.5;          // surface's way over the tip's
+constexpr double kSteepest = 1.5;          // surface's path over the tip's
 constexpr double kSameGap = 2e-6;          // [m]
 constexpr double kSameSection = 0.03;      // of the area
 constexpr double kSameAxis = 0.02;         // [rad]
@@ -86,8 +86,8 @@ void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double length, do
   bead.gap = bead.length > 0 ? moment_ / bead.length : b.gap;
   const auto [low, high] = std::minmax(a.gap, b.gap);
   e.worst_gap = bead.adhesion == Adhesion::buried ? std::min(e.worst_gap, low) : std::max(e.worst_gap, high);
-  const Vec3 way = bead.to_W - bead.from_W;
-  if (heading_.isZero() && way.norm() >= kElementLength) heading_ = way.normalized();
+  const Vec3 displacement = bead.to_W - bead.from_W;
+  if (heading_.isZero() && displacement.norm() >= kElementLength) heading_ = displacement.normalized();
 }
 
 // Width and height from the volume, once it is known.
@@ -96,11 +96,11 @@ void BeadBuilder::settle_section() {
   const double gap = bead.adhesion == Adhesion::fused ? fused_height_ : bead.gap;
   const bool pressed = bead.adhesion != Adhesion::unsupported && bead.adhesion != Adhesion::buried &&
                        std::isfinite(gap) && gap > 0;
-  // The net way: what the tip trembles to and fro draws nothing out.
+  // The net displacement: a tip that trembles to and fro draws nothing out.
   bead.length = (bead.to_W - bead.from_W).norm();
   bead.path = (element_->tip_to_W - element_->tip_from_W).norm();
   if (bead.length > 0) {
-    // Where the ground falls away the surface's way is longer than what was drawn out.
+    // Where the ground falls away the surface's path is longer than the strand that was drawn out.
     const double area = bead.volume / std::min(bead.length, kSteepest * bead.path);
     bead.width = bead_width(area, gap);
     bead.height = pressed ? std::min(gap, bead.width) : round_diameter(area);

@@ -12,8 +12,8 @@ constexpr int kFanSteps = 10;
 }  // namespace
 
 double free_strand_diameter(const machine::MachineDescription& machine) {
-  const double told = machine.process.free_strand_diameter;
-  return told > 0 ? told : kSwell * machine.tool.nozzle_diameter;
+  const double described = machine.process.free_strand_diameter;
+  return described > 0 ? described : kSwell * machine.tool.nozzle_diameter;
 }
 
 BeadTemperature::BeadTemperature(const machine::MachineDescription& machine,

@@ -10,8 +10,8 @@
 namespace understudy::sim {
 
 /// A bead as wide as a strand that leaves the nozzle freely, cooled by air alone: what it gives to the
-/// material below makes it colder, so an interface is rather told too warm than too cold in the first second
-/// and is at ambient on both counts later. The fan counts as it is now, in tenths.
+/// material below makes it colder, so an interface is reported too warm rather than too cold in the first
+/// second and is at ambient on both counts later. The fan counts as it is now, in tenths.
 class BeadTemperature {
  public:
   BeadTemperature(const machine::MachineDescription& machine, const machine::Material& material);

@@ -37,8 +37,8 @@ struct Ground {
 
 Bead shape_of(const Element& element) {
   const LaidBead& laid = element.bead;
-  // What fills the way from the surface to the nozzle is as high as the tip everywhere; a thinner strand lies
-  // on the surface, unless it hangs.
+  // What fills the space from the surface to the nozzle is as high as the tip everywhere; a thinner strand
+  // lies on the surface, unless it hangs.
   const bool lies = laid.adhesion == Adhesion::buried ||
                     (laid.adhesion != Adhesion::unsupported && laid.adhesion != Adhesion::fused &&
                      laid.height < kFills * laid.gap);
@@ -173,8 +173,8 @@ struct DepositionObserver::State {
   Ground ground_at(const Snapshot& s, const Vec3& heading) const {
     const Ground seen = look(s.X_WT, s.time, s.fan, s.nozzle_temperature);
     if (seen.gap <= accepted_max + kRounding || workpiece->beads().size() == 0) return seen;
-    const Ground beside = look_beside(s, heading);
-    return std::isfinite(beside.gap) ? beside : seen;
+    const Ground at_side = look_beside(s, heading);
+    return std::isfinite(at_side.gap) ? at_side : seen;
   }
 
   Adhesion adhesion_of(double gap, const Ground& below) const {

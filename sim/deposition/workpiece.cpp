@@ -69,7 +69,7 @@ std::optional<Hit> Workpiece::top_of_heap(const Vec3& tip_W, const Vec3& axis_W,
   for (;;) {
     const double height = top ? -top->distance : 0;
     const Vec3 p = tip_W + height * axis_W;
-    std::optional<Hit> step;  // its distance: minus the way up from p
+    std::optional<Hit> step;  // its distance: minus the distance up from p
     if (const auto out = beads_.way_out(p, axis_W, top ? kSlack : 0, before)) {
       step = of_bead(*out);
       step->distance = -out->distance;

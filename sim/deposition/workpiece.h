@@ -40,9 +40,9 @@ class Workpiece {
   /// inside.
   std::optional<Hit> nearest(const Vec3& p_W, double cutoff, std::size_t before = BeadIndex::kAll) const;
   /// What lies below the tip along the tool axis: `distance` is the true gap, negative where the tip is
-  /// inside: then it is the way up through everything that lies on one another there, to the top of the heap.
-  /// Nothing within kGapReach: none. A roof above the tip is no surface to print on. An open insert is met
-  /// from its outside only.
+  /// inside: then it is the distance up through everything that lies on one another there, to the top of the
+  /// heap. Nothing within kGapReach: none. A roof above the tip is no surface to print on. An open insert is
+  /// met from its outside only.
   std::optional<Hit> below(const Pose& X_WT, std::size_t before = BeadIndex::kAll) const;
 
  private:

@@ -21,7 +21,7 @@ Project onto_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   return {q, (p - q).norm()};
 }
 
-// The frustum's section in (distance from the axis, z): what of its outline is nearest.
+// The frustum's section in (distance from the axis, z): the nearest point of its outline.
 Project onto_outline(const FrustumCore& f, const Vec2& p) {
   const Vec2 low(f.radius_low, f.low), high(f.radius_high, f.high);
   Project best = onto_segment(p, low, high);

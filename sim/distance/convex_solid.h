@@ -48,8 +48,8 @@ std::optional<ConvexSolid> convex_solid(const geometry::Shape& shape);
 /// Signed, negative inside; exact. `p` in the solid's frame.
 double signed_distance(const ConvexSolid& solid, const Vec3& p);
 
-/// Balls that lie inside the solid and reach its surface all over, so that the deepest of them tells how
-/// deep the solid is in something else: rims and discs of round bodies, faces of boxes, points along
+/// Balls that lie inside the solid and reach its surface all over, so that the deepest of them gives the
+/// depth of the solid in another body: rims and discs of round bodies, faces of boxes, points along
 /// capsules at most 1 mm apart.
 struct Ball {
   Vec3 centre{0, 0, 0};

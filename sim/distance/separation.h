@@ -1,4 +1,4 @@
-// What a distance query answers.
+// The answer of a distance query.
 #pragma once
 
 #include "core/frames.h"

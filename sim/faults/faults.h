@@ -46,11 +46,11 @@ class FaultyDrives {
  public:
   FaultyDrives(const machine::MachineDescription& machine, std::vector<FaultEvent> events);
 
-  /// Changes what the drives are told, and the plant's condition, as the events up to `time` say.
+  /// Changes the commands of the drives, and the plant's condition, as the events up to `time` say.
   void apply(double time, DriveCommand& command, Plant& plant);
   /// True once the power is gone.
   bool power_is_cut() const { return power_cut_; }
-  /// True where the drive no longer does what it is told: the port then counts steps, not motion.
+  /// True where the drive no longer follows its commands: the port then counts steps, not motion.
   bool counts_only(int axis) const { return axes_[static_cast<std::size_t>(axis)].counts_only; }
 
  private:

@@ -11,7 +11,7 @@ namespace understudy::sim {
 /// Joint clearances are greasy: damping of a play that slides (docs/reference.md#play). A play that turns has
 /// it at the chain's length scale.
 constexpr double kPlayDamping = 2.0;  // [N s/m]
-/// Of the universal joints, small beside gravity: 1 rad/s costs a strut 0.5 mN at its ball.
+/// Of the universal joints, small compared with gravity: 1 rad/s costs a strut 0.5 mN at its ball.
 constexpr double kHingeDamping = 1e-4;  // [N m s/rad]
 /// Share of the nut-and-rod mass that sits beyond the ball joint's play.
 constexpr double kRodEndShare = 0.5;

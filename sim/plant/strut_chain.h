@@ -1,4 +1,4 @@
-// One strut as a chain of joints: universal joint, screw beside it by `dev`, ball joint.
+// One strut as a chain of joints: universal joint, screw offset from it by `dev`, ball joint.
 #pragma once
 
 #include "kinematics/hexapod/hexapod.h"

@@ -106,7 +106,7 @@ class Solver {
     strand.small = strand.small && result.slope_max < 0.3 && !result.falls;
   }
 
-  /// A program that runs outside the material's range is told so elsewhere; its strands are solved at the
+  /// A program that runs outside the material's range is reported elsewhere; its strands are solved at the
   /// limit.
   double temperature_of(const UnsupportedStretch& stretch) const {
     if (stretch.nozzle_temperature <= 0) return 0;

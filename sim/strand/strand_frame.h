@@ -1,5 +1,6 @@
 // A chain of Maxwell beam elements in space (bending, torsion, stretching), growing at one end: the mechanics
-// of a strand drawn through air along a curve. Linear: displacements are small beside the curve's radii.
+// of a strand drawn through air along a curve. Linear: displacements are small compared with the curve's
+// radii.
 #pragma once
 
 #include <span>

@@ -11,7 +11,7 @@
 namespace understudy::sim {
 namespace {
 
-// Of the height: a flat narrower than this is thinner than the numbers of a file can tell.
+// Of the height: a flat narrower than this is thinner than the numbers of a file can show.
 constexpr double kNoFlat = 1e-4;
 
 void require_sides(int sides) {

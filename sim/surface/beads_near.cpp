@@ -10,10 +10,10 @@ namespace {
 double distance_to_middle_line(const Bead& bead, const Vec3& p_W) {
   const Vec3 from(bead.from_W[0], bead.from_W[1], bead.from_W[2]),
       to(bead.to_W[0], bead.to_W[1], bead.to_W[2]);
-  const Vec3 way = to - from;
-  const double square = way.squaredNorm();
-  const double share = square > 0 ? std::clamp((p_W - from).dot(way) / square, 0.0, 1.0) : 0;
-  return (p_W - from - share * way).norm();
+  const Vec3 along = to - from;
+  const double square = along.squaredNorm();
+  const double share = square > 0 ? std::clamp((p_W - from).dot(along) / square, 0.0, 1.0) : 0;
+  return (p_W - from - share * along).norm();
 }
 
 }  // namespace

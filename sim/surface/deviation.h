@@ -27,7 +27,7 @@ struct DeviationSample {
 };
 
 /// Points spread evenly by area, equal for equal seeds. A sample's ray starts `limit` outside the surface, or
-/// half way to where the intended part faces itself, and ends `limit` inside. A point with no material within
+/// halfway to where the intended part faces itself, and ends `limit` inside. A point with no material within
 /// the limit has no distance. Beads are what counts: neither table nor insert is the part. Throws InputError:
 /// a count, limit or region out of range, a region without intended surface.
 std::vector<DeviationSample> sample_deviation(const BeadIndex& beads, const geometry::Mesh& intended,

@@ -88,7 +88,7 @@ void require_tilt(double tilt, double at) {
                     to_deg(tilt), to_mm(at), to_deg(kTiltMax)));
 }
 
-// Each height against the intended surface, told across it.
+// Each height against the intended surface, measured across it.
 void remove_intended_form(const geometry::Mesh& intended, const ProfileLine& line, const Trace& trace,
                           SurfaceProfile& profile) {
   for (std::size_t i = 0; i < trace.points; ++i) {

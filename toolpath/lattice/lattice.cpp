@@ -17,10 +17,10 @@ void place_lattice(Lattice& lattice, double scale, const Vec3& place) {
 
 std::vector<int> hanging_nodes(const Lattice& lattice) {
   std::vector<bool> used(lattice.nodes.size()), reached(lattice.nodes.size());
-  std::vector<std::vector<int>> beside(lattice.nodes.size());
+  std::vector<std::vector<int>> neighbours(lattice.nodes.size());
   for (const auto& [a, b] : lattice.struts) {
-    beside[static_cast<std::size_t>(a)].push_back(b);
-    beside[static_cast<std::size_t>(b)].push_back(a);
+    neighbours[static_cast<std::size_t>(a)].push_back(b);
+    neighbours[static_cast<std::size_t>(b)].push_back(a);
     used[static_cast<std::size_t>(a)] = used[static_cast<std::size_t>(b)] = true;
   }
   std::vector<int> open;
@@ -32,7 +32,7 @@ std::vector<int> hanging_nodes(const Lattice& lattice) {
   while (!open.empty()) {
     const auto node = static_cast<std::size_t>(open.back());
     open.pop_back();
-    for (const int next : beside[node])
+    for (const int next : neighbours[node])
       if (!reached[static_cast<std::size_t>(next)]) {
         reached[static_cast<std::size_t>(next)] = true;
         open.push_back(next);

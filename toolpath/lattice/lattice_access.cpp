@@ -97,11 +97,12 @@ bool StrutAccess::find(int strut, int from, int to, const std::vector<int>& buil
     print = print_along(strut, from, to, axis, built);
     // What is printed hangs from the tip: later stages of the strut hold the earlier ones.
     if (!tool_.clears(fresh(print), leaving(print), limits_.margin)) continue;
-    const auto ways = motions(print);
+    const auto paths = motions(print);
     const bool clear = std::all_of(built.begin(), built.end(), [&](int other) {
       const StrutBody obstacle = body(other, print);
-      return std::all_of(ways.begin(), ways.end(),
-                         [&](const ToolMotion& way) { return tool_.clears(obstacle, way, limits_.margin); });
+      return std::all_of(paths.begin(), paths.end(), [&](const ToolMotion& path) {
+        return tool_.clears(obstacle, path, limits_.margin);
+      });
     });
     if (clear && allowed(print)) return true;
   }
@@ -115,11 +116,11 @@ StrutAccess::Obstacle StrutAccess::clearest(int strut, int from, int to, const s
     const StrutPrint print = print_along(strut, from, to, axis, built);
     if (!allowed(print)) continue;
     Obstacle nearest{tool_.distance(fresh(print), leaving(print), kTolerance), strut};
-    const auto ways = motions(print);
+    const auto paths = motions(print);
     for (const int other : built) {
-      for (const ToolMotion& way : ways) {
-        if (tool_.clears(body(other, print), way, nearest.distance)) continue;
-        const double distance = tool_.distance(body(other, print), way, kTolerance);
+      for (const ToolMotion& path : paths) {
+        if (tool_.clears(body(other, print), path, nearest.distance)) continue;
+        const double distance = tool_.distance(body(other, print), path, kTolerance);
         if (distance < nearest.distance) nearest = {distance, other};
       }
       if (nearest.distance <= answer.distance) break;

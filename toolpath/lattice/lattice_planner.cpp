@@ -81,7 +81,7 @@ class LatticePrint {
     builder_.travel(outside);
   }
 
-  // With one axis the way leads along the plane across it that is farther out.
+  // With one axis the path leads along the plane across it that is farther out.
   void travel_level(const Pose& to, const Vec3& axis) {
     const double up = axis.dot(to.translation() - builder_.tool().translation());
     if (std::abs(up) < kMicrometre) return;

@@ -44,9 +44,9 @@ Vec3 tip_at(const LatticeNode& node, const Vec3& axis, double strut_diameter, do
 /// Every strut once, each begun at a node that is grounded or at the end of an earlier strut. Found
 /// backwards: of the whole frame that strut is taken off which lies highest, leaves the rest connected to the
 /// ground, and could be printed last without the tool coming nearer than `margin` to the others, to the strut
-/// itself, or to the table, on its way in, along the strut and out (as Huang 2021 takes frames apart). Tool
+/// itself, or to the table, on its path in, along the strut and out (as Huang 2021 takes frames apart). Tool
 /// axes are tried from vertical outwards, 15 degrees apart. Throws InputError naming a strut that no axis is
-/// clear for and the nearest strut in its way.
+/// clear for and the nearest strut in its path.
 StrutSequence sequence_struts(const Lattice& lattice, const SequenceLimits& limits);
 
 }  // namespace understudy::toolpath

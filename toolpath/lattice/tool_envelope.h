@@ -28,7 +28,7 @@ class ToolEnvelope {
 
   /// [m], of a point in T to the envelope; negative inside; infinite for a tool without bodies.
   double distance(const Vec3& p_TP) const;
-  /// Smallest distance of a strut's surface to the tool on its way, to within 2 x `tolerance` [m] from below.
+  /// Smallest distance of a strut's surface to the moving tool, to within 2 x `tolerance` [m] from below.
   double distance(const StrutBody& strut, const ToolMotion& motion, double tolerance) const;
   /// Whether that distance is at least `margin`; within 20 um of it the answer may be no. Much faster.
   bool clears(const StrutBody& strut, const ToolMotion& motion, double margin) const;

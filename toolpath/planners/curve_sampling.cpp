@@ -120,7 +120,7 @@ class Sampler {
 
   bool good(const Stretch& stretch, double s, const SurfacePoint& from, double t,
             const SurfacePoint& to) const {
-    // The surface may be longer than the curve beside it, but less than a hair is no reason to halve a step.
+    // The surface may be longer than the curve above it, but less than a hair is no reason to halve a step.
     if ((to.position - from.position).norm() > 1.01 * limits_.step) return false;
     if (angle(from.normal, to.normal) > kSwingPerStep) return false;
     for (const double at : stretch.probes(s, t)) {

@@ -127,9 +127,9 @@ class PlanarPrint {
     if (builder_.empty()) {
       builder_.begin(lifted(start), plan_.temperature, plan_.fan);
     } else {
-      const Vec3 way = start.translation() - builder_.tool().translation();
-      // To the loop beside: over the bead just laid, no higher than the tip.
-      if (std::abs(way.z()) < kCollinear && way.norm() < 2 * plan_.bead_width)
+      const Vec3 displacement = start.translation() - builder_.tool().translation();
+      // To the neighbouring loop: over the bead just laid, no higher than the tip.
+      if (std::abs(displacement.z()) < kCollinear && displacement.norm() < 2 * plan_.bead_width)
         return builder_.move(start, plan_.feed);
       Pose up = builder_.tool();
       up.translation().z() = lifted(start).translation().z();

@@ -93,7 +93,7 @@ class WaypointPrint {
   }
 
   // Away from the last stroke and over to where the next one is come down to: both ends are lifted along the
-  // mean axis until what is printed lies below, so that the way across cannot cut through a bulge of it.
+  // mean axis until what is printed lies below, so that the path across cannot cut through a bulge of it.
   void cross(const Pose& next) {
     const Pose from = clear_of(builder_.tool()), to = clear_of(next);
     builder_.travel(from);

@@ -33,9 +33,9 @@ struct BoardMeasurement {
   int corners_seen = 0;  ///< when not all are found: how many places look like a corner
 };
 
-/// Corners are where both edges' gradients are orthogonal to the way to them, in windows of 13 x 13 px
+/// Corners are where both edges' gradients are orthogonal to the line to them, in windows of 13 x 13 px
 /// (OpenCV's findChessboardCorners and cornerSubPix). The board must have one even and one odd count of inner
-/// corners. Never throws for what a picture holds; a board that cannot be told from itself upside down is
+/// corners. Never throws for what a picture holds; a board that looks the same upside down is
 /// InputError.
 BoardMeasurement measure_board(const Image& image, const Board& board, const BoardOptions& options = {});
 

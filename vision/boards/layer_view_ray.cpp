@@ -103,7 +103,7 @@ Vec3 LayerSight::place(const LayerTable& table, const Vec2& pixel) const {
                 c.a * table.p_W[index(c.column + 1, c.row + 1)]);
 }
 
-/// Least squares over the way along the chord, whose errors hardly matter.
+/// Least squares over the position along the chord, whose errors hardly matter.
 ViewRay straightened(const ViewRay& sight) {
   const Vec3 chord = (sight.points.back() - sight.points.front()).normalized();
   Vec3 mean = Vec3::Zero();

@@ -1,4 +1,4 @@
-// The way back through a lens with Brown distortion (Camera::project is the way in).
+// From pixels to rays through a lens with Brown distortion; Camera::project is the inverse.
 #pragma once
 
 #include "core/image.h"

@@ -27,7 +27,7 @@ class PinholeSight : public SightModel {
   double residual_ = 0;
 };
 
-/// One view of all layers where they are meant to be: their known steps of depth tell the focal length.
+/// One view of all layers where they are meant to be: their known steps of depth determine the focal length.
 CameraParameters calibrate_at_once(const CameraLayers& layers) {
   const Camera& designed = layers.camera.camera;
   const Pose X_FW = layers.camera.X_WC.inverse();
@@ -106,8 +106,8 @@ PinholeSight::PinholeSight(const CameraLayers& layers, const CalibrationUncertai
 ViewRay PinholeSight::sight(const Vec2& pixel, int replica) const {
   const MountedCamera& m = cameras_[static_cast<std::size_t>(replica + 1)];
   const Vec2 ray = ray_of_pixel(m.camera, pixel);
-  const Vec3 way(ray.x(), ray.y(), 1);
-  return {{m.X_WC * Vec3(near_ * way), m.X_WC * Vec3(far_ * way)}};
+  const Vec3 direction(ray.x(), ray.y(), 1);
+  return {{m.X_WC * Vec3(near_ * direction), m.X_WC * Vec3(far_ * direction)}};
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ std::optional<RigidFit> fit_rigid(const std::array<Vec3, 3>& p_T, const std::arr
 /// the shifted pose is (exp(rotation) R, p + translation).
 Eigen::Matrix<double, 6, 9> fit_response(const Pose& X_WT, const std::array<Vec3, 3>& p_T);
 
-/// Covariance of the fitted pose, told likewise, from the joint covariance of the three points. Independent
-/// errors of sigma on an equilateral triangle of side a turn it by sqrt(2) sigma / a in its plane's axes and
-/// sigma / a about its normal.
+/// Covariance of the fitted pose, in the same order, from the joint covariance of the three points.
+/// Independent errors of sigma on an equilateral triangle of side a turn it by sqrt(2) sigma / a in its
+/// plane's axes and sigma / a about its normal.
 Mat6 fit_covariance(const Pose& X_WT, const std::array<Vec3, 3>& p_T, const Mat9& points);
 
 }  // namespace understudy::vision

@@ -12,7 +12,7 @@ Approach approach(const StereoModel& model, const Vec2& first, const Vec2& secon
   return closest_approach(model.cameras[0]->sight(first, replica), model.cameras[1]->sight(second, replica));
 }
 
-/// What the calibration's doubt does to the three points together, replica by replica.
+/// Effect of the calibration's uncertainty on the three points together, replica by replica.
 std::vector<Vec9> replica_shifts(const StereoModel& model,
                                  const std::array<std::array<PixelPoint, 3>, 2>& seen) {
   const int replicas = std::min(model.cameras[0]->replicas(), model.cameras[1]->replicas());

@@ -68,7 +68,7 @@ PoseMeasurement measure_pose(const StereoModel& model, const std::array<Vec3, 3>
                              const std::array<std::array<PixelPoint, 3>, 2>& seen,
                              const PoseOptions& options = {});
 
-/// From the measured outlines; a target that could not be measured is told with its reason.
+/// From the measured outlines; a target that could not be measured is reported with its reason.
 PoseMeasurement measure_pose(const StereoModel& model, const std::array<Vec3, 3>& targets_T,
                              const std::array<TargetsMeasurement, 2>& seen, const PoseOptions& options = {});
 

@@ -42,9 +42,9 @@ std::optional<double> edge_on_ray(const Image& image, const Blob& blob, double a
   const double first = 0.75 * blob.radius, last = 1.25 * blob.radius;
   const auto count = static_cast<std::size_t>((last - first) / kStep);
   std::vector<double> levels(count);
-  const Vec2 way(std::cos(angle), std::sin(angle));
+  const Vec2 direction(std::cos(angle), std::sin(angle));
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec2 p = blob.centre + (first + kStep * static_cast<double>(i)) * way;
+    const Vec2 p = blob.centre + (first + kStep * static_cast<double>(i)) * direction;
     if (p.x() < 0 || p.y() < 0 || p.x() >= image.width() - 1 || p.y() >= image.height() - 1)
       return std::nullopt;
     levels[i] = bilinear(image, p.x(), p.y());
@@ -70,9 +70,10 @@ struct Ellipse {
   Vec2 half{0, 0};  // along its axes
   double turn = 0;  // of the first axis
 
-  double half_width_along(const Vec2& way) const {
+  double half_width_along(const Vec2& direction) const {
     const double c = std::cos(turn), s = std::sin(turn);
-    const double a = half.x() * (c * way.x() + s * way.y()), b = half.y() * (-s * way.x() + c * way.y());
+    const double a = half.x() * (c * direction.x() + s * direction.y()),
+                 b = half.y() * (-s * direction.x() + c * direction.y());
     return std::sqrt(a * a + b * b);
   }
   /// Distance of a point outside, to the first order.

@@ -20,8 +20,8 @@ enum class TargetStatus {
 const char* to_string(TargetStatus s);
 
 struct TargetOptions {
-  /// The lens as known: removes the outline's lopsidedness and gives the way from the outline's centre to the
-  /// sphere's. A percent of error in its focal length matters 0.002 px.
+  /// The lens as known: removes the outline's lopsidedness and gives the displacement from the outline's
+  /// centre to the sphere's. A percent of error in its focal length matters 0.002 px.
   Camera camera;
   double radius_px = 53;  ///< expected
   /// How far a target may be from where it is expected. Below half the distance between two targets nothing
@@ -48,7 +48,7 @@ struct TargetsMeasurement {
   std::array<TargetMeasurement, 3> targets;
 };
 
-/// Which target is which is told by `expected_px` (the sensor's pixels at the pose that the machine was sent
+/// `expected_px` says which target is which (the sensor's pixels at the pose that the machine was sent
 /// to: a machine before calibration misses by 3 mm, 32 px): every blob belongs to the nearest expectation.
 /// Each outline is measured by edges on radial lines, an ellipse is fitted to them (Halir and Flusser's
 /// direct method in OpenCV, outliers dropped) and corrected for the projected centre: with the half-width b

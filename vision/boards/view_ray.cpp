@@ -14,8 +14,8 @@ namespace {
 constexpr double kEndless = 1e3;  // [m]
 
 struct Segment {
-  Vec3 start, way;   // unit way
-  double low, high;  // [m] along the way
+  Vec3 start, direction;  // unit direction
+  double low, high;       // [m] along it
 };
 
 /// The segments of a line with an endless one at either end.
@@ -34,13 +34,13 @@ std::vector<Segment> segments_of(const ViewRay& sight) {
 /// Closest points of two segments: the free optimum of one, clamped, answered by the other, twice.
 std::pair<Vec3, Vec3> closest(const Segment& a, const Segment& b) {
   const Vec3 r = b.start - a.start;
-  const double c = a.way.dot(b.way), ar = a.way.dot(r), br = b.way.dot(r);
+  const double c = a.direction.dot(b.direction), ar = a.direction.dot(r), br = b.direction.dot(r);
   const double across = 1 - c * c;
   double s = across > 1e-12 ? (ar - c * br) / across : ar;
   s = std::clamp(s, a.low, a.high);
   const double t = std::clamp(s * c - br, b.low, b.high);
   s = std::clamp(t * c + ar, a.low, a.high);
-  return {a.start + s * a.way, b.start + t * b.way};
+  return {a.start + s * a.direction, b.start + t * b.direction};
 }
 
 double beyond_ends(const ViewRay& sight, const Vec3& p) {

@@ -15,7 +15,7 @@ struct ViewRay {
 };
 
 struct Approach {
-  Vec3 point{0, 0, 0};  ///< in W, half way between the two lines
+  Vec3 point{0, 0, 0};  ///< in W, halfway between the two lines
   double gap = 0;       ///< [m], between the two lines
   double beyond = 0;    ///< [m], how far beyond the ends of a line, the worse of both
 };

@@ -15,7 +15,7 @@ struct DotOptions {
   double contrast_min = 12;                  ///< grey levels of the spot over its surroundings
   double grey_per_electron = 255.0 / 10000;  ///< of the sensor: 255 / full well; scales shot noise
   /// Correlation area of the speckle [px^2], see speckle_area_px2(); 0: the light is incoherent; negative:
-  /// estimated from the spot's own graininess, which scatters much: tell it when the optics are known.
+  /// estimated from the spot's own graininess, which scatters much: give it when the optics are known.
   double speckle_area_px2 = -1;
 };
 

@@ -48,7 +48,7 @@ class BulletPlantBase : public Plant {
   virtual void check_assembly() const {}
   /// Called when every body's frames are those of the step's beginning.
   virtual void before_step() {}
-  /// What a drive's reading leaves out, beside growth: [m] or [rad].
+  /// Not in a drive's reading, in addition to growth: [m] or [rad].
   virtual double hidden_travel(int) const { return 0; }
 
   const machine::MachineDescription machine_;

@@ -21,7 +21,7 @@ class BulletPlay final : public btMultiBodyConstraint {
     double damping = 0;   ///< [N s/m] or [N m s/rad], within the travel
     double friction = 0;  ///< [N] or [N m]
   };
-  /// With `rotor`, its first joint is the side; else set_side() tells it.
+  /// With `rotor`, its first joint is the side; else set_side() gives it.
   BulletPlay(btMultiBody& tree, int link, btMultiBody* rotor, const Properties& properties);
 
   void set_side(double position, double velocity);

@@ -9,10 +9,10 @@
 namespace understudy::sim {
 
 /// The impulses of a step exactly: rows A x = b + w with x within its limits and w pushing only at a limit.
-/// A strut is a chain of 10 g parts under a heavy platform: projected Gauss-Seidel, Bullet's own way, takes
-/// some 8 000 sweeps to settle all velocities to 1 nm/s, and after 200 the tip is up to 1 um off where this
-/// solver leaves 0.03 um. Block principal pivoting (Judice and Pires 1994) starts from the rows that were at
-/// their limits in the last step and mostly ends with them.
+/// A strut is a chain of 10 g parts under a heavy platform: projected Gauss-Seidel, Bullet's own method,
+/// takes some 8 000 sweeps to settle all velocities to 1 nm/s, and after 200 the tip is up to 1 um off where
+/// this solver leaves 0.03 um. Block principal pivoting (Judice and Pires 1994) starts from the rows that
+/// were at their limits in the last step and mostly ends with them.
 class BulletSolver final : public btMultiBodyConstraintSolver {
  public:
   /// `pivots`: at most so many sets of rows are tried in a step.

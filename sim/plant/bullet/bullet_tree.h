@@ -20,7 +20,8 @@ inline btQuaternion to_bullet(const Quat& q) { return {q.x(), q.y(), q.z(), q.w(
 inline Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 inline Quat from_bullet(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-/// A body and the joint that holds it, told in the tree's frame F at the position where every joint reads 0.
+/// A body and the joint that holds it, expressed in the tree's frame F at the position where every joint
+/// reads 0.
 struct BulletLink {
   int parent = -1;  ///< -1: the frame
   bool angle = true;

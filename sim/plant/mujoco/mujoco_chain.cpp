@@ -31,7 +31,7 @@ class MujocoChain final : public MujocoPlantBase {
     settle(displacement);
   }
 
-  /// Of the work: the joints tell the whole pose.
+  /// Relative to the work: the joints determine the whole pose.
   Pose tool_pose() const override {
     kinematics::AxisVector axes{};
     for (std::size_t i = 0; i < joints_.size(); ++i) {

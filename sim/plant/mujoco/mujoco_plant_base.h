@@ -37,7 +37,7 @@ class MujocoPlantBase : public Plant {
   void settle(const kinematics::AxisVector& displacement);
   /// Throws MachineError when the state is no machine any more.
   virtual void check_assembly() const {}
-  /// What a drive's reading leaves out, beside growth: [m] or [rad].
+  /// Not in a drive's reading, in addition to growth: [m] or [rad].
   virtual double hidden_travel(int) const { return 0; }
   void fail_until_reset() { failed_ = true; }
 

@@ -1,11 +1,11 @@
-// Where the plays of a machine are: at rest by the sign of what they carry, or on their way across.
+// Where the plays of a machine are: at rest by the sign of what they carry, or under way across.
 //
 // Every axis has a gap g in [-b/2, +b/2], positive where the link has run ahead of its drive. A contact only
 // pushes: f <= 0 at +b/2, f >= 0 at -b/2, f = 0 between, and friction holds the gap where it is while |f| is
 // below it. `load` is the f that keeps all gaps at rest (inverse dynamics). Gaps for which that f is not
 // allowed move by
 //   M g'' + c g' = f(g) - load,
-// M the mass matrix told in axis positions. The law is stepped implicitly, so a stop takes all speed away:
+// M the mass matrix in axis positions. The law is stepped implicitly, so a stop takes all speed away:
 // nothing bounces, and nothing here is stiff.
 //
 // A strut has two plays in series with a body between, the nut. What the nut weighs keeps its own play shut

@@ -1,4 +1,4 @@
-// Open chains: forward kinematics and a recursive Newton-Euler. Everything is told in the frame O of the
+// Open chains: forward kinematics and a recursive Newton-Euler. Everything is expressed in the frame O of the
 // chain, which stands still: twists, wrenches and inertias about O's origin add without being moved.
 #include <array>
 #include <cmath>

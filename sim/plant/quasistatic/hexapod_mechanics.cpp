@@ -88,8 +88,8 @@ HexapodMechanics::HexapodMechanics(const machine::MachineDescription& machine, c
   motor_ = {masses_.motor, cube_moment(masses_.motor)};
   for (int i = 0; i < kStruts; ++i) {
     tangent_B_[i] = Vec3::UnitZ().cross(machine.hexapod().joints.radial_axis[i]).normalized();
-    // The nut slides along the screw, the ball along the line between the joints: told in strut length, by
-    // d(length)/d|d| = |d| / length, which changes by a thousandth over the stroke.
+    // The nut slides along the screw, the ball along the line between the joints: expressed as strut length,
+    // by d(length)/d|d| = |d| / length, which changes by a thousandth over the stroke.
     const Vec3 d = X_BT_home_ * geometry_.platform_joint[i] - geometry_.base_joint[i];
     const double ratio = d.norm() / std::sqrt(d.squaredNorm() - std::pow(geometry_.deviation, 2));
     play_[i].friction = machine.hexapod().play.friction;

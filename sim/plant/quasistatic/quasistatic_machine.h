@@ -29,7 +29,7 @@ class QuasistaticMachine {
   /// Every play at rest under the load of this sample.
   kinematics::SolveStatus settle(const AxisVector& position, const AxisVector& velocity,
                                  const AxisVector& acceleration);
-  /// One step of a path, in which plays may be on their way. Commands tell the acceleration of a step when it
+  /// One step of a path, in which plays may be under way. Commands give the acceleration of a step when it
   /// is over, so the plays are carried to the step's beginning with what is known, and from there ahead.
   struct Step {
     AxisVector end{};           ///< positions at the step's end

@@ -6,7 +6,7 @@
 namespace understudy::sim {
 
 /// A strut in the motor frame M of the MuJoCo plant (x along the offset, z along the screw, origin in the
-/// universal joint), with everything told in M: d = (dev, 0, length).
+/// universal joint), with everything expressed in M: d = (dev, 0, length).
 struct StrutSwing {
   Mat3 R_BM;             ///< columns: offset, screw x offset, screw
   Vec3 tangent_M;        ///< first axis of the universal joint; (0, t_y, t_z)
