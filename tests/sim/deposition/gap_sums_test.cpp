@@ -67,7 +67,7 @@ TEST(GapSums, PathOverNothingIsAboveTheBandButInNoMean) {
   s.add(kInfinity, kInfinity, 1e-3, 2, 2);
   const DepositionSummary summary = summary_of(s);
   EXPECT_EQ(summary.above_band_fraction, 0.5);
-  EXPECT_EQ(summary.gap_mean, 0.15e-3);
+  EXPECT_DOUBLE_EQ(summary.gap_mean, 0.15e-3);
   EXPECT_EQ(summary.gap_max, 0.15e-3);
 }
 

@@ -11,6 +11,9 @@ namespace {
 
 using testing::HasSubstr;
 
+// [K]: the cooling curve's table is good to 1e-5 of the 185 K from nozzle to air.
+constexpr double kTable = 4e-3;
+
 machine::Material pla() { return machine::load_material("pla"); }
 StrandCreep creep(double start = 483.15) { return {pla(), from_mm(0.48), start, {}}; }
 
@@ -47,7 +50,7 @@ TEST(StrandCreep, AgesByTemperatureRunFromTheNozzlesToTheGlassTransition) {
   EXPECT_EQ(strand.time_at_share(1), strand.time_to_solid());
   const CoolingCurve cooling(pla(), from_mm(0.48), 483.15, {});
   const double middle = 0.5 * (483.15 + pla().glass_transition);
-  EXPECT_NEAR(cooling.temperature(strand.time_at_share(0.5)), middle, 1e-6);
+  EXPECT_NEAR(cooling.temperature(strand.time_at_share(0.5)), middle, kTable);
 }
 
 TEST(StrandCreep, AStrandThatIsNeverHotOrNeverSolidIsRefused) {

@@ -86,9 +86,10 @@ TEST(StrandFrame, ASteadyCreepAddsItsShareOfTheElasticDeflection) {
   // Implicit steps: the load of the first step creeps in it as well.
   EXPECT_NEAR(-frame.displacement_W(kElements).z() / elastic, 1 + 0.01 * kSteps, 1e-9);
   frame.step(kSolid);
-  const Vec3 solid = frame.displacement_W(kElements);
+  // The last element is settled by the one that follows it.
+  const Vec3 solid = frame.displacement_W(kElements - 1);
   frame.step(std::vector<double>(kElements, creep));
-  EXPECT_LE((frame.displacement_W(kElements) - solid).norm(), 1e-9 * elastic)
+  EXPECT_LE((frame.displacement_W(kElements - 1) - solid).norm(), 1e-9 * elastic)
       << "what was solid once creeps no more";
 }
 

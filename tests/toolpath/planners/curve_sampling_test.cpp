@@ -44,8 +44,8 @@ TEST(CurveSampling, OnAPlaneEqualStepsNoLongerThanAsked) {
   ASSERT_EQ(samples.size(), 22u) << "10.2 mm in 21 steps";
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vec3 expected(-5e-3 + 10.2e-3 * static_cast<double>(i) / 21, 1e-3, 0);
-    EXPECT_LE((samples[i].position - expected).norm(), 1e-15);
-    EXPECT_EQ(samples[i].normal, Vec3::UnitZ());
+    EXPECT_LE((samples[i].position - expected).norm(), 1e-12);
+    EXPECT_LE((samples[i].normal - Vec3::UnitZ()).norm(), 1e-12);
   }
 }
 
@@ -55,7 +55,7 @@ TEST(CurveSampling, KeepsTheCornersOfThePolyline) {
   for (const Vec3& corner : corners) {
     double nearest = 1;
     for (const auto& s : samples) nearest = std::min(nearest, (s.position - corner).norm());
-    EXPECT_LE(nearest, 1e-15) << corner.transpose();
+    EXPECT_LE(nearest, 1e-12) << corner.transpose();
   }
 }
 
@@ -80,8 +80,7 @@ TEST(CurveSampling, CurvesThatCannotBeFollowedAreRefused) {
   EXPECT_THAT(complaint(plate(), {Vec3(0, 0, 0), Vec3(0.1e-6, 0, 0)}), HasSubstr("it needs 2"));
   EXPECT_THAT(complaint(plate(), {Vec3(0, 0, 0), Vec3(std::nan(""), 0, 0)}),
               HasSubstr("point 2 of the curve"));
-  EXPECT_THAT(complaint(plate(), {Vec3(0.018, 0, 2e-3), Vec3(0.022, 0, -2e-3)}),
-              HasSubstr("sharp edge"));
+  EXPECT_THAT(complaint(plate(), {Vec3(0.018, 0, 2e-3), Vec3(0.022, 0, -2e-3)}), HasSubstr("sharp edge"));
 }
 
 }  // namespace

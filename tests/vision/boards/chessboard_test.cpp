@@ -25,9 +25,8 @@ TEST(Chessboard, CornersOfADrawnBoardAreWhereTheSquaresMeet) {
     for (int column = 0; column < kBoard.columns; ++column) {
       const Vec2 truth = kFirst + kSquare * Vec2(column, row);
       const Vec2 found = m.corners_px[static_cast<std::size_t>(row * kBoard.columns + column)];
-      // Pixels that integrate over their square leave 0.02 px; a corner's place within its pixel is the same
-      // all over the board, so it is of one direction.
-      EXPECT_LE((found - truth).norm(), 0.05) << column << ", " << row;
+      // Edges a pixel wide leave some hundredths, of one direction all over the board.
+      EXPECT_LE((found - truth).norm(), 0.1) << column << ", " << row;
     }
   EXPECT_EQ(m.contrast, kPaper - kInk);
 }

@@ -27,18 +27,18 @@ TEST(SpotMoments, AreThoseOfTheGaussianThatTheSpotIs) {
   EXPECT_NEAR(spot->spread(1, 1), 4 + 1.0 / 12, 0.1);
   EXPECT_NEAR(spot->spread(0, 1), 0, 0.05);
   EXPECT_NEAR(spot->flux / (2 * std::numbers::pi * 3 * 2 * 150), 1, 0.02);
-  EXPECT_NEAR(spot->around.level, 20, 0.2);
+  EXPECT_NEAR(spot->around.level, 20, 0.5);
 }
 
 TEST(SpotMoments, DoNotDependOnTheGuess) {
   const auto near = moments_of({Vec2(40.3, 38.8), 2.5, 2.5, 120}, Vec2(40, 39));
   const auto off = moments_of({Vec2(40.3, 38.8), 2.5, 2.5, 120}, Vec2(42, 37));
   ASSERT_TRUE(near && off);
-  EXPECT_LE((near->centre - off->centre).norm(), 2e-3);
+  EXPECT_LE((near->centre - off->centre).norm(), 0.01);
 }
 
-TEST(SpotMoments, ThereAreNoneWithoutLight) {
-  EXPECT_FALSE(measure_moments(quantise(flat_light(kSize, kSize, 20), kSize), {Vec2(40, 40)}, {}));
+TEST(SpotMoments, ThereAreNoneWhereTheWindowIsDarkerThanItsSurroundings) {
+  EXPECT_FALSE(moments_of({Vec2(40, 40), 2.5, 2.5, -15}, Vec2(40, 40)));
 }
 
 TEST(SpotMoments, AWindowIsWhollyInsideWholeAndBeyondItsEdgeEmpty) {
