@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -25,7 +26,8 @@ std::vector<Pose> chain_design(const MachineDescription& machine, const std::vec
   std::vector<Eigen::MatrixXd> rows;
   for (const Pose& X_BT : candidates) {
     std::vector<double> axes(static_cast<std::size_t>(mechanism.axis_count()));
-    mechanism.inverse(X_BT, {}, axes);
+    if (mechanism.inverse(X_BT, {}, axes) != kinematics::SolveStatus::ok)
+      throw std::logic_error("a candidate pose has no axes");  // candidates are chosen from reachable poses
     rows.push_back(root.triangularView<Eigen::Lower>().solve(chain_rows(known, axes)));
   }
   constexpr double kPrior = 0.01;  // [m] and [rad]: weak
