@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/plugin/child_process.h"
 #include "machine/default_machine.h"
 #include "studies/calibration/calibration_trial.h"
 

@@ -85,7 +85,7 @@ std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine,
   }
   GapSurface bottle;
   bottle.name = "bottle 31 mm";
-  bottle.part = read_fixture(machine::find_fixture("bottle"), machine);
+  bottle.part = rehearsal::read_fixture(machine::find_fixture("bottle"), machine);
   toolpath::GcodeOptions gcode;
   gcode.X_WT_home = X_WT_home;
   gcode.rotary = rehearsal::rotary_words(machine);
