@@ -68,6 +68,8 @@ def fit_strut(strut, deviation, poses, displacements):
 
 
 def calibrate(problem):
+    if problem["machine"] != "hexapod":
+        raise ValueError("this program calibrates hexapods only")
     nominal, samples = problem["nominal"], problem["samples"]
     poses = [(s["position_mm"], rotation(s["quaternion_wxyz"])) for s in samples]
     if len(poses) < 7:
