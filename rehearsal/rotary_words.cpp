@@ -1,15 +1,18 @@
 #include "rehearsal/rotary_words.h"
 
-#include <cassert>
 #include <memory>
+
+#include "core/assert.h"
 
 namespace understudy::rehearsal {
 namespace {
 
 using kinematics::SolveStatus;
 
-/// A mechanism with rotary words has an answer for finite numbers, and a program's are.
-void expect_ok([[maybe_unused]] SolveStatus status) { assert(status == SolveStatus::ok); }
+void expect_ok(SolveStatus status) {
+  UNDERSTUDY_ASSERT(status == SolveStatus::ok,
+                    "a program's numbers are finite, and the mechanism has rotary words");
+}
 
 }  // namespace
 
