@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "core/map_schema.h"
 #include "core/output_file.h"
+#include "machine/default_machine.h"
 #include "machine/description.h"
 #include "machine/material.h"
 #include "machine/model_files.h"
@@ -18,7 +19,7 @@ namespace understudy::cli {
 namespace {
 
 struct SchemaRequest {
-  std::string output, file, machine = "hexapod";
+  std::string output, file, machine = machine::kDefaultMachine;
 };
 
 struct Kind {
