@@ -1,16 +1,17 @@
-// What the controller does in a cycle: kinematics, the planner's next point, a port's calls, and the reading
-// of a gap once the dot is measured.
+// What the controller does in a cycle: kinematics, the planner's next point, a port's calls, and the gap
+// control along a path from the reading of a frame to the shifted setpoint.
 //
-// Not control-cycle code, and not watched here: MotionPlanner::push() and finish(), which run ahead of the
-// port's queue and grow the lookahead; SetpointStreamer, which calls them; close_gap(),
-// ContinuousGapController and vision::measure_dot(), which work on a frame that owns its pixels, ahead of the
-// queue or while the axes rest, and keep every look for the report.
+// Not control-cycle code, and not guarded here: MotionPlanner::push() and finish(), which run ahead of the
+// port's queue and grow the lookahead; close_gap(), which works while the axes rest; the camera's frames and
+// vision::measure_dot(), which own their pixels; ContinuousGapController::record(), which keeps them for the
+// report once the setpoints are queued.
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "control/gap/continuous_gap_controller.h"
 #include "control/gap/gap_follower.h"
 #include "control/gap/gap_reading.h"
 #include "control/motion/motion_planner.h"
@@ -18,6 +19,8 @@
 #include "core/units.h"
 #include "machine/description.h"
 #include "machine/loopback_port.h"
+#include "tests/control/gap/bead_program.h"
+#include "tests/geometry/test_solids.h"
 #include "tests/guard/cycle_guard.h"
 
 namespace understudy::control {
@@ -179,6 +182,69 @@ TEST(GapCycle, ReadingAGapFromAMeasuredDotNeitherAllocatesNorLocks) {
   EXPECT_EQ(made, Calls{});
   EXPECT_EQ(read, 100);
   EXPECT_GT(width, 0);
+}
+
+/// A slab under the home tip whose top is at the table's height of bead_program.h.
+std::unique_ptr<geometry::Mesh> slab() {
+  auto box = geometry::box(Vec3(-30e-3, -30e-3, kTable - 5e-3), Vec3(30e-3, 30e-3, kTable));
+  return std::make_unique<geometry::Mesh>(std::move(box.vertices), std::move(box.triangles));
+}
+
+TEST(GapCycle, TheSurfaceUnderTheToolIsFoundWithoutAllocating) {
+  const auto part = slab();
+  const Pose X_WT = make_pose(Quat::Identity(), Vec3(0, 0, kTable + kGap));
+  const Pose beside = make_pose(Quat::Identity(), Vec3(30.5e-3, 0, kTable + kGap));
+  bool on_part = false, off_part = true;
+  const Calls made = calls_of([&] {
+    on_part = find_local_surface(*part, X_WT).has_value() && height_over(*part, X_WT).has_value();
+    off_part = find_local_surface(*part, beside).has_value();
+  });
+  EXPECT_EQ(made, Calls{});
+  EXPECT_TRUE(on_part);
+  EXPECT_FALSE(off_part);
+}
+
+TEST(GapCycle, ControllingTheGapAlongAPathNeitherAllocatesNorLocks) {
+  GapRig rig(hexapod(), low_by(0));
+  rig.set_play([](const Pose& X) -> Vec3 { return 0.01 * X.translation().x() * Vec3::UnitZ(); });
+  const auto mesh = slab();
+  const PrintedPart part{mesh.get(), {}};
+  std::vector<OffsetChange> offsets;
+  ContinuousGapController gap(hexapod(), part, {{}, gap_follower_options(hexapod())}, rig.port(),
+                              [&](const OffsetChange& change) { offsets.push_back(change); });
+  const auto mechanism = hexapod().make_mechanism();
+  const Pose X_WT_S = make_pose(Quat::Identity(), Vec3(0, 0, kTable + kGap));
+  MotionPlanner planner(*mechanism, hexapod().X_WB, motion_limits(hexapod()), X_WT_S, 0.05);
+  planner.push(step_to(toolpath::StepKind::print, {10e-3, 0, kTable + kGap}, 5e-3, 6, 1e-4));
+  planner.finish();
+  gap.start(Vec3::Zero(), kGap, 5e-6);
+  Calls made;
+  const auto guarded = [&](const auto& part_of_cycle) {
+    const Calls here = calls_of(part_of_cycle);
+    made = {made.allocations + here.allocations, made.locks + here.locks, made.io + here.io};
+  };
+  Status written = Status::ok;
+  double farthest = 0;
+  for (PlannedPoint point; planner.next(point);) {
+    const double due = point.setpoint.time - gap.lead();
+    while (rig.port().now() < due) {
+      ASSERT_EQ(gap.read(due), Status::ok);
+      guarded([&] { gap.update(); });
+      gap.record();
+    }
+    guarded([&] {
+      Setpoint ready;
+      if (gap.shift(point, ready)) written = rig.port().submit(std::span(&ready, 1), 1e9);
+      farthest = std::max(farthest, std::abs(ready.position[0] - point.setpoint.position[0]));
+    });
+    ASSERT_EQ(written, Status::ok);
+    ASSERT_EQ(gap.stop(), GapStop::none) << gap.stop_cause().why;
+  }
+  EXPECT_EQ(made, Calls{});
+  // 2 s of path, a frame in about 26 ms, and 0.1 mm of error over it.
+  EXPECT_GT(gap.following().used, 60);
+  EXPECT_GT(offsets.size(), 50U);
+  EXPECT_GT(farthest, 1e-6);
 }
 
 }  // namespace

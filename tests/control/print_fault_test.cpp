@@ -134,6 +134,7 @@ TEST(Print, ARejectedBatchStopsTheMachine) {
   const PrintResult result = print(bead_program(), hexapod(), port, without_gap_control());
   EXPECT_FALSE(result.completed);
   EXPECT_EQ(result.stop.status, Status::rejected);
+  ASSERT_EQ(port.wait_until(port.now() + 2 * machine::kBrakingTime), Status::ok);
   EXPECT_FALSE(port.state().moving) << "the rest of the queue still runs";
   EXPECT_EQ(port.outputs().nozzle_temperature, 0);
 }
@@ -157,6 +158,7 @@ TEST(Print, AnInterruptStopsTheMachineAndLeavesNothingHot) {
   EXPECT_THROW(print(bead_program(), hexapod(), rig.port(), without_gap_control(), &interrupter),
                Interrupted);
   set_interrupted(false);
+  ASSERT_EQ(rig.port().wait_until(rig.port().now() + 2 * machine::kBrakingTime), Status::ok);
   EXPECT_FALSE(rig.port().state().moving);
   EXPECT_EQ(rig.port().outputs().nozzle_temperature, 0);
 }
@@ -169,6 +171,7 @@ TEST(Print, AnInterruptIsHeardDuringTheApproach) {
   });
   EXPECT_THROW(print(bead_program(), hexapod(), rig.port(), {}), Interrupted);
   set_interrupted(false);
+  ASSERT_EQ(rig.port().wait_until(rig.port().now() + 2 * machine::kBrakingTime), Status::ok);
   EXPECT_FALSE(rig.port().state().moving);
 }
 

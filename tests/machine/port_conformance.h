@@ -2,6 +2,7 @@
 // in one file of a test program and instantiate PortConformance with functions that make the ports.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

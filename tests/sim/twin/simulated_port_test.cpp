@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "sim/as_built/as_built.h"
+#include "tests/machine/port_conformance.h"
 
 namespace understudy::sim {
 namespace {
@@ -45,6 +46,33 @@ class RigidPlant : public Plant {
  private:
   double time_ = 0;
   AxisVector displacement_{};
+};
+
+/// The hexapod on a plant that obeys.
+class TwinOnTrial : public machine::PortOnTrial {
+ public:
+  TwinOnTrial()
+      : machine_(machine::load_machine("hexapod")),
+        port_(machine_, plant_,
+              [this](const Pose&, const Region& region, std::uint64_t) {
+                if (lost_) return Image{};
+                return Image{region, std::vector<std::uint8_t>(
+                                         static_cast<std::size_t>(region.width * region.height))};
+              },
+              {}) {
+    range = machine_.make_mechanism()->axis_range(0);
+    capacity = TwinOptions().queue_capacity;
+    clock_step = plant_.timestep();
+    resolution = 0.5 * machine_.drives[0].step();
+  }
+  machine::MachinePort& port() override { return port_; }
+  void lose_frames(bool lost) override { lost_ = lost; }
+
+ private:
+  machine::MachineDescription machine_;
+  RigidPlant plant_;
+  bool lost_ = false;
+  SimulatedPort port_;
 };
 
 class SimulatedPortTest : public ::testing::Test {
@@ -92,17 +120,6 @@ TEST_F(SimulatedPortTest, StartsAtRestAtHome) {
   EXPECT_FALSE(port_.state().moving);
 }
 
-TEST_F(SimulatedPortTest, AcceptedIsNotExecuted) {
-  ASSERT_EQ(port_.submit(ramp(0.01, 100, true), 1), Status::ok);
-  EXPECT_EQ(port_.state().accepted, 100u);
-  EXPECT_EQ(port_.state().executed, 0u);
-  EXPECT_NEAR(port_.state().position[0], home_[0], 1e-15);
-  ASSERT_EQ(port_.wait_until(0.2), Status::ok);
-  EXPECT_EQ(port_.state().executed, 100u);
-  // Whole microsteps: half a step is the largest error.
-  EXPECT_NEAR(port_.state().position[0], home_[0] + 0.01 * 0.1, 0.5 * machine_.drives[0].step() + 1e-12);
-}
-
 TEST_F(SimulatedPortTest, DrivesMoveInWholeMicrosteps) {
   ASSERT_EQ(port_.submit(ramp(0.003, 200, true), 1), Status::ok);
   ASSERT_EQ(port_.wait_until(0.25), Status::ok);
@@ -113,32 +130,7 @@ TEST_F(SimulatedPortTest, DrivesMoveInWholeMicrosteps) {
   }
 }
 
-TEST_F(SimulatedPortTest, RefusesWhatCannotBe) {
-  auto late = ramp(0.01, 3, true);
-  late[1].time = late[0].time;
-  EXPECT_EQ(port_.submit(late, 1), Status::rejected);
-  auto nan = ramp(0.01, 3, true);
-  nan[2].position[4] = std::nan("");
-  EXPECT_EQ(port_.submit(nan, 1), Status::rejected);
-  auto far = ramp(0.01, 3, true);
-  far[2].position[4] = machine_.hexapod().limits.strut_max + 1e-6;
-  EXPECT_EQ(port_.submit(far, 1), Status::rejected);
-  EXPECT_EQ(port_.submit(ramp(0.0, 5000, true), 10), Status::queue_full);
-  EXPECT_EQ(port_.submit(ramp(0.01, 3, true), -1), Status::deadline_exceeded);
-  EXPECT_EQ(port_.state().accepted, 0u);
-}
-
-TEST_F(SimulatedPortTest, AQueueThatRunsDryAtSpeedIsAStickyUnderrun) {
-  ASSERT_EQ(port_.submit(ramp(0.01, 50, false), 1), Status::ok);
-  EXPECT_EQ(port_.wait_until(0.2), Status::faulted);
-  EXPECT_EQ(port_.state().fault, Fault::underrun);
-  EXPECT_EQ(port_.submit(ramp(0.0, 3, true), 1), Status::faulted);
-  EXPECT_EQ(port_.wait_until(0.3), Status::faulted);
-  ASSERT_EQ(port_.urgent(machine::UrgentCommand::clear_fault), Status::ok);
-  EXPECT_EQ(port_.wait_until(0.3), Status::ok);
-}
-
-TEST_F(SimulatedPortTest, StopDeceleratesAndDropsTheQueue) {
+TEST_F(SimulatedPortTest, StopDeceleratesWithoutAJolt) {
   ASSERT_EQ(port_.submit(ramp(0.02, 1000, true), 2), Status::ok);
   ASSERT_EQ(port_.wait_until(0.1), Status::ok);
   ASSERT_EQ(port_.urgent(machine::UrgentCommand::stop), Status::ok);
@@ -152,24 +144,9 @@ TEST_F(SimulatedPortTest, StopDeceleratesAndDropsTheQueue) {
     ASSERT_LE(step, 0.02 * 0.5e-3 + machine_.drives[0].step());
     ASSERT_GE(step, -1e-12);
   }
-  // And it takes orders again from where it rests.
-  home_ = port_.state().position;
-  EXPECT_EQ(port_.submit(ramp(0.0, 3, true), 2), Status::ok);
 }
 
-TEST_F(SimulatedPortTest, HoldKeepsTheQueueAndResumeGoesOn) {
-  ASSERT_EQ(port_.submit(ramp(0.02, 500, true), 2), Status::ok);
-  ASSERT_EQ(port_.wait_until(0.1), Status::ok);
-  ASSERT_EQ(port_.urgent(machine::UrgentCommand::hold), Status::ok);
-  ASSERT_EQ(port_.wait_until(1.0), Status::ok);
-  EXPECT_NEAR(port_.state().position[0] - home_[0], 3e-3, 0.05e-3);
-  ASSERT_EQ(port_.urgent(machine::UrgentCommand::resume), Status::ok);
-  ASSERT_EQ(port_.wait_until(2.0), Status::ok);
-  EXPECT_NEAR(port_.state().position[0] - home_[0], 10e-3, machine_.drives[0].step());
-  EXPECT_EQ(port_.state().executed, 500u);
-}
-
-TEST_F(SimulatedPortTest, AFrameShowsTheMiddleOfItsExposureAndCostsItsTime) {
+TEST_F(SimulatedPortTest, AFrameTakesTheMicroscopesTime) {
   machine::Frame frame;
   const Region region{10, 20, 30, 40};
   EXPECT_EQ(port_.capture(region, frame, 1e-3), Status::deadline_exceeded);
@@ -249,3 +226,9 @@ TEST(SimulatedPort, SwitchingAnObserverOffLeavesTheTrajectoryBitIdentical) {
 
 }  // namespace
 }  // namespace understudy::sim
+
+namespace understudy::machine {
+INSTANTIATE_TEST_SUITE_P(Twin, PortConformance, testing::Values(+[]() -> std::unique_ptr<PortOnTrial> {
+                           return std::make_unique<sim::TwinOnTrial>();
+                         }));
+}  // namespace understudy::machine
