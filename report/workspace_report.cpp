@@ -41,7 +41,7 @@ std::int64_t failing(const Workspace& w) { return static_cast<std::int64_t>(w.bi
 
 Json limit_value(const Workspace& w, const WorkspaceLimit& limit) {
   Json value;
-  value["limit"] = limit_text(limit);
+  value["limit"] = studies::limit_text(limit);
   value["kind"] = to_string(limit.kind);
   value["part"] = limit.part;
   if (!limit.unit.empty()) {
@@ -178,7 +178,7 @@ std::string workspace_table(const WorkspaceStudy& study) {
   text += fmt::format("\n{:<38} {:>12} {:>12} {:>14}\n", "limit", "binds first", "broken", "opens alone");
   text += fmt::format("{:<38} {:>12} {:>12} {:>14}\n", "", "% of failing", "% of failing", "% of the grid");
   for (const WorkspaceLimit& family : w.families)
-    text += fmt::format("{:<38} {:>12.1f} {:>12.1f} {:>14.1f}\n", limit_text(family),
+    text += fmt::format("{:<38} {:>12.1f} {:>12.1f} {:>14.1f}\n", studies::limit_text(family),
                         100 * share(family.binds, failing(w)), 100 * share(family.broken, failing(w)),
                         100 * share(family.alone, static_cast<std::int64_t>(w.binding.size())));
   return text;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "renderer/scene_view.h"
 #include "studies/workspace/workspace_study.h"
 
 namespace understudy::report {

@@ -129,7 +129,7 @@ void draw_limits(cv::Mat& canvas, const Workspace& w, cv::Point at) {
     const bool gathers = i + 1 == kLimitColours && w.families.size() > kLimitColours;
     const int y = at.y + 48 + static_cast<int>(i) * 38;
     cv::rectangle(canvas, cv::Rect(at.x, y, 30, 24), bgr(limit_colour(static_cast<int>(i))), cv::FILLED);
-    write(canvas, gathers ? "other limits" : limit_text(w.families[i]), {at.x + 44, y + 19}, 0.62);
+    write(canvas, gathers ? "other limits" : studies::limit_text(w.families[i]), {at.x + 44, y + 19}, 0.62);
     const auto binds = static_cast<double>(gathers ? rest : w.families[i].binds);
     write(canvas, fmt::format("{:.1f}", 100 * binds / failing), {at.x + 640, y + 19}, 0.62, kInk,
           Align::right);
