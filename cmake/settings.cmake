@@ -26,6 +26,7 @@ if(UNDERSTUDY_SANITIZE)
   add_compile_options(
     -fsanitize=${UNDERSTUDY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
   add_link_options(-fsanitize=${UNDERSTUDY_SANITIZE})
+  add_compile_definitions(UNDERSTUDY_SANITIZED)
 endif()
 
 # What every room's users inherit: C++20, and headers found from the top, here or where they are installed.

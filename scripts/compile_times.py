@@ -1,45 +1,64 @@
 #!/usr/bin/env python3
 """How long each source took to compile, from the .ninja_log of a build folder.
 
-    scripts/compile_times.py [BUILD] [--top N] [--limit SECONDS]
+    scripts/compile_times.py [BUILD] [--top N] [--again N] [--limit SECONDS]
 
-BUILD is build/release where none is given. Prints the sum and the N slowest sources; with --limit exits 1 if one took
-longer, naming it. Measure on an idle machine, from nothing, and without a cache of objects:
-
-    rm -rf build/release; CCACHE_DISABLE=1 ./test
+BUILD is build/release where none is given. The log holds wall-clock times: of a build from nothing, on an idle machine
+and without a cache of objects (rm -rf build/release; CCACHE_DISABLE=1 ./test), they are what a source costs. --again
+compiles the N slowest anew, one after the other, and prints their processor time, which hardly depends on what else
+runs. With --limit a source above it is named and the status is 1.
 """
 import argparse
+import json
+import os
 import pathlib
 import re
+import resource
+import shlex
+import subprocess
 import sys
 
-OBJECT = re.compile(r"(?:^|/)CMakeFiles/[^/]+\.dir/(.+)\.o$")
+OBJECT = re.compile(r"^(.*/)?CMakeFiles/[^/]+\.dir/(.+)\.o$")
 
 
-def compilations(log):
+def logged(build):
     """Source -> seconds of its last compilation."""
+    log = build / ".ninja_log"
+    if not log.is_file():
+        sys.exit(f"compile_times: no {log}: build first")
     seconds = {}
     for line in log.read_text().splitlines():
         words = line.split("\t")
-        if len(words) < 4 or not OBJECT.search(words[3]):
-            continue
-        folder = words[3][:words[3].index("CMakeFiles/")]
-        seconds[folder + OBJECT.search(words[3]).group(1)] = (int(words[1]) - int(words[0])) / 1000
+        found = OBJECT.match(words[3]) if len(words) > 3 else None
+        if found:
+            seconds[os.path.normpath((found.group(1) or "") + found.group(2).replace("__", ".."))] = (int(words[1]) - int(words[0])) / 1000
     return seconds
 
 
+def processor_time(entry):
+    words = shlex.split(entry["command"])
+    words[words.index("-o") + 1] = "/dev/null"
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(words, cwd=entry["directory"], check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+
+
 def main():
-    parser = argparse.ArgumentParser(description="How long each source took to compile, from .ninja_log.")
+    parser = argparse.ArgumentParser(description="How long each source took to compile.")
     parser.add_argument("build", nargs="?", default="build/release", type=pathlib.Path)
-    parser.add_argument("--top", default=15, type=int, help="how many of the slowest (15)")
+    parser.add_argument("--top", default=15, type=int, help="how many of the slowest to print (15)")
+    parser.add_argument("--again", default=0, type=int, help="how many of the slowest to compile anew")
     parser.add_argument("--limit", type=float, help="seconds that none may take longer")
     arguments = parser.parse_args()
-    log = arguments.build / ".ninja_log"
-    if not log.is_file():
-        sys.exit(f"compile_times: no {log}: build first")
-    seconds = compilations(log)
-    print(f"{len(seconds)} sources, {sum(seconds.values()):.0f} s of compilation")
+    seconds = logged(arguments.build)
     slowest = sorted(seconds, key=seconds.get, reverse=True)
+    print(f"{len(seconds)} sources, {sum(seconds.values()):.0f} s of compilation")
+    if arguments.again:
+        entries = {os.path.relpath(entry["file"]): entry
+                   for entry in json.loads((arguments.build / "compile_commands.json").read_text())}
+        seconds = {name: processor_time(entries[name]) for name in slowest[:arguments.again] if name in entries}
+        slowest = sorted(seconds, key=seconds.get, reverse=True)
     for name in slowest[:arguments.top]:
         print(f"{seconds[name]:7.1f} s  {name}")
     over = [name for name in slowest if arguments.limit and seconds[name] > arguments.limit]

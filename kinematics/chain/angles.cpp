@@ -6,7 +6,7 @@
 
 // Without contraction of products, wider vectors give the same bytes. The sanitizers run before the dynamic
 // linker has chosen a clone.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && !defined(UNDERSTUDY_SANITIZED)
 #define UNDERSTUDY_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define UNDERSTUDY_VECTOR_CLONES

@@ -11,10 +11,6 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define UNDERSTUDY_SANITIZED 1
-#endif
-
 namespace {
 thread_local understudy::Calls made;
 }  // namespace
