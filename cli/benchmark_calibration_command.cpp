@@ -122,12 +122,12 @@ int run_calibration(const BenchmarkCall& call) {
     benchmark = studies::run_benchmark(
         request, [&](double share, const std::string& what) { line.show(share, what); });
   }
-  write_file(out.path() / "benchmark.json", rehearsal::benchmark_json(benchmark));
-  write_file(out.path() / "report.html", rehearsal::benchmark_page(benchmark));
+  write_file(out.path() / "benchmark.json", report::benchmark_json(benchmark));
+  write_file(out.path() / "report.html", report::benchmark_page(benchmark));
   stop_if_interrupted();
   out.commit();
   const std::filesystem::path written(folder);
-  fmt::print("{}\n{}\n{}\n", rehearsal::benchmark_table(benchmark), (written / "benchmark.json").string(),
+  fmt::print("{}\n{}\n{}\n", report::benchmark_table(benchmark), (written / "benchmark.json").string(),
              (written / "report.html").string());
   const std::vector<std::string> silent = studies::without_answer(benchmark);
   for (const std::string& name : silent) fmt::print(stderr, "{}: solved no problem at all\n", name);

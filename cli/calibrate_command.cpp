@@ -35,13 +35,13 @@ int run_calibrate(const CalibrateCall& call) {
   std::optional<OutputFolder> report;
   if (!call.report.empty()) {
     report.emplace(call.report, "summary.json");
-    write_file(report->path() / "summary.json", rehearsal::calibration_json(result));
-    write_file(report->path() / "report.html", rehearsal::calibration_html(result));
+    write_file(report->path() / "summary.json", report::calibration_json(result));
+    write_file(report->path() / "report.html", report::calibration_html(result));
   }
   stop_if_interrupted();
   machine::write_calibrated(result.machine, call.output);
   if (report) report->commit();
-  fmt::print("{}machine: {}\n", rehearsal::calibration_text(result), call.output);
+  fmt::print("{}machine: {}\n", report::calibration_text(result), call.output);
   if (report) fmt::print("report: {}\n", (std::filesystem::path(call.report) / "report.html").string());
   return kGood;
 }

@@ -18,8 +18,6 @@ std::string try_models() {
 
 }  // namespace
 
-}  // namespace
-
 HealthCheck attempt(const std::string& name, const std::function<std::string()>& what) {
   try {
     return {name, true, what()};

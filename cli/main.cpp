@@ -60,7 +60,6 @@ int run(int argc, char** argv) {
   cli::add_kinematics(app, action);
   cli::add_calibrate(app, action);
   cli::add_export(app, action);
-  cli::add_schema(app, action);
   cli::add_inspection(app, action);
   check_first_word(app, argc, argv);
   try {

@@ -49,6 +49,7 @@ void add_twin_commands(CLI::App& app, Action& action) {
   add_render(app, action);
   add_workspace(app, action);
   add_benchmark(app, action);
+  add_schema(app, action);
 }
 
 std::vector<std::string> left_out_commands() { return {}; }

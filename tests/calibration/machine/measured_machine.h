@@ -18,7 +18,7 @@ class BuiltMachine {
  public:
   BuiltMachine(const machine::MachineDescription& drawn, std::uint64_t seed) : seed_(seed) {
     Random random(seed, "built machine");
-    if (!drawn.chain) {
+    if (!drawn.is_chain()) {
       hexapod_.geometry = perturbed(drawn.hexapod().geometry, 0.5e-3, random);
       return;
     }
@@ -37,7 +37,7 @@ class BuiltMachine {
   /// Where axes that a controller of `known` commands really put the tool. False where it cannot be.
   bool reached(const machine::MachineDescription& known, const std::vector<double>& axes,
                const Pose& X_BT_asked, Pose& X_BT) const {
-    if (known.chain) {
+    if (known.is_chain()) {
       X_BT = forward(chain_, axes);
       return true;
     }
@@ -54,7 +54,7 @@ class BuiltMachine {
   Measurements measured(const machine::MachineDescription& known, std::size_t count) const {
     const auto mechanism = known.make_mechanism();
     PoseRegion region = reference_region(known.X_BT_home);
-    if (known.chain) region.tilt_max = 0.7, region.yaw_max = 1.5, region.half_size = Vec3::Constant(0.1);
+    if (known.is_chain()) region.tilt_max = 0.7, region.yaw_max = 1.5, region.half_size = Vec3::Constant(0.1);
     Random poses(seed_, "measured poses"), noise(seed_, "measurement noise");
     Measurements table;
     table.noise_given = true;
