@@ -145,8 +145,8 @@ class RigMotion : public GapMotion {
     step.kind = toolpath::StepKind::move;
     step.feed = 5e-3;
     step.X_WT = X_WT;
-    if (const auto s = cycle_.push(step); s != machine::Status::ok) return s;
-    return cycle_.come_to_rest();
+    if (const Stop stop = cycle_.push(step)) return stop.status;
+    return cycle_.come_to_rest().status;
   }
   machine::MachinePort& port() override { return port_; }
 
