@@ -21,7 +21,8 @@ HexapodGeometry perturbed(const HexapodGeometry& nominal, double sigma, Random& 
 }
 
 bool true_sample(const HexapodParameters& truth, const HexapodGeometry& nominal, const Pose& X_BT_asked,
-                 const MeasurementNoise& noise, const kinematics::PerStrut<Approach>& approach, PoseSample& sample) {
+                 const MeasurementNoise& noise, const kinematics::PerStrut<Approach>& approach,
+                 PoseSample& sample) {
   StrutLengths lengths;
   if (kinematics::inverse(nominal, X_BT_asked, lengths) != kinematics::SolveStatus::ok) return false;
   sample.displacement = displacements(nominal, lengths);

@@ -21,7 +21,8 @@ HexapodGeometry perturbed(const HexapodGeometry& nominal, double sigma, Random& 
 /// What the truth makes of a pose asked for through the nominal model, measured without noise. The noise's
 /// covariance is told all the same. False where either has no answer.
 bool true_sample(const HexapodParameters& truth, const HexapodGeometry& nominal, const Pose& X_BT_asked,
-                 const MeasurementNoise& noise, const kinematics::PerStrut<Approach>& approach, PoseSample& sample);
+                 const MeasurementNoise& noise, const kinematics::PerStrut<Approach>& approach,
+                 PoseSample& sample);
 
 /// With noise of its own covariance added.
 PoseSample measured(const PoseSample& true_sample, Random& random);

@@ -115,8 +115,8 @@ void read_hexapod(YamlMap& root, MachineDescription& machine) {
           map.word("screw_rotation", {"guided", "free", "compensated"},
                    "whether the joints turn the screws in their nuts, and whether the controller has it");
       machine.hexapod().screw_rotation = word == "free"          ? ScrewRotation::free
-                                       : word == "compensated" ? ScrewRotation::compensated
-                                                               : ScrewRotation::guided;
+                                         : word == "compensated" ? ScrewRotation::compensated
+                                                                 : ScrewRotation::guided;
     }
   });
   std::fill_n(machine.drives.begin(), kinematics::kStruts, drive);

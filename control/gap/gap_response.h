@@ -50,7 +50,7 @@ class ApproachResponseTest {
  private:
   static constexpr double kStallStep = 15e-6;  // [m], a step whose effect must show
   static constexpr double kStallShare = 0.3;   // of a step: a gap that closes by less has not followed
-  static constexpr double kEvident = 6;        // standard deviations of two samples: a third of it may be noise
+  static constexpr double kEvident = 6;  // standard deviations of two samples: a third of it may be noise
 
   struct Sample {
     double height = 0, gap = 0, sigma = 0;
@@ -76,7 +76,7 @@ class ApproachResponseTest {
 
   double floor_, blind_;
   bool begun_ = false, proved_ = false;
-  double sure_ = 0;             // [m], gap less height: no more is proved
+  double sure_ = 0;               // [m], gap less height: no more is proved
   Sample stall_, last_, anchor_;  // anchor: at the last proof, or the first
   int stalls_ = 0;
 };

@@ -116,7 +116,8 @@ std::string write_hexapod_mjcf(const machine::MachineDescription& machine, const
     if (options.play)
       play = {as_built.nut_play[s], as_built.ball_play[s], machine.hexapod().play.friction,
               options.play_across_struts};
-    const StrutChain chain = assemble_strut(as_built.hexapod, machine.hexapod().joints, machine.X_WB, X_WT, i);
+    const StrutChain chain =
+        assemble_strut(as_built.hexapod, machine.hexapod().joints, machine.X_WB, X_WT, i);
     add_strut(world, i, chain, machine.hexapod().masses, machine.drives[s], play);
     add_closure(equality, i, play.ball > 0 ? "rod end" : "nut", as_built.hexapod.platform_joint[s]);
   }

@@ -188,7 +188,8 @@ TEST_F(Calibrate, APlugInStandsInForAnEstimator) {
   const double ours = open_loop_rms(calibrate_machine(request).machine, 5);
   request.plugin = "python3 " UNDERSTUDY_SOURCE_DIR "/examples/calibration-plugin/strut_by_strut.py";
   const MachineCalibration result = calibrate_machine(request);
-  // It weighs all struts alike: docs/reference.md#calibration-figures gives it 0.54 of the likelihood's efficiency at 24 poses.
+  // It weighs all struts alike: docs/reference.md#calibration-figures gives it 0.54 of the likelihood's
+  // efficiency at 24 poses.
   EXPECT_LT(open_loop_rms(result.machine, 5), 2 * ours);
   EXPECT_TRUE(std::isnan(result.tip.rms)) << "a plug-in gives no covariance";
   EXPECT_THAT(result.warnings, Contains(HasSubstr("no covariance")));
