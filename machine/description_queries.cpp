@@ -29,7 +29,7 @@ kinematics::ScrewCoupling MachineDescription::screw_coupling() const {
 }
 
 kinematics::AxisVector MachineDescription::drive_zero() const {
-  kinematics::AxisVector zero;
+  kinematics::AxisVector zero{};
   if (!is_chain()) std::ranges::copy(hexapod().geometry.length_offset, zero.begin());
   return zero;
 }

@@ -46,7 +46,7 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
   geometry::Shape table = machine.table;
   table.name = "table";
   add_body(table, Owner::world, 0);
-  add_pairs(machine.hexapod().strut_radius);
+  add_pairs(machine.is_chain() ? 0 : machine.hexapod().strut_radius);
   if (beads_) add_bead_pairs(bodies_.size() - 1);
 }
 
