@@ -54,6 +54,11 @@ void LoopbackPort::raise(Fault fault) {
 void LoopbackPort::execute_until(double time) {
   while (time_ < time && fault_ == Fault::none) {
     const double next = queue_.rate_changes() ? std::min(time, time_ + kStep) : time;
+    if (!queue_.moving() && !queue_.rate_changes()) {  // held, or nothing to do
+      queue_.pass(next - time_, next);
+      time_ = next;
+      return;
+    }
     while (const Setpoint* done = queue_.execute_next(next)) {
       if (options_.history) history_.push_back(*done);
       if (!queue_.ran_dry()) continue;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/assert.h"
 #include "kinematics/chain/chain_mechanism.h"
 
 namespace understudy::kinematics {
@@ -50,8 +49,9 @@ ScrewCoupling screw_coupling(const HexapodGeometry& geometry, const HexapodJoint
                              const Pose& X_BT_home, double lead) {
   ScrewCoupling coupling{lead, joints, {}};
   for (int i = 0; i < kStruts; ++i) {
-    const auto solved = joint_rotation(geometry, joints, X_BT_home, i, coupling.angle_at_home[i]);
-    UNDERSTUDY_ASSERT(solved == SolveStatus::ok, "a machine's struts reach its home pose");
+    double& angle = coupling.angle_at_home[i];
+    // Joints without an angle at home have none anywhere: passive_rotation() says so at every pose.
+    if (joint_rotation(geometry, joints, X_BT_home, i, angle) != SolveStatus::ok) angle = 0;
   }
   return coupling;
 }

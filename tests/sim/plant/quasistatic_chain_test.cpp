@@ -35,7 +35,7 @@ machine::MachineDescription planar_arm() {
   chain.links[1].centre_O = Vec3(kUpper + kFore / 2, 0, 0);
   chain.play = {kPlay, kPlay};
   chain.friction = {0, 0};
-  m.chain = chain;
+  m.model = chain;
   return m;
 }
 
