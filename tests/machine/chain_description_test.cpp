@@ -31,8 +31,7 @@ TEST(ChainDescription, TheArmIsTheOneOfItsFile) {
   EXPECT_DOUBLE_EQ(m.chain().kinematics.chain.axes[1].lower, from_deg(-45));
   EXPECT_DOUBLE_EQ(m.chain().kinematics.home[4], from_deg(55));
   // docs/reference.md#robot-arm: 0.36 arcmin in every joint; 3.6 degrees a turn of 8192 counts.
-  for (int i = 0; i < 6; ++i)
-    EXPECT_NEAR(m.chain().play[i], from_deg(0.36 / 60), 1e-15);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(m.chain().play[i], from_deg(0.36 / 60), 1e-15);
   EXPECT_NEAR(m.drives[0].step(), from_deg(3.6) / 8192, 1e-18);
   EXPECT_DOUBLE_EQ(m.drives[5].velocity_max, from_deg(420));
   EXPECT_FALSE(m.drives[1].self_locking);
