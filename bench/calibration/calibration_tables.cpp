@@ -11,14 +11,14 @@
 namespace understudy::bench {
 namespace {
 
-void run(const calibration::TableSize& size) {
+void run(const studies::TableSize& size) {
   const machine::MachineDescription machine = machine::load_machine("hexapod");
   const auto mechanism = machine.make_mechanism();
-  calibration::StudySetting setting;
+  studies::StudySetting setting;
   setting.nominal = machine.hexapod().geometry;
   setting.mechanism = mechanism.get();
   setting.region = calibration::reference_region(machine.X_BT_home);
-  calibration::study_tables(setting, size, [](const std::string& line) {
+  studies::study_tables(setting, size, [](const std::string& line) {
     std::puts(line.c_str());
     std::fflush(stdout);
   });

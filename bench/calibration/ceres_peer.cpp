@@ -125,7 +125,7 @@ CeresAnswer solve_with_ceres(const calibration::Problem& problem, bool normal_eq
   options.gradient_tolerance = 1e-30;
   options.parameter_tolerance = 1e-10;  // of the parameters' norm, 0.5 m: steps of 0.05 nm
   ceres::Solver::Summary summary;
-  ceres::SolveStatus(options, &peer, &summary);
+  ceres::Solve(options, &peer, &summary);
   const double* pointers[kStruts];
   for (std::size_t i = 0; i < kStruts; ++i) pointers[i] = blocks[i].data();
   return {summary.IsSolutionUsable(), geometry_of(pointers, g.deviation),
