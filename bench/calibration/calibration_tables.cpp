@@ -1,4 +1,4 @@
-// The tables of docs/reference.md#calibration-figures for models/hexapod, without the twin.
+// The tables of docs/reference.md#calibration-figures for models/hexapod.
 //
 //   calibration_tables [MACHINES] [SETS] [DRAWS]      (8 8 12)
 #include <cstdio>
