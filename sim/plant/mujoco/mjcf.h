@@ -50,7 +50,7 @@ struct MjcfPlay {
 /// A limited joint, with the stops' damping left to the defaults of the model.
 void add_play_joint(XMLElement& body, const MjcfJoint& joint, const MjcfPlay& play);
 
-/// <mujoco> with everything about constraints and integration that does not depend on the machine.
+/// The mujoco element with everything about constraints and integration that does not depend on the machine.
 XMLElement& add_model(tinyxml2::XMLDocument& document, const std::string& name, const MujocoOptions& options,
                       int rows);
 
