@@ -68,7 +68,7 @@ inline Case make_case(std::uint64_t seed, std::size_t poses, double deviation = 
     sample.X_BT = X_BT;
     sample.covariance = kReferenceNoise.covariance();
     StrutLengths lengths;
-    inverse(c.truth.geometry, X_BT, lengths);
+    if (inverse(c.truth.geometry, X_BT, lengths) != kinematics::SolveStatus::ok) continue;
     sample.displacement = displacements(c.truth.geometry, lengths);
     c.exact.push_back(sample);
   }

@@ -211,7 +211,7 @@ TEST_F(MeasurementTable, PosesWithoutRotationAreAnErrorWithAdvice) {
   EXPECT_THAT(refused([&](Measurements& m) {
                 for (auto& pose : m.poses) {
                   pose.X_WT.linear().setIdentity();
-                  mechanism->inverse(machine_.X_WB.inverse() * pose.X_WT, {}, pose.axes);
+                  (void)mechanism->inverse(machine_.X_WB.inverse() * pose.X_WT, {}, pose.axes);
                 }
               }),
               AllOf(HasSubstr("4 of the 7"), HasSubstr("tilt the platform")));
