@@ -86,8 +86,8 @@ struct Link {
 struct ChainModel {
   kinematics::ChainDescription kinematics;
   std::vector<Link> links;                    ///< one an axis; the tool belongs to the last of its branch
-  kinematics::AxisVector play;                ///< [m] or [rad], total free travel of each axis; nominal
-  kinematics::AxisVector friction;            ///< [N] or [N m], below which an axis stays within its play
+  kinematics::AxisVector play{};              ///< [m] or [rad], total free travel of each axis; nominal
+  kinematics::AxisVector friction{};          ///< [N] or [N m], below which an axis stays within its play
   std::vector<geometry::Shape> frame_bodies;  ///< what stands still; poses in O
 };
 

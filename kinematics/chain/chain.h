@@ -60,7 +60,7 @@ struct ChainDescription {
   std::string kind;                ///< a ChainKind's name
   std::vector<double> parameters;  ///< SI, in the order of the kind's list
   Chain chain;                     ///< with the limits of its axes
-  AxisVector home;                 ///< axis positions
+  AxisVector home{};               ///< axis positions
   /// [m]: makes angles comparable to lengths, in condition numbers and in the norm of redundant axes: a
   /// radian weighs as much as this.
   double length_scale = 0.1;

@@ -35,6 +35,7 @@ std::string warnings(const MachineCalibration& result) {
 
 std::string key_figures(const MachineCalibration& result) {
   const auto um = [](double v) {
+    if (!std::isfinite(v)) return std::string("not known");
     return v < 1e-3 ? fmt::format("{:.1f} µm", to_um(v)) : fmt::format("{:.3f} mm", to_mm(v));
   };
   return "<dl class=\"key-figures\">" +
