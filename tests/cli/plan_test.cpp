@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <sstream>
+#include <string_view>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,6 +23,25 @@ std::string without_comments(const std::string& gcode) {
     at = end + 1;
   }
   return kept;
+}
+
+// Word by word: X, Y, Z and E to `tolerance` [mm], all others to the character.
+void expect_same_moves(const std::string& made, const std::string& shipped, double tolerance) {
+  std::istringstream made_words(made), shipped_words(shipped);
+  std::string ours, theirs;
+  int words = 0;
+  while (shipped_words >> theirs) {
+    ASSERT_TRUE(made_words >> ours) << "ends after " << words << " words";
+    ++words;
+    ASSERT_EQ(ours[0], theirs[0]) << "word " << words;
+    if (std::string_view("XYZE").find(ours[0]) == std::string_view::npos)
+      ASSERT_EQ(ours, theirs) << "word " << words;
+    else
+      ASSERT_NEAR(std::stod(ours.substr(1)), std::stod(theirs.substr(1)), tolerance + 1e-9)
+          << "word " << words;
+  }
+  EXPECT_FALSE(made_words >> ours) << ours;
+  EXPECT_GT(words, 100);
 }
 
 TEST(PlanSurface, MakesTheShippedBottleLineAgain) {
@@ -74,10 +95,9 @@ TEST(PlanPlanar, MakesTheShippedStaircaseAgain) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   // 17 layers of 0.13 mm from the base at 18.20 mm to the crown's top at 20.41 mm.
   EXPECT_THAT(outcome.out, HasSubstr("17 layers of 0.13 mm"));
-  // Loops begin at another of their corners since Clipper insets them; there are as many moves.
-  const auto made = without_comments(read_file(folder / "planar.gcode"));
-  const auto shipped = without_comments(read_file(kSource + "/scenarios/surface-finish/planar.gcode"));
-  EXPECT_EQ(std::count(made.begin(), made.end(), '\n'), std::count(shipped.begin(), shipped.end(), '\n'));
+  // The outline is simplified to 1 um, and either of two points within it may be kept.
+  expect_same_moves(without_comments(read_file(folder / "planar.gcode")),
+                    without_comments(read_file(kSource + "/scenarios/surface-finish/planar.gcode")), 1e-3);
 }
 
 TEST(PlanSpiral, MakesTheShippedSpiralAgain) {

@@ -128,9 +128,22 @@ double length(const FlatPath& path) {
 }  // namespace
 
 Contour simplified(const Contour& contour, double tolerance) {
-  ClipperLib::Path path = on_grid(contour);
-  ClipperLib::CleanPolygon(path, tolerance / kGrid);
-  return off_grid(path);
+  const ClipperLib::Path path = on_grid(contour);
+  ClipperLib::Path kept;
+  ClipperLib::CleanPolygon(path, kept, tolerance / kGrid);
+  // CleanPolygon begins anywhere, and keeps either of two points within the tolerance: the contour begins at
+  // its first point that is left, or at that one's neighbour.
+  const auto near = [&](const ClipperLib::IntPoint& a, const ClipperLib::IntPoint& b) {
+    return std::hypot(static_cast<double>(a.X - b.X), static_cast<double>(a.Y - b.Y)) <= tolerance / kGrid;
+  };
+  for (const ClipperLib::IntPoint& p : path) {
+    const auto first =
+        std::find_if(kept.begin(), kept.end(), [&](const ClipperLib::IntPoint& k) { return near(p, k); });
+    if (first == kept.end()) continue;
+    std::rotate(kept.begin(), first, kept.end());
+    break;
+  }
+  return off_grid(kept);
 }
 
 std::vector<FlatPath> inset_paths(const std::vector<Contour>& contours, double offset, double shortest,
