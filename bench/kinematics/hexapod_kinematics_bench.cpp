@@ -35,7 +35,7 @@ const std::vector<Case>& cases() {
       if (!within_limits(machine(), joints, limits_g4(), c.X)) continue;
       c.X_neighbour = make_pose(Mat3(exp_rotation(from_deg(1) * direction()) * c.X.linear()),
                                 c.X.translation() + 1e-3 * direction());
-      inverse(machine(), c.X, c.lengths);
+      if (inverse(machine(), c.X, c.lengths) != SolveStatus::ok) continue;
       made.push_back(c);
     }
     return made;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -42,7 +43,8 @@ std::vector<Case> make_cases(const HexapodGeometry& g) {
     c.X = workspace_pose(g, joints, random, from_deg(15));
     c.X_near = nearby(c.X, from_mm(1), from_deg(1), random);
     c.X_far = nearby(c.X, from_mm(100), from_deg(30), random);
-    inverse(g, c.X, c.lengths);
+    if (inverse(g, c.X, c.lengths) != SolveStatus::ok)
+      throw std::logic_error("a pose of the workspace has no struts");
     for (std::size_t i = 0; i < kStruts; ++i) c.lengths_mm[i] = to_mm(c.lengths[i]);
     c.world = Genhexkins::world_of(c.X);
     c.world_near = Genhexkins::world_of(c.X_near);
@@ -89,7 +91,7 @@ void compare_speed(const HexapodGeometry& g, const std::vector<Case>& cases, con
   const auto ours_inverse = [&] {
     for (const Case& c : cases) {
       StrutLengths lengths;
-      inverse(g, c.X, lengths);
+      sink += inverse(g, c.X, lengths) == SolveStatus::ok;
       sink += lengths[0] + lengths[5];
     }
   };

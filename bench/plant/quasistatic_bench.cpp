@@ -83,7 +83,8 @@ int count_reversals(QuasistaticSampler& sampler, const std::vector<PathSample>& 
   kinematics::AxisVector before{};
   for (const PathSample& sample : path) {
     Pose X_WT;
-    sampler.sample(sample, X_WT);
+    if (sampler.sample(sample, X_WT) != kinematics::SolveStatus::ok)
+      throw std::logic_error("the path leaves the workspace");
     const kinematics::AxisVector gap = sampler.gap();
     for (std::size_t i = 0; i < kStruts; ++i) reversals += gap[i] * before[i] < 0 ? 1 : 0;
     before = gap;

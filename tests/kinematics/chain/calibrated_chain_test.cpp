@@ -1,6 +1,7 @@
 // An arm whose axes are not where they were drawn: branches of the closed form, poses of the measured axes.
 #include "kinematics/chain/calibrated_chain.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -73,7 +74,7 @@ TEST(CalibratedChain, FollowsAPathWithoutAJump) {
   const auto mechanism = make_chain_mechanism(measured);
   const Pose from = mechanism->home();
   ArmAxes last{};
-  std::copy(measured.home.begin(), measured.home.end(), last.begin());
+  std::copy_n(measured.home.begin(), last.size(), last.begin());
   for (int k = 1; k <= 100; ++k) {
     Pose X = from;
     X.translation() += k * 0.5e-3 * Vec3(0.6, 0.8, 0);

@@ -271,11 +271,11 @@ TEST(Finishing, NothingAllocates) {
     Axes found{};
     Pose X = Pose::Identity();
     Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxAxes, 6> rates(kFinishingAxes, 6);
-    mechanism->forward(q, X, X);
-    mechanism->inverse(X, {}, found);
-    mechanism->axis_rates(X, found, rates);
+    sink += mechanism->forward(q, X, X) == SolveStatus::ok;
+    sink += mechanism->inverse(X, {}, found) == SolveStatus::ok;
+    sink += mechanism->axis_rates(X, found, rates) == SolveStatus::ok;
     sink += found[0] + rates(0, 0) + mechanism->condition_number(X, found);
-    minimum_norm_rates(chain, q, Twist::Ones(), 0.1, q, found);
+    sink += minimum_norm_rates(chain, q, Twist::Ones(), 0.1, q, found) == SolveStatus::ok;
     sink += found[3];
   }
   EXPECT_EQ(allocations() - before, 0);

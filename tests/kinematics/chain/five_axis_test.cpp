@@ -253,9 +253,9 @@ TEST(FiveAxis, NothingAllocates) {
     FiveAxes q = random_axes(random), found{};
     Pose X = Pose::Identity();
     Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxAxes, 6> rates(kFiveAxes, 6);
-    mechanism->forward(q, X, X);
-    mechanism->inverse(X, q, found);
-    mechanism->axis_rates(X, found, rates);
+    sink += mechanism->forward(q, X, X) == SolveStatus::ok;
+    sink += mechanism->inverse(X, q, found) == SolveStatus::ok;
+    sink += mechanism->axis_rates(X, found, rates) == SolveStatus::ok;
     sink += found[0] + rates(0, 0) + mechanism->condition_number(X, found) + five_axis_pose(kOffset, q)(0, 3);
   }
   EXPECT_EQ(allocations() - before, 0);

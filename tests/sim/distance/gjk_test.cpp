@@ -86,8 +86,12 @@ TEST(Gjk, StopsEarlyOnlyWhereTheDistanceIsNotBelowEnough) {
     const double whole = distance_to_triangle(BoxCore{Vec3(0.3, 0.2, 0.1)}, t, kInfinity).distance;
     const double enough = random.uniform(0, 5);
     const double early = distance_to_triangle(BoxCore{Vec3(0.3, 0.2, 0.1)}, t, enough).distance;
-    if (whole < enough - kStated) EXPECT_NEAR(early, whole, kStated);
-    if (whole > enough + kStated) EXPECT_GE(early, enough - kStated);
+    if (whole < enough - kStated) {
+      EXPECT_NEAR(early, whole, kStated);
+    }
+    if (whole > enough + kStated) {
+      EXPECT_GE(early, enough - kStated);
+    }
   }
 }
 

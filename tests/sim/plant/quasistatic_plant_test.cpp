@@ -161,7 +161,7 @@ TEST(QuasistaticPlant, StepAndSampleDoNotAllocate) {
   for (const DriveCommand& command : commands) {
     plant->step(command);
     Pose X_WT = Pose::Identity();
-    sampler.sample({command.position, command.velocity, {}}, X_WT);
+    watched += sampler.sample({command.position, command.velocity, {}}, X_WT) == kinematics::SolveStatus::ok;
     watched += X_WT(0, 3) + plant->tool_pose()(0, 3) + plant->drive_force()[0] + plant->displacement()[0];
   }
   EXPECT_EQ(calls() - before, Calls{}) << watched;
