@@ -86,7 +86,9 @@ NewtonResult<Number> newton(const Hexapod& g, const Number (&target)[kStrutCount
   Number norm_before{}, det_before{}, step{}, mean{};
   for (int i = 0; i < kStrutCount; ++i) mean = mean + target[i] * (1.0 / kStrutCount);
   const Number travel_max = settings.travel_max * mean;
-  Mask<Number> running = (straighten(X) < settings.skew_max) & (handedness(X.R) > 0.0);
+  const Mask<Number> orthogonal = straighten(X) < settings.skew_max;
+  const Mask<Number> right_handed = handedness(X.R) > 0.0;
+  Mask<Number> running = orthogonal & right_handed;
   for (int n = 0;; ++n) {
     Struts<Number> struts;
     Number length[kStrutCount], residual[kStrutCount], norm{}, worst{};
@@ -113,7 +115,9 @@ NewtonResult<Number> newton(const Hexapod& g, const Number (&target)[kStrutCount
     linearise(struts, length, at);
     factorise(at, factors);
     const Number det = factors.det_A * factors.det_S * g.per_radius_cubed;
-    running = running & (magnitude(factors.det_A) > settings.det_min) & (magnitude(det) > settings.det_min);
+    const Mask<Number> A_regular = magnitude(factors.det_A) > settings.det_min;
+    const Mask<Number> J_regular = magnitude(det) > settings.det_min;
+    running = running & A_regular & J_regular;
     if (n > 0) running = running & (det * det_before > 0.0);
     det_before = det;
     result.ok = result.ok | (running & settled);
