@@ -182,7 +182,8 @@ TEST(MotionPlanner, PathGoesThroughEveryProgrammedPose) {
     ASSERT_EQ(p.setpoint.line, steps[step].line);
     ASSERT_EQ(p.setpoint.time, 2.5 + static_cast<double>(n + 1) * hexapod.limits.cycle_time);
     kinematics::AxisVector axes{};
-    hexapod.mechanism->inverse(hexapod.machine.X_WB.inverse() * p.X_WT, {}, axes);
+    ASSERT_EQ(hexapod.mechanism->inverse(hexapod.machine.X_WB.inverse() * p.X_WT, {}, axes),
+              kinematics::SolveStatus::ok);
     ASSERT_EQ(axes, p.setpoint.position);
   }
   expect_at_rest_at(points.back(), steps.back().X_WT);
