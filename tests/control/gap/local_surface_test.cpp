@@ -74,12 +74,8 @@ TEST(LocalSurface, RefusesToGuessWhereThePartEndsOrHasAStep) {
   EXPECT_THAT(refusal(part, tool_at({29.9e-3, 0, 0})), testing::HasSubstr("the part ends within 2.5 mm"));
   EXPECT_TRUE(find_local_surface(part, tool_at({28e-3, 0, 0}))) << "5 % of the disc are beyond the edge";
 
-  geometry::Triangles step = geometry::box({-30e-3, -30e-3, -10e-3}, {0, 30e-3, 0});
-  const geometry::Triangles high = geometry::box({0, -30e-3, -10e-3}, {30e-3, 30e-3, 0.3e-3});
-  const int offset = static_cast<int>(step.vertices.size());
-  step.vertices.insert(step.vertices.end(), high.vertices.begin(), high.vertices.end());
-  for (const auto& [a, b, c] : high.triangles) step.triangles.push_back({a + offset, b + offset, c + offset});
-  const geometry::Mesh stepped = mesh_of(step);
+  const geometry::Mesh stepped = mesh_of(geometry::boxes(
+      {{{-30e-3, -30e-3, -10e-3}, {0, 30e-3, 0}}, {{0, -30e-3, -10e-3}, {30e-3, 30e-3, 0.3e-3}}}));
   EXPECT_THAT(refusal(stepped, tool_at({0.1e-3, 0, 0.3e-3})),
               testing::HasSubstr("um RMS off a smooth surface"));
   EXPECT_TRUE(find_local_surface(stepped, tool_at({3e-3, 0, 0.3e-3}))) << "the step is out of the disc";
