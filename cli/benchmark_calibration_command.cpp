@@ -1,14 +1,14 @@
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/jobs_option.h"
+#include "cli/machine_option.h"
 #include "cli/progress.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -59,8 +59,7 @@ void check_ranges(const BenchmarkCall& call) {
   const auto& request = call.request;
   if (request.trials < 1 || request.trials > 100000)
     throw InputError(fmt::format("--trials {} is outside 1..100000", request.trials));
-  if (request.threads < 1 || request.threads > 1024)
-    throw InputError(fmt::format("-j {} is outside 1..1024", request.threads));
+  check_jobs(request.threads);
   if (!(request.plugin_limits.time >= 0.01 && request.plugin_limits.time <= 3600))
     throw InputError(fmt::format("--plugin-timeout {} is outside 0.01..3600 s", request.plugin_limits.time));
   if (!(call.board_offset_mm >= 0 && call.board_offset_mm <= 2))
@@ -159,11 +158,9 @@ void add_condition_options(CLI::App& command, BenchmarkCall& call) {
 
 void add_benchmark_calibration(CLI::App& benchmark, Action& action) {
   auto call = std::make_shared<BenchmarkCall>();
-  call->request.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   auto* command = benchmark.add_subcommand("calibration",
                                            "Estimators and plug-ins on built machines whose truth is known");
-  command->add_option("--machine", call->request.machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*command, call->request.machine);
   command->add_option("--trials", call->request.trials, "built machines")->capture_default_str();
   command->add_option("--estimators", call->request.estimators, "names, separated by commas; else all")
       ->delimiter(',');
@@ -177,8 +174,7 @@ void add_benchmark_calibration(CLI::App& benchmark, Action& action) {
       ->capture_default_str();
   add_condition_options(*command, *call);
   command->add_option("--seed", call->request.seed, "of all that is drawn")->capture_default_str();
-  command->add_option("-j,--jobs", call->request.threads, "threads; the result does not depend on it")
-      ->capture_default_str();
+  add_jobs(*command, call->request.threads);
   command->add_option("--out", call->folder, "folder of results; else out/benchmark-calibration");
   command->add_flag("--tables", call->tables,
                     "print the tables of the literature's set-up beside their figures, and no more");

@@ -1,12 +1,12 @@
-#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "cli/jobs_option.h"
+#include "cli/machine_option.h"
 #include "cli/progress.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
@@ -24,6 +24,7 @@ struct GapCall {
 
 int run_gap(const GapCall& call) {
   studies::GapBenchmarkRequest request = call.request;
+  check_jobs(request.threads);
   request.command = command_line();
   if (request.program.empty())
     request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
@@ -49,11 +50,9 @@ int run_gap(const GapCall& call) {
 void add_benchmark_gap(CLI::App& benchmark, Action& action) {
   auto call = std::make_shared<GapCall>();
   auto& request = call->request;
-  request.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   auto* command = benchmark.add_subcommand(
       "gap", "How well the gap is measured, closed and followed over surfaces, light and faults");
-  command->add_option("--machine", request.machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*command, request.machine);
   command->add_option("--part", request.parts, "detectors, approach, following, bottle; all unless given")
       ->delimiter(',');
   command
@@ -66,8 +65,7 @@ void add_benchmark_gap(CLI::App& benchmark, Action& action) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--program", request.program, "of the bottle's line; else scenarios/song-bottle.gcode");
-  command->add_option("-j,--jobs", request.threads, "threads; the result does not depend on it")
-      ->capture_default_str();
+  add_jobs(*command, request.threads);
   command->add_option("--out", call->folder, "folder of results")->capture_default_str();
   command->footer("Writes gap.json and gap.html (docs/gap-control.md).");
   command->callback([=, &action] { action = [=] { return run_gap(*call); }; });

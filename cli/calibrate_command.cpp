@@ -9,6 +9,7 @@
 
 #include "calibration/machine/calibrate_machine.h"
 #include "cli/command.h"
+#include "cli/machine_option.h"
 #include "cli/noise_option.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -55,8 +56,7 @@ void add_calibrate(CLI::App& app, Action& action) {
       ->add_option("measurements", call->request.measurements,
                    "CSV of measured poses (docs/calibration-data.md)")
       ->required();
-  command->add_option("--machine", call->request.machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*command, call->request.machine);
   command->add_option(
       "--estimator", call->request.estimator,
       "maximum_likelihood (without the option), robust; of hexapods also whitened, ik_residual, "

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/machine_option.h"
 #include "core/error.h"
 #include "core/output_file.h"
 #include "machine/description.h"
@@ -44,7 +45,7 @@ void add_export(CLI::App& app, Action& action) {
   add_export_mjcf(*command, action);
   auto* urdf =
       command->add_subcommand("urdf", "URDF of an open chain: links \"work\" and \"tool\" at its ends");
-  urdf->add_option("--machine", request->machine, "name under models/ or a machine.yaml")->required();
+  add_machine_option(*urdf, request->machine)->required();
   urdf->add_option("-o,--output", request->output, "file to write")->required();
   urdf->callback([=, &action] { action = [=] { return export_urdf(*request); }; });
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/machine_option.h"
 #include "core/output_file.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
@@ -31,8 +32,7 @@ int export_mjcf(const MjcfRequest& r) {
 void add_export_mjcf(CLI::App& command, Action& action) {
   auto request = std::make_shared<MjcfRequest>();
   auto* mjcf = command.add_subcommand("mjcf", "MuJoCo's XML, assembled at home");
-  mjcf->add_option("--machine", request->machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*mjcf, request->machine);
   mjcf->add_option("--as-built", request->as_built, "nominal, sampled, manufactured")->capture_default_str();
   mjcf->add_option("--seed", request->seed, "of the as-built errors")->capture_default_str();
   mjcf->add_option("-o,--output", request->output, "file to write")->required();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/machine_option.h"
 #include "core/error.h"
 #include "core/number_table.h"
 #include "core/units.h"
@@ -106,14 +107,14 @@ void add_kinematics(CLI::App& app, Action& action) {
   auto machine = std::make_shared<std::string>(machine::kDefaultMachine);
   auto* axes =
       app.add_subcommand("axes", "Inverse kinematics: poses.csv on standard input, axes on standard output");
-  axes->add_option("--machine", *machine, "name under models/ or a machine.yaml")->capture_default_str();
+  add_machine_option(*axes, *machine);
   axes->footer(
       "Header: x_mm,y_mm,z_mm,qw,qx,qy,qz, the nozzle tip in the frame of programs. A row without solution "
       "prints nan and the reason.");
   axes->callback([=, &action] { action = [=] { return print_axes(*machine); }; });
   auto* poses =
       app.add_subcommand("poses", "Forward kinematics: axes.csv on standard input, poses on standard output");
-  poses->add_option("--machine", *machine, "name under models/ or a machine.yaml")->capture_default_str();
+  add_machine_option(*poses, *machine);
   poses->footer(
       "Header: the machine's axes, as `understudy axes` prints them; hexapod: l1_mm..l6_mm, strut lengths.");
   poses->callback([=, &action] { action = [=] { return print_poses(*machine); }; });

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "cli/machine_option.h"
 #include "cli/progress.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
@@ -136,8 +137,7 @@ void add_rehearse(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("rehearse", "Print a program on the twin and say go or no-go");
   command->add_option("program", request->program, "G-code, with the tool's orientation at each point")
       ->required();
-  command->add_option("--machine", request->machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*command, request->machine);
   command->add_option(
       "--before", request->before,
       "the machine before its calibration, a name or a machine.yaml: the same print on the same "

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "cli/machine_option.h"
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/units.h"
@@ -57,8 +58,7 @@ void add_render(CLI::App& app, Action& action) {
   command->add_option("kind", call->request.kind, "laser, chessboard, targets or scene")
       ->required()
       ->check(CLI::IsMember({"laser", "chessboard", "targets", "scene"}));
-  command->add_option("--machine", call->request.machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*command, call->request.machine);
   command
       ->add_option("--pose", call->pose,
                    "x,y,z,qw,qx,qy,qz in mm: the tool's true pose in the frame of programs")

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "cli/machine_option.h"
 #include "cli/noise_option.h"
 #include "cli/progress.h"
 #include "core/interrupt.h"
@@ -45,8 +46,7 @@ int run_sample(const SampleCall& call) {
 void add_sample_poses(CLI::App& app, Action& action) {
   auto call = std::make_shared<SampleCall>();
   auto* command = app.add_subcommand("sample-poses", "Where to drive a machine to calibrate it");
-  command->add_option("--machine", call->request.machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*command, call->request.machine);
   command->add_option("--count", call->request.count, "poses")->capture_default_str();
   command->add_option("--design", call->request.design, "d-optimal: the poses that tell most; or random")
       ->capture_default_str();

@@ -1,13 +1,12 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/jobs_option.h"
 #include "cli/progress.h"
-#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "regression/junit.h"
@@ -22,7 +21,7 @@ namespace fs = std::filesystem;
 struct ScenarioRequest {
   std::vector<std::string> paths;
   std::string junit, folder;
-  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int threads = 0;
 };
 
 /// The folder of shipped scenarios, when none is named: here, or beside the models.
@@ -50,8 +49,7 @@ regression::RecordSink results_in(const fs::path& folder) {
 }
 
 int run(const ScenarioRequest& request) {
-  if (request.threads < 1 || request.threads > 1024)
-    throw InputError(fmt::format("-j {} is outside 1..1024", request.threads));
+  check_jobs(request.threads);
   std::vector<regression::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
   for (const auto& file : scenario_files(request.paths)) scenarios.push_back(regression::load_scenario(file));
   std::vector<regression::ScenarioResult> results;
@@ -96,10 +94,7 @@ void add_scenario(CLI::App& app, Action& action) {
   auto* run_command = command->add_subcommand(
       "run", "Run scenarios: status 0 when every expectation holds, 1 when one does not");
   run_command->add_option("paths", request->paths, "scenario files or folders (default: scenarios/)");
-  run_command
-      ->add_option("-j,--jobs", request->threads,
-                   "threads for series of machines; results do not depend on it")
-      ->capture_default_str();
+  add_jobs(*run_command, request->threads, "threads for series of machines; results do not depend on it");
   run_command->add_option("--junit", request->junit, "also write JUnit XML to this file");
   run_command->add_option("--out", request->folder, "also write each rehearsal's report below this folder");
   run_command->callback([=, &action] { action = [=] { return run(*request); }; });

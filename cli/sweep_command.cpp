@@ -1,10 +1,10 @@
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/jobs_option.h"
 #include "cli/progress.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -21,14 +21,14 @@ namespace {
 struct SweepRequest {
   std::string scenario, folder = "sweep";
   int samples = 200;
-  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int threads = 0;
   std::uint64_t first_seed = 1;
 };
 
 int run_sweep(const SweepRequest& r) {
   if (r.samples < 1 || r.samples > 1000000)
     throw InputError(fmt::format("--samples {} is outside 1..1000000", r.samples));
-  if (r.threads < 1 || r.threads > 1024) throw InputError(fmt::format("-j {} is outside 1..1024", r.threads));
+  check_jobs(r.threads);
   auto request = regression::request_of(regression::load_scenario(r.scenario));
   request.command = command_line();
   const auto machine = machine::load_machine(request.machine);
@@ -59,8 +59,7 @@ void add_sweep(CLI::App& app, Action& action) {
   command->add_option("--samples", request->samples, "machines")->capture_default_str();
   command->add_option("--first-seed", request->first_seed, "seed of the first machine")
       ->capture_default_str();
-  command->add_option("-j,--jobs", request->threads, "threads; the result does not depend on it")
-      ->capture_default_str();
+  add_jobs(*command, request->threads);
   command->add_option("--out", request->folder, "folder of results")->capture_default_str();
   command->callback([=, &action] { action = [=] { return run_sweep(*request); }; });
 }

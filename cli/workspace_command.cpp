@@ -1,17 +1,16 @@
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/jobs_option.h"
+#include "cli/machine_option.h"
 #include "cli/progress.h"
-#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "core/units.h"
@@ -30,12 +29,11 @@ struct WorkspaceCall {
   std::optional<double> tilt_deg, azimuth_deg, step_mm;
   std::vector<double> box_mm;
   bool all_azimuths = false;
-  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int threads = 0;
 };
 
 studies::WorkspaceOptions options_of(const WorkspaceCall& call) {
-  if (call.threads < 1 || call.threads > 1024)
-    throw InputError(fmt::format("-j {} is outside 1..1024", call.threads));
+  check_jobs(call.threads);
   studies::WorkspaceOptions options;
   if (call.tilt_deg) options.tilt = from_deg(*call.tilt_deg);
   if (call.azimuth_deg) options.azimuth = from_deg(*call.azimuth_deg);
@@ -75,8 +73,7 @@ int run_workspace(const WorkspaceCall& call) {
 void add_workspace(CLI::App& app, Action& action) {
   auto call = std::make_shared<WorkspaceCall>();
   auto* command = app.add_subcommand("workspace", "Where the tool can go, and which limit binds elsewhere");
-  command->add_option("--machine", call->machine, "name under models/ or a machine.yaml")
-      ->capture_default_str();
+  add_machine_option(*command, call->machine);
   command->add_option("--tilt", call->tilt_deg,
                       "of the tool's axis from upright, 0..180 degrees; else as at home");
   command->add_option("--azimuth", call->azimuth_deg,
@@ -88,8 +85,7 @@ void add_workspace(CLI::App& app, Action& action) {
       ->expected(6);
   command->add_option("--step", call->step_mm,
                       "between points, mm; else a fortieth of the box's longest side");
-  command->add_option("-j,--jobs", call->threads, "threads; the result does not depend on it")
-      ->capture_default_str();
+  add_jobs(*command, call->threads);
   command->add_option("--out", call->folder, "folder of results; else out/workspace-<machine>");
   command->footer(
       "Without --box: a hexapod's 100 mm cube about home; else the table's area, as high as the axis that\n"

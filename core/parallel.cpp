@@ -33,6 +33,8 @@ class FirstFailure {
 
 }  // namespace
 
+int hardware_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
 void in_parallel_with(std::size_t count, int threads, const std::function<IndexedWork()>& make_worker,
                       const JobDone& done) {
   std::atomic<std::size_t> next{0};

@@ -10,6 +10,9 @@ using IndexedWork = std::function<void(std::size_t index)>;
 /// Called under a lock after each job; `finished` counts those that are done.
 using JobDone = std::function<void(std::size_t index, std::size_t finished)>;
 
+/// As many as the processor runs at once; 1 where that is not known.
+int hardware_threads();
+
 /// Runs work(0) .. work(count - 1), each once, on the calling thread and up to `threads` - 1 more. Jobs write
 /// where nobody else does. After a failure no further job begins; of what was thrown that of the lowest index
 /// comes out. An interrupt (core/interrupt.h) counts as a failure.

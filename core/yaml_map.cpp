@@ -63,6 +63,7 @@ Unit unit_of(std::string_view key) {
 
 constexpr std::size_t kWordsToList = 12;
 
+/// An empty value's mark is where the next word of the file begins: errors about one name its key's place.
 Place place_of(const YAML::Mark& mark, const std::string& file) {
   return mark.is_null() ? Place{file, 0, 0} : Place{file, mark.line + 1, mark.column + 1};
 }
@@ -72,6 +73,11 @@ std::string kind_of(const YAML::Node& node) {
   if (node.IsSequence()) return "a list";
   if (node.IsNull()) return "empty";
   return fmt::format("'{}'{}", node.Scalar(), node.Tag() == "!" ? " in quotes" : "");
+}
+
+std::string no_map(const std::string& path, const YAML::Node& node) {
+  return fmt::format("{} is {}, where keys with values are expected", path.empty() ? "the file" : path,
+                     kind_of(node));
 }
 
 enum class Parse { number, not_finite, other };
@@ -116,9 +122,7 @@ std::string beyond(Bounds bounds, std::string_view unit) {
 
 YamlMap::YamlMap(const YAML::Node& node, std::string file, std::string path)
     : file_(std::move(file)), path_(std::move(path)), place_(place_of(node.Mark(), file_)) {
-  if (!node.IsMap())
-    throw InputError(place_, fmt::format("{} is {}, where keys with values are expected",
-                                         path_.empty() ? "the file" : path_, kind_of(node)));
+  if (!node.IsMap()) throw InputError(node.IsNull() ? Place{file_, 0, 0} : place_, no_map(path_, node));
   for (const auto& entry : node) {
     const Place place = place_of(entry.first.Mark(), file_);
     if (!entry.first.IsScalar()) throw InputError(place, "a key is " + kind_of(entry.first) + ", not a name");
@@ -227,7 +231,7 @@ bool YamlMap::either(const std::string& question, bool actual) {
 }
 
 double YamlMap::to_number(const YAML::Node& node, const std::string& key, Bounds bounds) const {
-  const Place place = place_of(node.Mark(), file_);
+  const Place place = node.IsNull() ? this->place(key) : place_of(node.Mark(), file_);
   const Unit unit = unit_of(key);
   double value = 0;
   const Parse parsed = node.IsScalar() && node.Tag() != "!" ? parse(node.Scalar(), value) : Parse::other;
@@ -353,6 +357,7 @@ void YamlMap::section(const std::string& key, const char* about, const Read& rea
   }
   const YAML::Node* node = find(key);
   if (!node) return;
+  if (node->IsNull()) fail(key, no_map(path(key), *node));
   YamlMap map(*node, file_, path(key));
   read(map);
   map.finish();
@@ -376,7 +381,9 @@ void YamlMap::list(const std::string& key, std::size_t count, const char* about,
     fail(key, fmt::format("{} is {}, where a list with at least one entry is expected", path(key),
                           node->IsSequence() ? "an empty list" : kind_of(*node)));
   for (std::size_t i = 0; i < node->size(); ++i) {
-    YamlMap map((*node)[i], file_, fmt::format("{}[{}]", path(key), i + 1));
+    const std::string item = fmt::format("{}[{}]", path(key), i + 1);
+    if ((*node)[i].IsNull()) fail(key, no_map(item, (*node)[i]));
+    YamlMap map((*node)[i], file_, item);
     read(map, i);
     map.finish();
   }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/xml.h"
+
 namespace understudy::regression {
 namespace {
 
@@ -30,6 +32,8 @@ std::size_t sequence_length(std::string_view text, std::size_t at) {
   return overlong || surrogate || point == 0xFFFE || point == 0xFFFF || point > 0x10FFFF ? 0 : length;
 }
 
+/// For attributes and text: also line ends and tabs, which a reader would turn into spaces, and bytes that
+/// are not XML's. tinyxml2 leaves both as they are.
 std::string escape(std::string_view text) {
   std::string escaped;
   for (std::size_t at = 0; at < text.size();) {
@@ -54,53 +58,61 @@ std::string escape(std::string_view text) {
   return escaped;
 }
 
-std::string time_attribute(const std::optional<double>& seconds) {
-  return seconds ? fmt::format(" time=\"{:.3f}\"", *seconds) : "";
+tinyxml2::XMLElement& add_case(tinyxml2::XMLElement& suite, const ScenarioResult& result,
+                               const std::string& name) {
+  return add_element(
+      suite, "testcase",
+      {{"classname", escape(result.name)}, {"name", escape(name)}, {"file", escape(result.file)}});
 }
 
-std::string suite(const ScenarioResult& result) {
-  const auto failures =
-      std::count_if(result.checks.begin(), result.checks.end(), [](const Check& c) { return !c.ok; });
-  const int errors = result.error.empty() ? 0 : 1;
-  std::string xml = fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\"{}>\n",
-                                escape(result.name), result.checks.size() + static_cast<std::size_t>(errors),
-                                failures, errors, time_attribute(result.seconds));
-  const auto open_case = [&](const std::string& name) {
-    xml += fmt::format("    <testcase classname=\"{}\" name=\"{}\" file=\"{}\"", escape(result.name),
-                       escape(name), escape(result.file));
-  };
-  if (errors > 0) {
-    open_case("run");
-    xml += fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n", escape(result.error));
-  }
+struct Counts {
+  std::size_t tests = 0, failures = 0, errors = 0;
+};
+
+Counts counts_of(const ScenarioResult& result) {
+  Counts counts;
+  counts.errors = result.error.empty() ? 0 : 1;
+  counts.tests = result.checks.size() + counts.errors;
+  for (const Check& check : result.checks) counts.failures += check.ok ? 0 : 1;
+  return counts;
+}
+
+void add_suite(tinyxml2::XMLElement& suites, const ScenarioResult& result) {
+  const Counts counts = counts_of(result);
+  auto& suite = add_element(suites, "testsuite",
+                            {{"name", escape(result.name)},
+                             {"tests", std::to_string(counts.tests)},
+                             {"failures", std::to_string(counts.failures)},
+                             {"errors", std::to_string(counts.errors)}});
+  if (result.seconds) suite.SetAttribute("time", fmt::format("{:.3f}", *result.seconds).c_str());
+  if (counts.errors > 0)
+    add_element(add_case(suite, result, "run"), "error", {{"message", escape(result.error)}});
   for (const Check& check : result.checks) {
-    open_case(check.name);
-    if (check.ok)
-      xml += "/>\n";
-    else
-      xml += fmt::format(">\n      <failure message=\"{0}\">{0}</failure>\n    </testcase>\n",
-                         escape(check.message));
+    auto& element = add_case(suite, result, check.name);
+    if (check.ok) continue;
+    const std::string message = escape(check.message);
+    add_element(element, "failure", {{"message", message}}).SetText(message.c_str());
   }
-  return xml + "  </testsuite>\n";
 }
 
 }  // namespace
 
 std::string junit_xml(std::span<const ScenarioResult> results) {
-  std::string suites;
-  std::size_t tests = 0, failures = 0, errors = 0;
+  Counts all;
   for (const ScenarioResult& result : results) {
-    suites += suite(result);
-    const std::size_t error = result.error.empty() ? 0 : 1;
-    tests += result.checks.size() + error;
-    errors += error;
-    for (const Check& check : result.checks) failures += check.ok ? 0 : 1;
+    const Counts counts = counts_of(result);
+    all.tests += counts.tests;
+    all.failures += counts.failures;
+    all.errors += counts.errors;
   }
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites tests=\"{}\" failures=\"{}\" "
-      "errors=\"{}\">\n{}"
-      "</testsuites>\n",
-      tests, failures, errors, suites);
+  tinyxml2::XMLDocument document(false);  // values come escaped
+  document.InsertEndChild(document.NewDeclaration());
+  auto& suites = add_element(document, "testsuites",
+                             {{"tests", std::to_string(all.tests)},
+                              {"failures", std::to_string(all.failures)},
+                              {"errors", std::to_string(all.errors)}});
+  for (const ScenarioResult& result : results) add_suite(suites, result);
+  return to_text(document);
 }
 
 }  // namespace understudy::regression

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "control/motion/constraint_check.h"
+#include "core/assert.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -209,7 +210,9 @@ const TracePoint* middle_of_print(const std::vector<TracePoint>& trace) {
 
 sim::Configuration home_of(const machine::MachineDescription& machine) {
   sim::Configuration home{machine.X_WB * machine.X_BT_home, {}};
-  (void)machine.make_mechanism()->inverse(machine.X_BT_home, {}, home.axes);
+  const auto status = machine.make_mechanism()->inverse(machine.X_BT_home, {}, home.axes);
+  UNDERSTUDY_ASSERT(status == kinematics::SolveStatus::ok || status == kinematics::SolveStatus::singular,
+                    "the description's reader has settled that home can be reached");
   return home;
 }
 

@@ -91,7 +91,7 @@ std::string targets(const RenderRequest& request, const MachineDescription& mach
   renderer::TargetScene scene = renderer::target_scene(rig, request.camera, X_WT);
   scene.exposure.seed = request.seed;
   truth["camera"] = camera_value(scene.camera);
-  truth["X_WC"] = pose_value(rig.cameras[static_cast<std::size_t>(request.camera)].X_WC);
+  truth["X_WC"] = pose_value(rig.cameras[request.camera].X_WC);
   truth["radius_mm"] = to_mm(scene.radius);
   truth["targets"] = ordered_json::array();
   for (const Vec3& centre : scene.centres_C)
@@ -118,7 +118,7 @@ std::string scene(const MachineDescription& machine, const Pose& X_WT, ordered_j
         fmt::format("{} cannot take this pose: {}", machine.name, to_string(violations.front())));
   for (int i = 0; i < mechanism->axis_count(); ++i) {
     const bool angle = mechanism->axis_is_angle(i);
-    const double value = axes[static_cast<std::size_t>(i)];
+    const double value = axes[i];
     truth["axes"][mechanism->axis_name(i) + (angle ? "_deg" : "_mm")] =
         list({angle ? to_deg(value) : to_mm(value)})[0];
   }

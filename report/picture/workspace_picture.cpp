@@ -41,7 +41,7 @@ void write(cv::Mat& canvas, const std::string& text, cv::Point at, double size,
 Rgb colour_of(const Workspace& w, int x, int y, int z) {
   const std::size_t i = w.index(x, y, z);
   if (w.binding[i] == 0) return margin_colour(w.margin[i]);
-  return limit_colour(w.limits[static_cast<std::size_t>(w.binding[i] - 1)].family);
+  return limit_colour(w.limits[w.binding[i] - 1].family);
 }
 
 /// A plane of the grid: across `normal`, at point `level`; u to the right, v up.
@@ -51,14 +51,14 @@ struct Slice {
 
 cv::Mat colours(const Workspace& w, const Slice& slice) {
   const auto n = w.grid.cells();
-  const auto columns = n[static_cast<std::size_t>(slice.u)], rows = n[static_cast<std::size_t>(slice.v)];
+  const auto columns = n[slice.u], rows = n[slice.v];
   cv::Mat pixels(rows, columns, CV_8UC3);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       std::array<int, 3> at{};
-      at[static_cast<std::size_t>(slice.normal)] = slice.level;
-      at[static_cast<std::size_t>(slice.u)] = column;
-      at[static_cast<std::size_t>(slice.v)] = rows - 1 - row;
+      at[slice.normal] = slice.level;
+      at[slice.u] = column;
+      at[slice.v] = rows - 1 - row;
       const Rgb c = colour_of(w, at[0], at[1], at[2]);
       pixels.at<cv::Vec3b>(row, column) = {c[2], c[1], c[0]};
     }
@@ -80,7 +80,7 @@ void draw_slice(cv::Mat& canvas, const Workspace& w, const Slice& slice, int lef
   const auto n = w.grid.cells();
   const Vec3 first = w.grid.point(0, 0, 0), last = w.grid.point(n[0] - 1, n[1] - 1, n[2] - 1);
   std::array<int, 3> at{};
-  at[static_cast<std::size_t>(slice.normal)] = slice.level;
+  at[slice.normal] = slice.level;
   const double level = to_mm(w.grid.point(at[0], at[1], at[2])[slice.normal]);
   write(canvas, fmt::format("{} = {:.4g} mm", "xyz"[slice.normal], level), {left, top - 16}, 0.72);
   const auto tick = [](double v) { return fmt::format("{:.4g}", std::round(1e9 * to_mm(v)) / 1e9 + 0.0); };
@@ -145,7 +145,7 @@ void draw_view(cv::Mat& canvas, const studies::WorkspaceStudy& study) {
   cv::cvtColor(rgb, part, cv::COLOR_RGB2BGR);
   const auto& grid = study.workspace.grid;
   for (int i = 0; i < 3; ++i) {
-    const Vec2 at = view.axis_label_px[static_cast<std::size_t>(i)];
+    const Vec2 at = view.axis_label_px[i];
     const auto range =
         fmt::format("{} {:.4g}..{:.4g} mm", "xyz"[i], to_mm(grid.lower[i]), to_mm(grid.upper[i]));
     const int left = i == 1 ? static_cast<int>(at.x()) : static_cast<int>(at.x()) - kLabelWidth;
@@ -173,7 +173,7 @@ Rgb limit_colour(int family) {
                                                             {240, 228, 66},
                                                             {140, 86, 75},
                                                             {170, 170, 170}}};
-  return kPalette[static_cast<std::size_t>(std::clamp(family, 0, kLimitColours - 1))];
+  return kPalette[std::clamp(family, 0, kLimitColours - 1)];
 }
 
 Rgb margin_colour(double margin) {

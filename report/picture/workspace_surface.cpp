@@ -25,13 +25,11 @@ class Thinned {
   }
   bool reaches(const Cell& c) const { return inside(c) && binding(c) == 0; }
   /// Family that ends the set at a cell that is not reached.
-  int family(const Cell& c) const {
-    return inside(c) ? w_.limits[static_cast<std::size_t>(binding(c) - 1)].family : -1;
-  }
+  int family(const Cell& c) const { return inside(c) ? w_.limits[binding(c) - 1].family : -1; }
   /// [m], of a place in units of cells from the first point.
   Vec3 place(const Vec3& at) const {
     Vec3 fine = stride_ * at;
-    for (int i = 0; i < 3; ++i) fine[i] += std::min(stride_ / 2, fine_[static_cast<std::size_t>(i)] - 1);
+    for (int i = 0; i < 3; ++i) fine[i] += std::min(stride_ / 2, fine_[i] - 1);
     return w_.grid.point(0, 0, 0) + w_.grid.step * fine;
   }
 
@@ -50,14 +48,13 @@ class Thinned {
 Vec3 net_vertex(const Thinned& grid, const Cell& corner) {
   std::array<bool, 8> in{};
   for (int k = 0; k < 8; ++k)
-    in[static_cast<std::size_t>(k)] =
-        grid.reaches({corner[0] + (k & 1), corner[1] + (k >> 1 & 1), corner[2] + (k >> 2 & 1)});
+    in[k] = grid.reaches({corner[0] + (k & 1), corner[1] + (k >> 1 & 1), corner[2] + (k >> 2 & 1)});
   Vec3 sum = Vec3::Zero();
   int crossings = 0;
   for (int k = 0; k < 8; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
       const int other = k | 1 << axis;
-      if (other == k || in[static_cast<std::size_t>(k)] == in[static_cast<std::size_t>(other)]) continue;
+      if (other == k || in[k] == in[other]) continue;
       Vec3 middle(k & 1, k >> 1 & 1, k >> 2 & 1);
       middle[axis] = 0.5;
       sum += middle;
@@ -129,8 +126,7 @@ class Net {
   void find_rim() {
     std::vector<bool> side(vertices_.size()), limit(vertices_.size());
     for (const Quad& quad : quads_)
-      for (const int corner : quad.corner)
-        (quad.family < 0 ? side : limit)[static_cast<std::size_t>(corner)] = true;
+      for (const int corner : quad.corner) (quad.family < 0 ? side : limit)[corner] = true;
     touches_both_.resize(vertices_.size());
     for (std::size_t i = 0; i < vertices_.size(); ++i) touches_both_[i] = side[i] && limit[i];
   }
@@ -159,7 +155,7 @@ class Net {
       Cell at = cell;
       if (k == 0 || k == 3) --at[u];
       if (k == 0 || k == 1) --at[v];
-      quad.corner[static_cast<std::size_t>(k)] = vertex(at);
+      quad.corner[k] = vertex(at);
     }
     if (!outwards) std::swap(quad.corner[1], quad.corner[3]);
     quads_.push_back(quad);
@@ -185,7 +181,7 @@ class Net {
     for (auto& triangle : triangles) {
       for (int& corner : triangle) {
         const auto [it, added] = index.try_emplace(corner, static_cast<int>(used.size()));
-        if (added) used.push_back(grid_.place(vertices_[static_cast<std::size_t>(corner)]));
+        if (added) used.push_back(grid_.place(vertices_[corner]));
         corner = it->second;
       }
     }

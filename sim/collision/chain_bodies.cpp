@@ -20,15 +20,13 @@ ChainBodies::ChainBodies(const machine::MachineDescription& machine, const AsBui
   if (!machine.is_chain()) return;
   for (const geometry::Shape& shape : machine.chain().frame_bodies) items_.push_back({shape, -1});
   for (int i = 0; i < chain_.size(); ++i)
-    for (const geometry::Shape& shape : machine.chain().links[static_cast<std::size_t>(i)].bodies)
-      items_.push_back({shape, i});
+    for (const geometry::Shape& shape : machine.chain().links[i].bodies) items_.push_back({shape, i});
   X_OL_.resize(chain_.axes.size(), Pose::Identity());
   for (const Item& item : items_) {
     kinematics::AxisVector lever{};
     const auto add = [&](int last, bool work) {
       for (int i = last; i >= 0; i = axis(i).parent)
-        lever[static_cast<std::size_t>(i)] +=
-            axis(i).angle ? reach_from(work ? -1 : i, item) + (work ? way_to(i) : 0) : 1;
+        lever[i] += axis(i).angle ? reach_from(work ? -1 : i, item) + (work ? way_to(i) : 0) : 1;
     };
     add(item.axis, false);
     add(chain_.work_axis, true);  // seen from the work, everything else moves when the work does
@@ -66,14 +64,13 @@ void ChainBodies::pose(const kinematics::AxisVector& axes) {
   kinematics::AxisVector built = axes;
   for (std::size_t i = 0; i < built.size(); ++i) built[i] += zero_[i];
   kinematics::link_poses(chain_, built, X_OL_);
-  X_WO_ = chain_.work_axis < 0
-              ? Pose(X_WB_ * chain_.X_OS_zero.inverse())
-              : Pose((X_OL_[static_cast<std::size_t>(chain_.work_axis)] * chain_.X_OS_zero).inverse());
+  X_WO_ = chain_.work_axis < 0 ? Pose(X_WB_ * chain_.X_OS_zero.inverse())
+                               : Pose((X_OL_[chain_.work_axis] * chain_.X_OS_zero).inverse());
 }
 
 Pose ChainBodies::place(std::size_t item) const {
   const Item& body = items_[item];
-  const Pose X_WL = body.axis < 0 ? X_WO_ : Pose(X_WO_ * X_OL_[static_cast<std::size_t>(body.axis)]);
+  const Pose X_WL = body.axis < 0 ? X_WO_ : Pose(X_WO_ * X_OL_[body.axis]);
   return X_WL * body.shape.X_FS;
 }
 

@@ -145,12 +145,12 @@ int FclWorld::add(const geometry::Shape& shape) {
 }
 
 void FclWorld::set_capsule_length(int index, double length) {
-  state_->bodies[static_cast<std::size_t>(index)].capsule->lz = length * kScale;
+  state_->bodies[index].capsule->lz = length * kScale;
 }
 
 Separation FclWorld::distance(int first, const Pose& X_W1, int second, const Pose& X_W2) const {
-  const Body& a = state_->bodies[static_cast<std::size_t>(first)];
-  const Body& b = state_->bodies[static_cast<std::size_t>(second)];
+  const Body& a = state_->bodies[first];
+  const Body& b = state_->bodies[second];
   // FCL turns a shape and a mesh round inside, but not the points it answers.
   if (b.is_mesh && !a.is_mesh) return measure(b, X_W2, a, X_W1, true);
   return measure(a, X_W1, b, X_W2, false);

@@ -22,13 +22,12 @@ MeshClearance::MeshClearance(std::shared_ptr<const geometry::Mesh> mesh)
 
 void MeshClearance::build(int node, int first, int count) {
   const auto corner = [&](int triangle, std::size_t k) -> const Vec3& {
-    return mesh_
-        ->vertices()[static_cast<std::size_t>(mesh_->triangles()[static_cast<std::size_t>(triangle)][k])];
+    return mesh_->vertices()[mesh_->triangles()[triangle][k]];
   };
   Vec3 lower = Vec3::Constant(kInfinity), upper = -lower;
   for (int i = first; i < first + count; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& p = corner(order_[static_cast<std::size_t>(i)], k);
+      const Vec3& p = corner(order_[i], k);
       lower = lower.cwiseMin(p);
       upper = upper.cwiseMax(p);
     }
@@ -39,7 +38,7 @@ void MeshClearance::build(int node, int first, int count) {
   if (count <= kLeafTriangles) {
     result.first = first;
     result.count = count;
-    nodes_[static_cast<std::size_t>(node)] = result;
+    nodes_[node] = result;
     return;
   }
   Eigen::Index axis = 0;
@@ -54,7 +53,7 @@ void MeshClearance::build(int node, int first, int count) {
     return ma < mb || (ma == mb && a < b);
   });
   result.first = static_cast<int>(nodes_.size());
-  nodes_[static_cast<std::size_t>(node)] = result;
+  nodes_[node] = result;
   nodes_.resize(nodes_.size() + 2);
   build(result.first, first, half);
   build(result.first + 1, first + half, count - half);
@@ -65,7 +64,7 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
   const Pose X_SW = X_WS.inverse(Eigen::Isometry);
   // The distance is convex: over a box it is at least its tangent at the centre.
   const auto bound = [&](int node) {
-    const Node& n = nodes_[static_cast<std::size_t>(node)];
+    const Node& n = nodes_[node];
     const Vec3 p = X_SW * n.centre;
     const Vec3 away = p - core.nearest(p);
     const double distance = away.norm();
@@ -83,7 +82,7 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
   while (size > 0) {
     const Entry entry = stack[--size];
     if (entry.bound >= best.distance) continue;
-    const Node& node = nodes_[static_cast<std::size_t>(entry.node)];
+    const Node& node = nodes_[entry.node];
     if (node.count == 0) {
       Entry near{node.first, bound(node.first)}, far{node.first + 1, bound(node.first + 1)};
       if (far.bound < near.bound) std::swap(near, far);
@@ -92,10 +91,9 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
-      const auto& t = mesh_->triangles()[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])];
+      const auto& t = mesh_->triangles()[order_[i]];
       Triangle corners;
-      for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = X_SW * mesh_->vertices()[static_cast<std::size_t>(t[k])];
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = X_SW * mesh_->vertices()[t[k]];
       const GjkResult result = distance_to_triangle(core, corners, best.distance);
       if (result.distance < best.distance) best = {result.distance, X_WS * result.on_other};
     }

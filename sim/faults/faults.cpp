@@ -14,7 +14,7 @@ namespace {
 bool ends_by(const FaultEvent& event, double time) { return time >= event.time + event.duration; }
 
 bool has_play(const machine::MachineDescription& machine, int axis) {
-  if (machine.is_chain()) return machine.chain().play[static_cast<std::size_t>(axis)] > 0;
+  if (machine.is_chain()) return machine.chain().play[axis] > 0;
   return machine.hexapod().play.screw_nut > 0 || machine.hexapod().play.ball_joint > 0;
 }
 
@@ -96,7 +96,7 @@ FaultyDrives::FaultyDrives(const machine::MachineDescription& machine, std::vect
 }
 
 void FaultyDrives::release(int axis, Plant& plant) {
-  Axis& a = axes_[static_cast<std::size_t>(axis)];
+  Axis& a = axes_[axis];
   a.condition.released = a.counts_only = true;
   plant.set_condition(axis, a.condition);
 }
@@ -161,7 +161,7 @@ void FaultyDrives::apply(double time, DriveCommand& command, Plant& plant) {
   });
   std::erase_if(growths_, [&](Growth& growth) {
     const FaultEvent& event = growth.event;
-    Axis& axis = axes_[static_cast<std::size_t>(event.axis)];
+    Axis& axis = axes_[event.axis];
     const bool grown = ends_by(event, time);
     const double due = grown ? event.amount : event.amount * (time - event.time) / event.duration;
     axis.condition.growth += due - growth.done;

@@ -7,12 +7,12 @@
 #include <fstream>
 #include <limits>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/parallel.h"
 #include "core/units.h"
 #include "sim/beads/bead_shape.h"
 
@@ -76,23 +76,22 @@ void check(const BeadIndex& beads, const AsPrintedSettings& settings) {
     throw InputError("a skin of " + mm(*settings.skin) + " is below 0");
 }
 
-// Fills items [first, last) by `work(index)`, each on its own, on several threads.
+// Fills `count` items by `work(index)`, each on its own, on several threads. One item takes microseconds:
+// jobs are of many.
 template <typename Work>
-void in_parallel(std::size_t first, std::size_t last, int threads, const Work& work) {
-  const auto wanted = threads > 0 ? static_cast<std::size_t>(threads)
-                                  : std::max<std::size_t>(1, std::thread::hardware_concurrency());
-  const auto part = [&](std::size_t number) {
-    for (std::size_t i = first + number; i < last; i += wanted) work(i);
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t number = 1; number < wanted; ++number) others.emplace_back(part, number);
-  part(0);
+void fill(std::size_t count, int threads, const Work& work) {
+  constexpr std::size_t kItems = 256;
+  in_parallel((count + kItems - 1) / kItems, threads > 0 ? threads : hardware_threads(),
+              [&](std::size_t job) {
+                const std::size_t last = std::min(count, (job + 1) * kItems);
+                for (std::size_t i = job * kItems; i < last; ++i) work(i);
+              });
 }
 
 std::vector<std::size_t> chosen(const BeadIndex& beads, const AsPrintedSettings& settings) {
   std::vector<char> in(beads.size(), 1);
   if (settings.skin) {
-    in_parallel(0, beads.size(), settings.threads, [&](std::size_t i) {
+    fill(beads.size(), settings.threads, [&](std::size_t i) {
       const BeadCore core = core_of(beads.bead(i));
       in[i] = settings.intended->signed_distance(core.middle) > -(*settings.skin + core.reach());
     });
@@ -151,8 +150,8 @@ std::string ply_header(const AsPrintedSize& size, const AsPrintedSettings& setti
 
 std::string ply_vertices(const BeadMesh& mesh, const AsPrintedSettings& settings) {
   std::vector<double> deviation(settings.intended ? mesh.vertices.size() : 0);
-  in_parallel(0, deviation.size(), settings.threads,
-              [&](std::size_t v) { deviation[v] = settings.intended->signed_distance(mesh.vertices[v]); });
+  fill(deviation.size(), settings.threads,
+       [&](std::size_t v) { deviation[v] = settings.intended->signed_distance(mesh.vertices[v]); });
   std::string bytes;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     put_mm(bytes, mesh.vertices[v]);

@@ -34,12 +34,19 @@ struct Outline {
   int caps = 0;
 };
 
-void add_corner(Outline& outline, const Vec3& corner, const Vec3& x, const Vec3& y, int first, int last,
-                int sides) {
-  for (int i = first; i <= last; ++i) {
+/// The directions of a regular polygon's corners, in the plane of two unit vectors.
+struct Polygon {
+  Vec3 x, y;
+  int sides;
+
+  Vec3 direction(int i) const {
     const double angle = 2 * std::numbers::pi * i / sides;
-    outline.rims.push_back({corner, std::cos(angle) * x + std::sin(angle) * y, outline.caps});
+    return std::cos(angle) * x + std::sin(angle) * y;
   }
+};
+
+void add_corner(Outline& outline, const Vec3& corner, const Polygon& polygon, int first, int last) {
+  for (int i = first; i <= last; ++i) outline.rims.push_back({corner, polygon.direction(i), outline.caps});
   ++outline.caps;
 }
 
@@ -57,30 +64,29 @@ Outline outline_of(const Bead& bead, int sides) {
   outline.radius = core.radius;
   const double half_length = core.half_along.norm();
   if (half_length == 0) {
-    const Vec3 x = core.up.unitOrthogonal(), y = core.up.cross(x);
+    const Vec3 x = core.up.unitOrthogonal();
+    const Polygon polygon{x, core.up.cross(x), sides};
     if (round) {
-      add_corner(outline, core.middle, x, y, 0, sides - 1, sides);
+      add_corner(outline, core.middle, polygon, 0, sides - 1);
       return outline;
     }
-    for (int i = 0; i < sides; ++i) {
-      const double angle = 2 * std::numbers::pi * i / sides;
-      const Vec3 outward = std::cos(angle) * x + std::sin(angle) * y;
-      add_corner(outline, core.middle + core.disc_radius * outward, x, y, i, i, sides);
-    }
+    for (int i = 0; i < sides; ++i)
+      add_corner(outline, core.middle + core.disc_radius * polygon.direction(i), polygon, i, i);
     return outline;
   }
   const Vec3 x = core.half_along / half_length, y = core.up.cross(x);
+  const Polygon polygon{x, y, sides};
   const Vec3 ahead = core.middle + core.half_along, behind = core.middle - core.half_along;
   if (round) {
-    add_corner(outline, ahead, x, y, -quarter, quarter, sides);
-    add_corner(outline, behind, x, y, quarter, 3 * quarter, sides);
+    add_corner(outline, ahead, polygon, -quarter, quarter);
+    add_corner(outline, behind, polygon, quarter, 3 * quarter);
     return outline;
   }
   const Vec3 side = core.half_side.norm() * y;
-  add_corner(outline, ahead + side, x, y, 0, quarter, sides);
-  add_corner(outline, behind + side, x, y, quarter, 2 * quarter, sides);
-  add_corner(outline, behind - side, x, y, 2 * quarter, 3 * quarter, sides);
-  add_corner(outline, ahead - side, x, y, 3 * quarter, sides, sides);
+  add_corner(outline, ahead + side, polygon, 0, quarter);
+  add_corner(outline, behind + side, polygon, quarter, 2 * quarter);
+  add_corner(outline, behind - side, polygon, 2 * quarter, 3 * quarter);
+  add_corner(outline, ahead - side, polygon, 3 * quarter, sides);
   return outline;
 }
 

@@ -42,7 +42,7 @@ std::vector<Piece> pieces_of(const geometry::Mesh& intended,
   double sum = 0;
   for (const auto& triangle : intended.triangles()) {
     std::vector<Vec3> polygon;
-    for (const int v : triangle) polygon.push_back(intended.vertices()[static_cast<std::size_t>(v)]);
+    for (const int v : triangle) polygon.push_back(intended.vertices()[v]);
     const Vec3 normal = geometry::face_normal(polygon[0], polygon[1], polygon[2]);
     if (normal.isZero(0)) continue;
     for (Eigen::Index axis = 0; region && axis < 3; ++axis) {
@@ -96,7 +96,8 @@ void measure(const BeadIndex& beads, const geometry::Mesh& intended, double limi
   if (const auto near = beads.nearest_surface(sample.place_W, limit)) sample.nearest = near->distance;
 }
 
-// Nearest rank: the least magnitude that so many of them do not exceed.
+// Nearest rank: the least magnitude that so many of them do not exceed. Not core/quantile, which
+// interpolates: of a few samples a share of exactly so many must lie within the figure.
 double percentile(const std::vector<double>& sorted, double share) {
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
   return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];

@@ -210,8 +210,7 @@ std::vector<double> gaussian_mean_line(std::span<const double> heights, double p
     const std::ptrdiff_t last = std::min(count - 1, i + reach);
     for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, i - reach); k <= last; ++k) {
       const auto d = static_cast<double>(k - i);
-      const double w = weights[static_cast<std::size_t>(std::abs(k - i))],
-                   z = heights[static_cast<std::size_t>(k)];
+      const double w = weights[std::abs(k - i)], z = heights[k];
       s0 += w;
       s1 += w * d;
       s2 += w * d * d;
@@ -219,7 +218,7 @@ std::vector<double> gaussian_mean_line(std::span<const double> heights, double p
       z1 += w * d * z;
     }
     const double determinant = s0 * s2 - s1 * s1;
-    line[static_cast<std::size_t>(i)] = determinant > 0 ? (s2 * z0 - s1 * z1) / determinant : z0 / s0;
+    line[i] = determinant > 0 ? (s2 * z0 - s1 * z1) / determinant : z0 / s0;
   }
   return line;
 }

@@ -53,8 +53,7 @@ kinematics::WorkspaceGrid make_grid(const machine::MachineDescription& machine,
   kinematics::WorkspaceGrid grid;
   double longest = 0;
   for (int i = 0; i < 3; ++i) {
-    const double lower = box[static_cast<std::size_t>(2 * i)],
-                 upper = box[static_cast<std::size_t>(2 * i + 1)];
+    const double lower = box[2 * i], upper = box[2 * i + 1];
     constexpr double kFar = 100;  // [m], more than a slip of the unit
     if (!(std::abs(lower) <= kFar && std::abs(upper) <= kFar))
       throw InputError(fmt::format("--box: {} {:g}..{:g} mm is not within +-{:g} mm", "xyz"[i], to_mm(lower),
@@ -81,8 +80,8 @@ kinematics::WorkspaceGrid make_grid(const machine::MachineDescription& machine,
 std::array<double, 6> box_around(const Vec3& middle, const Vec3& half) {
   std::array<double, 6> box{};
   for (int i = 0; i < 3; ++i) {
-    box[static_cast<std::size_t>(2 * i)] = std::round(1e9 * (middle[i] - half[i])) / 1e9 + 0.0;
-    box[static_cast<std::size_t>(2 * i + 1)] = std::round(1e9 * (middle[i] + half[i])) / 1e9 + 0.0;
+    box[2 * i] = std::round(1e9 * (middle[i] - half[i])) / 1e9 + 0.0;
+    box[2 * i + 1] = std::round(1e9 * (middle[i] + half[i])) / 1e9 + 0.0;
   }
   return box;
 }

@@ -131,6 +131,17 @@ TEST(BadUsage, OneLineAndStatusTwo) {
   expect_refused("rehearse " + kBottleLine + " --seed -1" + rest, folder, {"seed"});
 }
 
+TEST(BadUsage, JobsAreFrom1To1024) {
+  const Folder folder;
+  for (const std::string command :
+       {"sweep " + kSource + "/scenarios/song-bottle.yaml", std::string("scenario run"),
+        std::string("workspace"), std::string("benchmark gap"), std::string("benchmark calibration")})
+    for (const std::string jobs : {"0", "1025"}) {
+      const std::string out = command == "scenario run" ? "" : " --out " + (folder / "out");
+      expect_refused(command + " -j " + jobs + out, folder, {"-j " + jobs + " is outside 1..1024"});
+    }
+}
+
 TEST(BadOutput, AFolderThatCannotBeWrittenIsRefusedBeforeTheWork) {
   const Folder folder;
   const std::string file = folder.write("file", "x");

@@ -64,5 +64,7 @@ TEST(InParallel, StopsAtAnInterrupt) {
   set_interrupted(false);
 }
 
+TEST(HardwareThreads, AreOneAtLeast) { EXPECT_GE(hardware_threads(), 1); }
+
 }  // namespace
 }  // namespace understudy

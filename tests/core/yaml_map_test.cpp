@@ -102,6 +102,37 @@ TEST(YamlMap, ListsNumberTheirEntries) {
             "f.yaml:1:1: axes is an empty list, where a list with at least one entry is expected");
 }
 
+TEST(YamlMap, AnEmptyValueIsReportedWhereItsKeyStands) {
+  const auto refused_by = [](const char* text, const YamlMap::Read& read) {
+    return refusal(std::string("first: 1\n") + text + "\n\nlast: 1\n", [&](YamlMap& map) {
+      map.number("first", {}, "");
+      read(map);
+      map.number("last", {}, "");
+    });
+  };
+  const YamlMap::Read lead = [](YamlMap& map) { read_lead(map); };
+  EXPECT_EQ(refused_by("lead_mm:", lead), "f.yaml:2:1: lead_mm is empty, where a number in mm is expected");
+  EXPECT_EQ(refused_by("lead_mm: ~", lead), "f.yaml:2:1: lead_mm is empty, where a number in mm is expected");
+  EXPECT_THAT(refused_by("n:", [](YamlMap& map) { map.integer("n", 0, 9, ""); }), HasSubstr("f.yaml:2:1: n"));
+  EXPECT_THAT(refused_by("n:", [](YamlMap& map) { map.seed("n", ""); }), HasSubstr("f.yaml:2:1: n is empty"));
+  EXPECT_THAT(refused_by("n:", [](YamlMap& map) { map.text("n", ""); }), HasSubstr("f.yaml:2:1: n is empty"));
+  EXPECT_THAT(refused_by("n:", [](YamlMap& map) { map.numbers("n", 2, {}, ""); }),
+              HasSubstr("f.yaml:2:1: n is empty, where a list of 2 numbers"));
+  EXPECT_THAT(refused_by("n:\n  - 1\n  -", [](YamlMap& map) { map.numbers("n", 2, {}, ""); }),
+              HasSubstr("f.yaml:2:1: n is empty, where a number is expected"));
+  const YamlMap::Read section = [](YamlMap& map) { map.section("drive", "", read_lead); };
+  EXPECT_EQ(refused_by("drive:", section), "f.yaml:2:1: drive is empty, where keys with values are expected");
+  EXPECT_EQ(refused_by("drive:\n  lead_mm:", section),
+            "f.yaml:3:3: drive.lead_mm is empty, where a number in mm is expected");
+  const YamlMap::Read list = [](YamlMap& map) {
+    map.list("axes", 0, "", [](YamlMap& axis, std::size_t) { read_lead(axis); });
+  };
+  EXPECT_THAT(refused_by("axes:", list), HasSubstr("f.yaml:2:1: axes is empty"));
+  EXPECT_EQ(refused_by("axes:\n  - lead_mm: 1\n  -", list),
+            "f.yaml:2:1: axes[2] is empty, where keys with values are expected");
+  EXPECT_EQ(refusal("---\n", lead), "f.yaml: the file is empty, where keys with values are expected");
+}
+
 TEST(YamlMap, AFileThatHoldsNoMapIsRefused) {
   const auto read = [](YamlMap&) {};
   EXPECT_THAT(refusal("", read), HasSubstr("the file is empty"));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/frames.h"
@@ -24,6 +25,18 @@ inline Triangles box(const Vec3& lower, const Vec3& upper) {
   t.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                  {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return t;
+}
+
+/// Boxes, each from a lower to an upper corner, beside or in each other.
+inline Triangles boxes(const std::vector<std::pair<Vec3, Vec3>>& corners) {
+  Triangles all;
+  for (const auto& [lower, upper] : corners) {
+    const int first = static_cast<int>(all.vertices.size());
+    const Triangles one = box(lower, upper);
+    all.vertices.insert(all.vertices.end(), one.vertices.begin(), one.vertices.end());
+    for (const auto& [a, b, c] : one.triangles) all.triangles.push_back({first + a, first + b, first + c});
+  }
+  return all;
 }
 
 /// Surface of revolution about z through (z, r) pairs; the first and the last must have r = 0.

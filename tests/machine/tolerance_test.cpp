@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/quantile.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "machine/description.h"
@@ -43,12 +44,6 @@ kinematics::HexapodGeometry built(const MachineDescription& m, const ToleranceSe
     g.length_offset[i] += set.length_offset * random.normal();
   }
   return g;
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
 }
 
 double share_below(const std::vector<double>& values, double limit) {

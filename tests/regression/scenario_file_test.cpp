@@ -162,8 +162,7 @@ TEST_F(ScenarioFile, ABoundMustBeANumber) {
   for (const char* value : {"", "small", "\"0.1\"", ".nan", ".inf", "0.1mm", "1e999", "[1]"})
     EXPECT_THAT(error_of(std::string(kHead) + "expect:\n  - metric: gap.start_mm\n    min: " + value +
                          "\n    unit: mm\n    source: x\n"),
-                AllOf(StartsWith("s.yaml:1"),  // 13; of an empty value, where the next key begins
-
+                AllOf(StartsWith("s.yaml:13"),
                       AnyOf(HasSubstr("where a number is expected"), HasSubstr("not finite"))))
         << value;
 }

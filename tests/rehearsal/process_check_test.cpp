@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "rehearsal/fixture.h"
+#include "tests/geometry/test_solids.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
@@ -66,22 +67,8 @@ class Fixture : public testing::Test {
  protected:
   ~Fixture() override { std::filesystem::remove(path_); }
   std::string refusal_of_box(const Vec3& low, const Vec3& high) {
-    std::vector<Vec3> corners;
-    for (int i = 0; i < 8; ++i)
-      corners.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(),
-                           i & 4 ? high.z() : low.z());
-    const geometry::Mesh mesh(corners, {{0, 2, 1},
-                                        {1, 2, 3},
-                                        {4, 5, 6},
-                                        {5, 7, 6},
-                                        {0, 1, 4},
-                                        {1, 5, 4},
-                                        {2, 6, 3},
-                                        {3, 6, 7},
-                                        {0, 4, 2},
-                                        {2, 4, 6},
-                                        {1, 3, 5},
-                                        {3, 7, 5}});
+    const geometry::Triangles box = geometry::box(low, high);
+    const geometry::Mesh mesh(box.vertices, box.triangles);
     std::ofstream(path_, std::ios::binary) << geometry::write_stl(mesh, "box");
     try {
       read_fixture(path_.string(), machine::load_machine("hexapod"));

@@ -53,14 +53,14 @@ void BulletSolver::read_rows() {
   if (places_.size() == static_cast<std::size_t>(n)) return;
   places_.assign(static_cast<std::size_t>(n), Place::between);
   for (Index i = 0; i < n; ++i)
-    if (lower_(i) == 0) places_[static_cast<std::size_t>(i)] = Place::lower;
+    if (lower_(i) == 0) places_[i] = Place::lower;
 }
 
 /// Impulses of the rows between their limits, the others being at theirs; w of all.
 void BulletSolver::solve_between() {
   between_.clear();
   for (Index i = 0; i < x_.size(); ++i) {
-    const Place place = places_[static_cast<std::size_t>(i)];
+    const Place place = places_[i];
     if (place == Place::between) between_.push_back(i);
     x_(i) = place == Place::lower ? lower_(i) : place == Place::upper ? upper_(i) : 0.0;
   }
@@ -75,7 +75,7 @@ void BulletSolver::solve_between() {
 int BulletSolver::misplaced(bool only_last) {
   int count = 0;
   for (Index i = x_.size() - 1; i >= 0; --i) {
-    Place& place = places_[static_cast<std::size_t>(i)];
+    Place& place = places_[i];
     Place better = place;
     if (place == Place::between) {
       if (x_(i) < lower_(i) - kImpulseTolerance) better = Place::lower;

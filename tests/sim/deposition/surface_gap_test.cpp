@@ -7,27 +7,15 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "tests/geometry/test_solids.h"
 
 namespace understudy::sim {
 namespace {
 
-using Triangles = std::vector<std::array<int, 3>>;
-
 // Closed boxes, each from `lower` to `upper`, in one mesh.
 geometry::Mesh boxes(const std::vector<std::pair<Vec3, Vec3>>& corners) {
-  const Triangles one{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  std::vector<Vec3> vertices;
-  Triangles triangles;
-  for (const auto& [lower, upper] : corners) {
-    const int first = static_cast<int>(vertices.size());
-    for (int i = 0; i < 8; ++i) {
-      vertices.emplace_back(i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(),
-                            i & 4 ? upper.z() : lower.z());
-    }
-    for (const auto& t : one) triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-  return geometry::Mesh(std::move(vertices), std::move(triangles));
+  const geometry::Triangles t = geometry::boxes(corners);
+  return {t.vertices, t.triangles};
 }
 
 Pose over(double x, double height, double tilt = 0) {

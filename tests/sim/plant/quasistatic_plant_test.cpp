@@ -157,14 +157,16 @@ TEST(QuasistaticPlant, StepAndSampleDoNotAllocate) {
     commands.push_back(circle_command(built.hexapod, circle, k * plant->timestep()));
   plant->reset(commands.front().position);
   double watched = 0;
+  int solved = 0;
   const Calls before = calls();
   for (const DriveCommand& command : commands) {
     plant->step(command);
     Pose X_WT = Pose::Identity();
-    watched += sampler.sample({command.position, command.velocity, {}}, X_WT) == kinematics::SolveStatus::ok;
+    solved += sampler.sample({command.position, command.velocity, {}}, X_WT) == kinematics::SolveStatus::ok;
     watched += X_WT(0, 3) + plant->tool_pose()(0, 3) + plant->drive_force()[0] + plant->displacement()[0];
   }
   EXPECT_EQ(calls() - before, Calls{}) << watched;
+  EXPECT_EQ(solved, 1000);
 }
 
 TEST(QuasistaticPlant, ScrewsThatTurnMoveTheToolAsKinematicsSays) {

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/units.h"
+#include "tests/geometry/test_solids.h"
 
 namespace understudy::sim {
 namespace {
@@ -36,21 +37,8 @@ Bead bead_at(float y, float z) {
 }
 
 std::shared_ptr<const geometry::Mesh> box(const Vec3& low, const Vec3& high) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(), i & 4 ? high.z() : low.z());
-  return std::make_shared<const geometry::Mesh>(corners, std::vector<std::array<int, 3>>{{0, 2, 1},
-                                                                                         {1, 2, 3},
-                                                                                         {4, 5, 6},
-                                                                                         {5, 7, 6},
-                                                                                         {0, 1, 4},
-                                                                                         {1, 5, 4},
-                                                                                         {2, 6, 3},
-                                                                                         {3, 6, 7},
-                                                                                         {0, 4, 2},
-                                                                                         {2, 4, 6},
-                                                                                         {1, 3, 5},
-                                                                                         {3, 7, 5}});
+  const geometry::Triangles t = geometry::box(low, high);
+  return std::make_shared<const geometry::Mesh>(t.vertices, t.triangles);
 }
 
 template <typename Number>
