@@ -133,10 +133,10 @@ TEST(BadUsage, OneLineAndStatusTwo) {
 
 TEST(BadUsage, JobsAreFrom1To1024) {
   const Folder folder;
-  for (const std::string command :
-       {"sweep " + kSource + "/scenarios/song-bottle.yaml", std::string("scenario run"),
-        std::string("workspace"), std::string("benchmark gap"), std::string("benchmark calibration")})
-    for (const std::string jobs : {"0", "1025"}) {
+  const std::string commands[] = {"sweep " + kSource + "/scenarios/song-bottle.yaml", "scenario run",
+                                  "workspace", "benchmark gap", "benchmark calibration"};
+  for (const std::string& command : commands)
+    for (const std::string& jobs : {std::string("0"), std::string("1025")}) {
       const std::string out = command == "scenario run" ? "" : " --out " + (folder / "out");
       expect_refused(command + " -j " + jobs + out, folder, {"-j " + jobs + " is outside 1..1024"});
     }
