@@ -29,10 +29,11 @@ Stop SetpointStreamer::write() {
   if (batch_.empty()) return {};
   const double deadline = port_.now() + kPatience;
   Status s = port_.submit(batch_, deadline);
-  while (s == Status::queue_full) {
+  // The queue empties at the cycle's pace: it has room after one batch, or by rounding a cycle later. A second
+  // batch would let a small queue run dry.
+  double pause = static_cast<double>(batch_size_) * cycle_time_;
+  for (; s == Status::queue_full; pause = cycle_time_) {
     if (port_.now() > deadline) return stop_of(Status::deadline_exceeded, port_);
-    // The queue empties at the cycle's pace: wait for about one batch.
-    const double pause = static_cast<double>(batch_size_) * cycle_time_;
     if (Stop stop = wait_until(std::min(port_.now() + pause, deadline + cycle_time_))) return stop;
     s = port_.submit(batch_, deadline);
   }

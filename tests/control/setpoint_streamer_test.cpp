@@ -13,8 +13,8 @@ using machine::LoopbackPort;
 using machine::Setpoint;
 using machine::Status;
 
-constexpr double kCycle = 1.0 / 1024;  // [s], of which sums have no rounding
-constexpr double kVelocity = 0.01;     // [m/s]
+constexpr double kCycle = 1e-3;     // [s], of which sums are rounded: some setpoints are late by that
+constexpr double kVelocity = 0.01;  // [m/s]
 
 /// Axis 1 at a steady pace from 0 on; the last of `count` is at rest.
 Setpoint setpoint_at(int k, int count) {
