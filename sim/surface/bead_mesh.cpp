@@ -34,10 +34,14 @@ struct Outline {
   int caps = 0;
 };
 
-void add_corner(Outline& outline, const Vec3& corner, const Vec3& x, const Vec3& y, int first, int last,
-                int sides) {
-  for (int i = first; i <= last; ++i) {
-    const double angle = 2 * std::numbers::pi * i / sides;
+/// Sides of the outline, of `sides` around, that turn about one corner.
+struct CornerSides {
+  int first, last, sides;
+};
+
+void add_corner(Outline& outline, const Vec3& corner, const Vec3& x, const Vec3& y, const CornerSides& of) {
+  for (int i = of.first; i <= of.last; ++i) {
+    const double angle = 2 * std::numbers::pi * i / of.sides;
     outline.rims.push_back({corner, std::cos(angle) * x + std::sin(angle) * y, outline.caps});
   }
   ++outline.caps;
@@ -59,28 +63,28 @@ Outline outline_of(const Bead& bead, int sides) {
   if (half_length == 0) {
     const Vec3 x = core.up.unitOrthogonal(), y = core.up.cross(x);
     if (round) {
-      add_corner(outline, core.middle, x, y, 0, sides - 1, sides);
+      add_corner(outline, core.middle, x, y, {0, sides - 1, sides});
       return outline;
     }
     for (int i = 0; i < sides; ++i) {
       const double angle = 2 * std::numbers::pi * i / sides;
       const Vec3 outward = std::cos(angle) * x + std::sin(angle) * y;
-      add_corner(outline, core.middle + core.disc_radius * outward, x, y, i, i, sides);
+      add_corner(outline, core.middle + core.disc_radius * outward, x, y, {i, i, sides});
     }
     return outline;
   }
   const Vec3 x = core.half_along / half_length, y = core.up.cross(x);
   const Vec3 ahead = core.middle + core.half_along, behind = core.middle - core.half_along;
   if (round) {
-    add_corner(outline, ahead, x, y, -quarter, quarter, sides);
-    add_corner(outline, behind, x, y, quarter, 3 * quarter, sides);
+    add_corner(outline, ahead, x, y, {-quarter, quarter, sides});
+    add_corner(outline, behind, x, y, {quarter, 3 * quarter, sides});
     return outline;
   }
   const Vec3 side = core.half_side.norm() * y;
-  add_corner(outline, ahead + side, x, y, 0, quarter, sides);
-  add_corner(outline, behind + side, x, y, quarter, 2 * quarter, sides);
-  add_corner(outline, behind - side, x, y, 2 * quarter, 3 * quarter, sides);
-  add_corner(outline, ahead - side, x, y, 3 * quarter, sides, sides);
+  add_corner(outline, ahead + side, x, y, {0, quarter, sides});
+  add_corner(outline, behind + side, x, y, {quarter, 2 * quarter, sides});
+  add_corner(outline, behind - side, x, y, {2 * quarter, 3 * quarter, sides});
+  add_corner(outline, ahead - side, x, y, {3 * quarter, sides, sides});
   return outline;
 }
 
