@@ -13,11 +13,6 @@ namespace {
 
 bool ends_by(const FaultEvent& event, double time) { return time >= event.time + event.duration; }
 
-bool has_play(const machine::MachineDescription& machine, int axis) {
-  if (machine.is_chain()) return machine.chain().play[static_cast<std::size_t>(axis)] > 0;
-  return machine.hexapod().play.screw_nut > 0 || machine.hexapod().play.ball_joint > 0;
-}
-
 }  // namespace
 
 const char* to_string(FaultKind kind) {
@@ -72,7 +67,7 @@ void check_faults(const std::vector<FaultEvent>& events, const machine::MachineD
       throw InputError(
           fmt::format("{}: {} steps, not a positive multiple of {}: a rotor slips by whole cycles", what,
                       event.steps, kElectricalCycle));
-    if (event.kind == FaultKind::loose_joint && !has_play(machine, event.axis))
+    if (event.kind == FaultKind::loose_joint && !machine.has_play(event.axis))
       throw InputError(
           fmt::format("{} of axis {}: the machine has no play there to grow", what, event.axis + 1));
     if (event.kind == FaultKind::loose_joint && !(event.amount > 0))
