@@ -9,7 +9,7 @@
 #include "core/number_table.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
-#include "machine/description.h"
+#include "machine/pose_table.h"
 
 namespace understudy::cli {
 namespace {
@@ -52,50 +52,50 @@ int print_axes(const std::string& name) {
   const auto machine = machine::load_machine(name);
   const auto mechanism = machine.make_mechanism();
   const auto rows = read_number_table(std::cin, "standard input", kPoseHeader);
+  std::vector<Pose> poses;
+  for (const auto& row : rows) poses.push_back(machine.X_WB.inverse() * pose_of(row));
+  const auto solved = machine::solve_axes(machine, poses);
   const auto n = static_cast<std::size_t>(mechanism->axis_count());
   std::string out = fmt::format("{},status\n", fmt::join(axis_header(*mechanism), ","));
-  for (const auto& row : rows) {
-    const Pose X_BT = machine.X_WB.inverse() * pose_of(row);
-    kinematics::AxisVector axes{};
-    const auto solved = mechanism->inverse(X_BT, {}, std::span(axes).first(n));
-    std::string status =
-        solved == kinematics::SolveStatus::ok ? status_of(*mechanism, X_BT, axes) : to_string(solved);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const auto& [solve_status, axes] = solved[k];
+    const std::string status = solve_status == kinematics::SolveStatus::ok
+                                   ? status_of(*mechanism, poses[k], axes)
+                                   : to_string(solve_status);
     for (std::size_t i = 0; i < n; ++i)
-      out += solved == kinematics::SolveStatus::ok && status == "ok"
-                 ? fmt::format("{:.6f},", axes[i] / file_unit(*mechanism, static_cast<int>(i)))
-                 : "nan,";
+      out += status == "ok" ? fmt::format("{:.6f},", axes[i] / file_unit(*mechanism, static_cast<int>(i)))
+                            : "nan,";
     out += status + "\n";
   }
   fmt::print("{}", out);
   return kGood;
 }
 
+std::string pose_row(const Pose& X_WT) {
+  Quat q(X_WT.linear());
+  if (q.w() < 0) q.coeffs() *= -1;
+  const Vec3 p = X_WT.translation() * 1e3;
+  return fmt::format("{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}", p.x(), p.y(), p.z(), q.w(), q.x(),
+                     q.y(), q.z());
+}
+
 int print_poses(const std::string& name) {
   const auto machine = machine::load_machine(name);
   const auto mechanism = machine.make_mechanism();
   const auto rows = read_number_table(std::cin, "standard input", axis_header(*mechanism));
+  std::vector<kinematics::AxisVector> axes(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (std::size_t i = 0; i < rows[k].values.size(); ++i)
+      axes[k][i] = rows[k].values[i] * file_unit(*mechanism, static_cast<int>(i));
+  const auto solved = machine::solve_poses(machine, axes);
   std::string out = fmt::format("{},status\n", fmt::join(kPoseHeader, ","));
-  for (const auto& row : rows) {
-    kinematics::AxisVector axes{};
-    for (std::size_t i = 0; i < row.values.size(); ++i)
-      axes[i] = row.values[i] * file_unit(*mechanism, static_cast<int>(i));
-    Pose X_BT;
-    const auto solved = mechanism->forward(std::span(axes).first(row.values.size()), mechanism->home(), X_BT);
-    if (solved != kinematics::SolveStatus::ok) {
-      out += fmt::format("nan,nan,nan,nan,nan,nan,nan,{}\n", to_string(solved));
-      continue;
-    }
-    const std::string status = status_of(*mechanism, X_BT, axes);
-    if (status != "ok") {
-      out += fmt::format("nan,nan,nan,nan,nan,nan,nan,{}\n", status);
-      continue;
-    }
-    const Pose X_WT = machine.X_WB * X_BT;
-    Quat q(X_WT.linear());
-    if (q.w() < 0) q.coeffs() *= -1;
-    const Vec3 p = X_WT.translation() * 1e3;
-    out += fmt::format("{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},ok\n", p.x(), p.y(), p.z(), q.w(),
-                       q.x(), q.y(), q.z());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto& [solve_status, X_BT] = solved[k];
+    const std::string status = solve_status == kinematics::SolveStatus::ok
+                                   ? status_of(*mechanism, X_BT, axes[k])
+                                   : to_string(solve_status);
+    out += (status == "ok" ? pose_row(machine.X_WB * X_BT) : "nan,nan,nan,nan,nan,nan,nan") + "," + status +
+           "\n";
   }
   fmt::print("{}", out);
   return kGood;

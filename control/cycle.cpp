@@ -100,8 +100,8 @@ Stop ControlCycle::gap_stop() const {
 
 Stop ControlCycle::push(const toolpath::Step& step) {
   if (!planner_) {
-    planner_ = std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_, X_WT_rest_,
-                                               port().now() + kLead, PoseCheck::limits, &axes_rest_);
+    planner_ = std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_,
+                                               MotionStart{X_WT_rest_, port().now() + kLead, axes_rest_});
     filament_at_start_ = filament_;
   }
   planner_->push(step);

@@ -121,7 +121,9 @@ void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
 }
 
 bool may_be_calibrated(const MachineDescription& machine) {
-  return !machine.is_chain() || kinematics::find_chain_kind(machine.mechanism)->may_be_calibrated;
+  return machine.visit(
+      [](const HexapodModel&) { return true; },
+      [&](const ChainModel&) { return kinematics::find_chain_kind(machine.mechanism)->may_be_calibrated; });
 }
 
 std::string not_calibratable(const MachineDescription& machine) {
@@ -145,10 +147,8 @@ void read_calibration(YamlMap& root, MachineDescription& machine) {
   root.section("calibration", "measured geometry, which the controller uses in place of the drawn one",
                [&](YamlMap& map) {
                  read_record(map, machine.calibration.emplace());
-                 if (machine.is_chain())
-                   read_chain_calibration(map, machine);
-                 else
-                   read_struts(map, machine.hexapod());
+                 machine.visit([&](const HexapodModel&) { read_struts(map, machine.hexapod()); },
+                               [&](const ChainModel&) { read_chain_calibration(map, machine); });
                });
 }
 

@@ -74,8 +74,8 @@ std::string calibration_section(const MachineDescription& machine) {
       record.poses);
   if (std::isfinite(record.tip_sigma))
     out += fmt::format("  tip_sigma_um: {:.3f}   # RMS over the work space\n", to_um(record.tip_sigma));
-  return out + (machine.is_chain() ? axes_text(machine.chain().kinematics.chain)
-                                   : struts_text(machine.hexapod().geometry));
+  return out + machine.visit([](const HexapodModel& hexapod) { return struts_text(hexapod.geometry); },
+                             [](const ChainModel& chain) { return axes_text(chain.kinematics.chain); });
 }
 
 std::string with_section(const std::string& text, const std::string& section) {

@@ -45,7 +45,7 @@ int find_axis(const Chain& chain, const Carrier& carrier) {
   if (carrier.name == "frame" || carrier.name.empty()) return -1;  // a key that is missing is told at the end
   std::string known = "frame";
   for (int i = 0; i < chain.size(); ++i) {
-    const std::string& axis = chain.axes[static_cast<std::size_t>(i)].name;
+    const std::string& axis = chain.axes[i].name;
     if (axis == carrier.name) return i;
     known += ", " + axis;
   }
@@ -59,7 +59,7 @@ void check_name(const YamlMap& map, const Chain& chain, const std::string& name)
     throw InputError(map.place("name"), fmt::format("{} is '{}', {}", map.path("name"), name, why));
   };
   for (int i = 0; i < chain.size(); ++i)
-    if (chain.axes[static_cast<std::size_t>(i)].name == name) refuse(fmt::format("as axis {} is", i + 1));
+    if (chain.axes[i].name == name) refuse(fmt::format("as axis {} is", i + 1));
   for (const char* taken : {"frame", "work", "tool", "tip", "world"})
     if (name == taken) refuse("which means something else");
   for (const char c : name)
@@ -122,7 +122,7 @@ Link read_link(YamlMap& map) {
 void check_apart(const YamlMap& map, const Chain& chain, std::size_t index) {
   const ChainAxis& axis = chain.axes[index];
   if (axis.parent < 0 || !axis.angle) return;
-  const ChainAxis& parent = chain.axes[static_cast<std::size_t>(axis.parent)];
+  const ChainAxis& parent = chain.axes[axis.parent];
   if (!parent.angle || axis.direction.cross(parent.direction).norm() > kSameLine) return;
   const double distance = axis.direction.cross(axis.point - parent.point).norm();
   if (distance <= kSameLine)

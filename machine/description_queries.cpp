@@ -30,7 +30,8 @@ kinematics::ScrewCoupling MachineDescription::screw_coupling() const {
 
 kinematics::AxisVector MachineDescription::drive_zero() const {
   kinematics::AxisVector zero{};
-  if (!is_chain()) std::ranges::copy(hexapod().geometry.length_offset, zero.begin());
+  visit([&](const HexapodModel& hexapod) { std::ranges::copy(hexapod.geometry.length_offset, zero.begin()); },
+        [](const ChainModel&) {});
   return zero;
 }
 

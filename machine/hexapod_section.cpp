@@ -61,10 +61,9 @@ void read_geometry(YamlMap& map, MachineDescription& machine) {
   machine.hexapod().strut_radius =
       map.quantity("strut_body_radius_mm", {0.1, 100}, "of a strut in collision checks and pictures");
 
-  for (int i = 0; i < kinematics::kStruts; ++i) {
-    const auto strut = static_cast<std::size_t>(i);
-    const double centre = from_deg(120.0 * (i / 2));
-    const double side = i % 2 == 0 ? -1 : 1;
+  for (int strut = 0; strut < kinematics::kStruts; ++strut) {
+    const double centre = from_deg(120.0 * (strut / 2));
+    const double side = strut % 2 == 0 ? -1 : 1;
     machine.hexapod().geometry.base_joint[strut] = on_circle(base_radius, centre + side * base_half_angle, 0);
     machine.hexapod().geometry.platform_joint[strut] =
         on_circle(platform_radius, centre + side * (from_deg(60) - platform_half_angle), platform_height);

@@ -31,13 +31,13 @@ Vec3 roll_pitch_yaw(const Mat3& R) {
 }
 
 std::string link_name(const Chain& chain, int axis) {
-  return axis < 0 ? "frame" : chain.axes[static_cast<std::size_t>(axis)].name + "_link";
+  return axis < 0 ? "frame" : chain.axes[axis].name + "_link";
 }
 
 /// Where the link of an axis has its origin. A slide's point means nothing: it stays where its parent is.
 Vec3 link_origin(const Chain& chain, int axis) {
-  for (int i = axis; i >= 0; i = chain.axes[static_cast<std::size_t>(i)].parent) {
-    const ChainAxis& a = chain.axes[static_cast<std::size_t>(i)];
+  for (int i = axis; i >= 0; i = chain.axes[i].parent) {
+    const ChainAxis& a = chain.axes[i];
     if (a.angle) return a.point;
   }
   return Vec3::Zero();
@@ -83,7 +83,7 @@ XMLElement& add_joint(XMLElement& robot, const std::string& name, const char* ty
 }
 
 void add_axis_joint(XMLElement& robot, const Chain& chain, int axis, const AxisDrive& drive) {
-  const ChainAxis& a = chain.axes[static_cast<std::size_t>(axis)];
+  const ChainAxis& a = chain.axes[axis];
   const auto bounded = [](double v) { return number(std::clamp(v, -kNoEnd, kNoEnd)); };
   const bool endless = a.angle && std::isinf(a.lower) && std::isinf(a.upper);
   XMLElement& joint = add_joint(robot, a.name, endless ? "continuous" : (a.angle ? "revolute" : "prismatic"));
@@ -121,9 +121,8 @@ std::string write_urdf(const std::string& name, const Chain& chain, std::span<co
   XMLElement& robot = add_element(document, "robot", {{"name", name}});
   add_link(robot, chain, -1, links);
   for (int axis = 0; axis < chain.size(); ++axis) {
-    const auto k = static_cast<std::size_t>(axis);
     add_link(robot, chain, axis, links);
-    add_axis_joint(robot, chain, axis, k < drives.size() ? drives[k] : AxisDrive{});
+    add_axis_joint(robot, chain, axis, axis < std::ssize(drives) ? drives[axis] : AxisDrive{});
   }
   add_end(robot, chain, "work", chain.work_axis, chain.X_OS_zero);
   add_end(robot, chain, "tool", chain.tool_axis, chain.X_OT_zero);

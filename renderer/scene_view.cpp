@@ -129,7 +129,11 @@ void draw_shadows(const GlFunctions& gl, const Lights& lights, const GlVertices&
   gl.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
+/// What both passes draw.
 struct Drawing {
+  const PictureScene& scene;
+  const PictureGeometry& geometry;
+  const Lights& lights;
   const GlVertices &solids, &ground, &creases;
 };
 
@@ -146,8 +150,8 @@ void draw_depth(const GlFunctions& gl, const Mat4f& clip, const Drawing& drawing
 }
 
 /// Light from the sky on what is seen, in a picture of half the size.
-void draw_sky(const GlFunctions& gl, const PictureScene& scene, const PictureGeometry& g,
-              const Lights& lights, const Drawing& drawing, const GlTarget& atlas, const GlTarget& target) {
+void draw_sky(const GlFunctions& gl, const Drawing& drawing, const GlTarget& atlas, const GlTarget& target) {
+  const auto& [scene, g, lights, solids, ground, creases] = drawing;
   const GlProgram program(gl, "sky", shader_source("sky.vert"), shader_source("sky.frag"));
   target.bind();
   const float nothing[] = {1, 1e9f, 0, 0};
@@ -165,13 +169,13 @@ void draw_sky(const GlFunctions& gl, const PictureScene& scene, const PictureGeo
   gl.Uniform2i(program.uniform("sky_tiles"), kTilesX, kTilesY);
   gl.Uniform1f(program.uniform("sky_texel"), static_cast<float>(2 * g.radius / kTile));
   gl.Uniform1i(program.uniform("sky_atlas"), 0);
-  drawing.solids.draw(GL_TRIANGLES);
-  drawing.ground.draw(GL_TRIANGLES);
+  solids.draw(GL_TRIANGLES);
+  ground.draw(GL_TRIANGLES);
   gl.DepthFunc(GL_LESS);
 }
 
-void draw_picture(const GlFunctions& gl, const PictureScene& scene, const PictureGeometry& g,
-                  const Lights& lights, const Drawing& drawing, const GlTarget& sky, const GlTarget& lamp) {
+void draw_picture(const GlFunctions& gl, const Drawing& drawing, const GlTarget& sky, const GlTarget& lamp) {
+  const auto& [scene, g, lights, solids, ground, creases] = drawing;
   const GlProgram program(gl, "scene", shader_source("scene.vert"), shader_source("scene.frag"));
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, sky.colour());
@@ -188,9 +192,9 @@ void draw_picture(const GlFunctions& gl, const PictureScene& scene, const Pictur
   gl.Uniform1f(program.uniform("lamp_texel"), static_cast<float>(2 * g.radius / kLampMap));
   gl.Uniform1i(program.uniform("sky_light"), 0);
   gl.Uniform1i(program.uniform("lamp_depth"), 1);
-  drawing.solids.draw(GL_TRIANGLES);
-  drawing.creases.draw(GL_TRIANGLES);
-  drawing.ground.draw(GL_TRIANGLES);
+  solids.draw(GL_TRIANGLES);
+  creases.draw(GL_TRIANGLES);
+  ground.draw(GL_TRIANGLES);
 }
 
 float encoded(float linear) {
@@ -215,9 +219,9 @@ Picture render_picture(const PictureScene& scene) {
   if (!geometry.casters.empty()) casters.fill(geometry.casters);
   draw_shadows(gl, lights, solids, geometry.casters.empty() ? solids : casters, atlas, lamp);
 
-  const Drawing drawing{solids, ground, creases};
+  const Drawing drawing{scene, geometry, lights, solids, ground, creases};
   const GlTarget half_size(gl, GL_RGBA32F, (scene.width + 1) / 2, (scene.height + 1) / 2);
-  draw_sky(gl, scene, geometry, lights, drawing, atlas, half_size);
+  draw_sky(gl, drawing, atlas, half_size);
 
   const GlSmoothTarget target(gl, scene.width, scene.height);
   target.bind();
@@ -225,7 +229,7 @@ Picture render_picture(const PictureScene& scene) {
   const float behind[] = {encoded(b[0]), encoded(b[1]), encoded(b[2]), 1};
   gl.ClearBufferfv(GL_COLOR, 0, behind);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  draw_picture(gl, scene, geometry, lights, drawing, half_size, lamp);
+  draw_picture(gl, drawing, half_size, lamp);
   const std::vector<unsigned char> rgba = target.resolve();
   context.check("the picture");
 

@@ -82,11 +82,6 @@ double bench_closed_form(const Cases& cases) {
   }
   std::printf("arm inverse, all branches      %8.0f ns/pose, %.2f branches a pose, %.2f %% solved\n",
               single * 1e9, static_cast<double>(branches) / kPoses, 100.0 * solved / kPoses);
-  for (const int threads : {1, 0}) {
-    const double batch = least_time([&] { arm_inverse_batch(cases.geometry, cases.poses, all, threads); });
-    std::printf("  batch, %-10s            %8.0f ns/pose\n", threads == 1 ? "one core" : "all cores",
-                batch * 1e9);
-  }
   const auto arm = make_chain_mechanism(cases.arm);
   ArmAxes axes{};
   const double chosen = least_time([&] {

@@ -57,8 +57,7 @@ class Checker {
         X_BW_(machine.X_WB.inverse()),
         limits_(motion_limits(machine)),
         path_(*mechanism_, machine.X_WB),
-        planner_(*mechanism_, machine.X_WB, limits_, machine.X_WB * machine.X_BT_home, 0,
-                 PoseCheck::solvable),
+        planner_(*mechanism_, machine.X_WB, limits_, {machine.X_WB * machine.X_BT_home}, PoseCheck::solvable),
         X_WT_(machine.X_WB * machine.X_BT_home) {
     report_.axis_min.fill(std::numeric_limits<double>::infinity());
     report_.axis_max.fill(-std::numeric_limits<double>::infinity());

@@ -29,7 +29,7 @@ ChannelLimits channel_limits(const MotionLimits& limits, int axis_count) {
   channels.count = axis_count + 1;
   std::copy_n(limits.axis_acceleration.begin(), axis_count, channels.acceleration.begin());
   std::copy_n(limits.velocity_jump.begin(), axis_count, channels.velocity_jump.begin());
-  const auto tip = static_cast<std::size_t>(axis_count);
+  const int tip = axis_count;
   channels.acceleration[tip] = limits.tip_acceleration;
   // What turns the tip's way at once is the axes: where they may, it may.
   if (std::any_of(channels.velocity_jump.begin(), channels.velocity_jump.end(),
@@ -45,11 +45,10 @@ ChannelLimits channel_limits(const MotionLimits& limits, int axis_count) {
 // finish); pieces are planned in windows and handed out as points. Times here count from `start_time`.
 struct MotionPlanner::State {
   State(const kinematics::Mechanism& mechanism, const Pose& X_WB, const MotionLimits& motion_limits,
-        const Pose& X_WT_start, const AxisVector& axes_start, double start, PoseCheck pose_check);
+        const MotionStart& start, PoseCheck pose_check);
 
   PathKinematics kinematics;
-  MotionLimits limits;
-  ChannelLimits channels;
+  PlannerLimits limits;
   PoseCheck check;
 
   std::deque<PathSegment> segments;
@@ -85,26 +84,30 @@ struct MotionPlanner::State {
 };
 
 MotionPlanner::State::State(const kinematics::Mechanism& mechanism, const Pose& X_WB,
-                            const MotionLimits& motion_limits, const Pose& X_WT_start,
-                            const AxisVector& axes_start, double start, PoseCheck pose_check)
+                            const MotionLimits& motion_limits, const MotionStart& start, PoseCheck pose_check)
     : kinematics(mechanism, X_WB),
-      limits(motion_limits),
-      channels(channel_limits(motion_limits, mechanism.axis_count())),
+      limits{motion_limits, channel_limits(motion_limits, mechanism.axis_count())},
       check(pose_check),
-      X_WT_rest(X_WT_start),
-      start_time(start) {
-  require_positive("cycle time", limits.cycle_time);
-  require_positive("tip acceleration", limits.tip_acceleration);
-  require_positive("travel velocity", limits.travel_velocity);
-  require_positive("orientation velocity", limits.orientation_velocity);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(kinematics.axis_count()); ++i) {
-    require_positive("axis velocity", limits.axis_velocity[i]);
-    require_positive("axis acceleration", limits.axis_acceleration[i]);
-    if (!(limits.velocity_jump[i] >= 0) || !std::isfinite(limits.velocity_jump[i]))
-      throw InputError("velocity jump is " + std::to_string(limits.velocity_jump[i]) + ", must be 0 or more");
+      X_WT_rest(start.X_WT),
+      start_time(start.time) {
+  require_positive("cycle time", limits.motion.cycle_time);
+  require_positive("tip acceleration", limits.motion.tip_acceleration);
+  require_positive("travel velocity", limits.motion.travel_velocity);
+  require_positive("orientation velocity", limits.motion.orientation_velocity);
+  for (int i = 0; i < kinematics.axis_count(); ++i) {
+    require_positive("axis velocity", limits.motion.axis_velocity[i]);
+    require_positive("axis acceleration", limits.motion.axis_acceleration[i]);
+    if (!(limits.motion.velocity_jump[i] >= 0) || !std::isfinite(limits.motion.velocity_jump[i]))
+      throw InputError("velocity jump is " + std::to_string(limits.motion.velocity_jump[i]) +
+                       ", must be 0 or more");
   }
-  axes_rest = axes_start;
-  if (const SolveStatus status = kinematics.axes(X_WT_start, axes_rest); status != SolveStatus::ok)
+  SolveStatus status = SolveStatus::ok;
+  if (start.axes)
+    axes_rest = *start.axes;
+  else
+    status = mechanism.inverse(X_WB.inverse() * start.X_WT, {}, axes_rest);
+  if (status == SolveStatus::ok) status = kinematics.axes(start.X_WT, axes_rest);
+  if (status != SolveStatus::ok)
     throw InputError(std::string("the pose to start from is ") + to_string(status));
   axes_now = axes_end = axes_rest;
 }
@@ -114,7 +117,7 @@ void MotionPlanner::State::push(const toolpath::Step& step) {
     ++steps_pushed;
     return;
   }
-  PathSegment segment = kinematics.segment(step, X_WT_rest, axes_end, limits);
+  PathSegment segment = kinematics.segment(step, X_WT_rest, axes_end, limits.motion);
   segment.step = steps_pushed;
   AxisVector axes = axes_end;
   std::optional<PathSegment> first = kinematics.self_motion_before(segment, axes);
@@ -149,9 +152,9 @@ void MotionPlanner::State::queue(PathSegment segment) {
     double speed = 0;
     if (segment.moves() && before.moves()) {
       const int axes = kinematics.axis_count();
-      speed = std::min(speed_limit(before.speed, before.slope_end, limits, axes),
-                       speed_limit(segment.speed, segment.slope_begin, limits, axes));
-      speed = std::min(speed, corner_speed(corner_jump(before, segment, axes), channels));
+      speed = std::min(speed_limit(before.speed, before.slope_end, limits.motion, axes),
+                       speed_limit(segment.speed, segment.slope_begin, limits.motion, axes));
+      speed = std::min(speed, corner_speed(corner_jump(before, segment, axes), limits.channels));
     }
     segment.entry_speed = speed;
     cut_last(speed);
@@ -165,9 +168,10 @@ void MotionPlanner::State::queue(PathSegment segment) {
 void MotionPlanner::State::cut_last(double exit_speed) {
   const std::size_t index = cut_segments - first_segment;
   const PathSegment& segment = segments[index];
-  ChannelArray jump{};
-  if (segment.entry_speed > 0) jump = corner_jump(segments[index - 1], segment, kinematics.axis_count());
-  append_pieces(segment, cut_segments, exit_speed, jump, kinematics, limits, channels, axes_rest, pieces);
+  SegmentPlace place{cut_segments, exit_speed, {}};
+  if (segment.entry_speed > 0)
+    place.jump = corner_jump(segments[index - 1], segment, kinematics.axis_count());
+  append_pieces(segment, place, kinematics, limits, axes_rest, pieces);
   window_length += segment.length;
   ++cut_segments;
 }
@@ -182,8 +186,8 @@ void MotionPlanner::State::finish() {
 bool MotionPlanner::State::plan() {
   const bool full = pieces.size() >= kWindowPieces || window_length >= kWindowLength;
   if (settled == 0 && !full) return false;
-  limit_corners(pieces, channels);
-  plan_speeds(pieces, speed2, channels);
+  limit_corners(pieces, limits.channels);
+  plan_speeds(pieces, speed2, limits.channels);
   committed = settled;
   if (full) {
     std::size_t half = 0;
@@ -233,13 +237,12 @@ void MotionPlanner::State::point_on_front(double elapsed, PlannedPoint& point) {
   UNDERSTUDY_ASSERT(solved == kinematics::SolveStatus::ok || solved == kinematics::SolveStatus::singular,
                     "push() has looked along the whole segment");
   point.setpoint.position = axes_now;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(kinematics.axis_count()); ++i)
-    point.setpoint.velocity[i] = slope[i] * speed;
+  for (int i = 0; i < kinematics.axis_count(); ++i) point.setpoint.velocity[i] = slope[i] * speed;
 }
 
 bool MotionPlanner::State::next(PlannedPoint& point) {
   if (resting) return false;
-  const double time = static_cast<double>(cycle + 1) * limits.cycle_time;
+  const double time = static_cast<double>(cycle + 1) * limits.motion.cycle_time;
   while (!pieces.empty()) {
     if (committed == 0 && !plan()) return false;
     const double end = piece_time + pieces.front().duration();
@@ -269,29 +272,16 @@ bool MotionPlanner::State::next(PlannedPoint& point) {
   return true;
 }
 
-namespace {
-
-AxisVector axes_from_home(const kinematics::Mechanism& mechanism, const Pose& X_WB, const Pose& X_WT) {
-  AxisVector axes{};
-  (void)mechanism.inverse(X_WB.inverse() * X_WT, {}, axes);  // what fails here fails again in the constructor
-  return axes;
-}
-
-}  // namespace
-
 MotionPlanner::MotionPlanner(const kinematics::Mechanism& mechanism, const Pose& X_WB,
-                             const MotionLimits& limits, const Pose& X_WT_start, double start_time,
-                             PoseCheck check, const kinematics::AxisVector* axes_start)
-    : state_(std::make_unique<State>(mechanism, X_WB, limits, X_WT_start,
-                                     axes_start ? *axes_start : axes_from_home(mechanism, X_WB, X_WT_start),
-                                     start_time, check)) {}
+                             const MotionLimits& limits, const MotionStart& start, PoseCheck check)
+    : state_(std::make_unique<State>(mechanism, X_WB, limits, start, check)) {}
 MotionPlanner::~MotionPlanner() = default;
 
 void MotionPlanner::push(const toolpath::Step& step) { state_->push(step); }
 void MotionPlanner::finish() { state_->finish(); }
 bool MotionPlanner::next(PlannedPoint& point) { return state_->next(point); }
 double MotionPlanner::time() const {
-  return state_->start_time + static_cast<double>(state_->cycle) * state_->limits.cycle_time;
+  return state_->start_time + static_cast<double>(state_->cycle) * state_->limits.motion.cycle_time;
 }
 Pose MotionPlanner::resting_pose() const { return state_->X_WT_rest; }
 kinematics::AxisVector MotionPlanner::resting_axes() const { return state_->axes_end; }

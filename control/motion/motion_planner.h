@@ -8,12 +8,21 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "control/motion/motion_limits.h"
 #include "control/motion/planned_point.h"
 #include "toolpath/program.h"
 
 namespace understudy::control {
+
+/// The rest that a motion starts from.
+struct MotionStart {
+  Pose X_WT = Pose::Identity();
+  double time = 0;  ///< [s]
+  /// Pick the branch; without, home does.
+  std::optional<kinematics::AxisVector> axes = std::nullopt;
+};
 
 /// Streams a program: call next() until it is false after each push(), and memory is bounded by the lookahead
 /// window (200 mm of path or some thousand pieces, whichever is shorter), not by the program. The plan can
@@ -34,11 +43,10 @@ namespace understudy::control {
 /// to where the step needs it first, with the tool at rest on the part.
 class MotionPlanner {
  public:
-  /// The mechanism and X_WB must outlive the planner. Starts at rest at X_WT_start at `start_time`, on the
-  /// branch of `axes_start`; nullptr: of home.
+  /// The mechanism and X_WB must outlive the planner. Throws InputError for a start that the mechanism cannot
+  /// reach, and for limits that are not positive.
   MotionPlanner(const kinematics::Mechanism& mechanism, const Pose& X_WB, const MotionLimits& limits,
-                const Pose& X_WT_start, double start_time, PoseCheck check = PoseCheck::limits,
-                const kinematics::AxisVector* axes_start = nullptr);
+                const MotionStart& start, PoseCheck check = PoseCheck::limits);
   ~MotionPlanner();
 
   /// Queues a step that moves or dwells. Throws InputError naming the line and the axis or strut and by how
@@ -46,8 +54,8 @@ class MotionPlanner {
   void push(const toolpath::Step& step);
   /// No more steps for now: what is queued ends at rest.
   void finish();
-  /// The next cycle: times are start_time + n cycle_time, n = 1, 2, ...; the last one of a stretch is at
-  /// rest, at most one cycle after the motion's end. False: push more, or (after finish) everything was
+  /// The next cycle: times are those of the start + n cycle_time, n = 1, 2, ...; the last one of a stretch is
+  /// at rest, at most one cycle after the motion's end. False: push more, or (after finish) everything was
   /// handed out and the tool rests.
   bool next(PlannedPoint& point);
 

@@ -67,7 +67,7 @@ void make_nodes(double length, double piece_max, const std::vector<double>& from
 
 double speed_limit(double programmed, const ChannelArray& slope, const MotionLimits& limits, int axis_count) {
   double speed = programmed;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axis_count); ++i)
+  for (int i = 0; i < axis_count; ++i)
     if (std::abs(slope[i]) * speed > limits.axis_velocity[i])
       speed = limits.axis_velocity[i] / std::abs(slope[i]);
   return speed;
@@ -75,38 +75,35 @@ double speed_limit(double programmed, const ChannelArray& slope, const MotionLim
 
 ChannelArray corner_jump(const PathSegment& before, const PathSegment& after, int axis_count) {
   ChannelArray jump{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axis_count); ++i)
-    jump[i] = std::abs(after.slope_begin[i] - before.slope_end[i]);
-  jump[static_cast<std::size_t>(axis_count)] = (after.tip_slope() - before.tip_slope()).norm();
+  for (int i = 0; i < axis_count; ++i) jump[i] = std::abs(after.slope_begin[i] - before.slope_end[i]);
+  jump[axis_count] = (after.tip_slope() - before.tip_slope()).norm();
   return jump;
 }
 
-void append_pieces(const PathSegment& segment, std::size_t number, double exit_speed,
-                   const ChannelArray& jump, const PathKinematics& kinematics, const MotionLimits& motion,
-                   const ChannelLimits& channels, kinematics::AxisVector& position,
-                   std::deque<Piece>& pieces) {
+void append_pieces(const PathSegment& segment, const SegmentPlace& place, const PathKinematics& kinematics,
+                   const PlannerLimits& limits, kinematics::AxisVector& position, std::deque<Piece>& pieces) {
+  const auto& [motion, channels] = limits;
   Piece piece;
-  piece.segment = number;
+  piece.segment = place.number;
   piece.rest = segment.rest;
-  piece.jump = jump;
-  piece.corner = std::any_of(jump.begin(), jump.end(), [](double j) { return j > 0; });
+  piece.jump = place.jump;
+  piece.corner = std::any_of(piece.jump.begin(), piece.jump.end(), [](double j) { return j > 0; });
   piece.node_speed_max = segment.entry_speed;
   if (!segment.moves()) {
     pieces.push_back(piece);
     return;
   }
-  const int axes = kinematics.axis_count();
   const double piece_max =
       segment.self_motion ? kTurnRadius * kPieceTurnMax
                           : segment.length / (segment.fineness * parts_of(segment, kPieceMax, kPieceTurnMax));
   const auto cruise = [&](const ChannelArray& slope) {
-    return speed_limit(segment.speed, slope, motion, axes);
+    return speed_limit(segment.speed, slope, limits.motion, kinematics.axis_count());
   };
   const double cruise_begin = cruise(segment.slope_begin), cruise_end = cruise(segment.slope_end);
   std::vector<double> from_begin, from_end, nodes;
   grade(make_end(segment.entry_speed, cruise_begin, motion.cycle_time, segment.slope_begin, channels),
         cruise_begin, piece_max, kGradedPart * segment.length, from_begin);
-  grade(make_end(exit_speed, cruise_end, motion.cycle_time, segment.slope_end, channels), cruise_end,
+  grade(make_end(place.exit_speed, cruise_end, motion.cycle_time, segment.slope_end, channels), cruise_end,
         piece_max, kGradedPart * segment.length, from_end);
   make_nodes(segment.length, piece_max, from_begin, from_end, nodes);
 

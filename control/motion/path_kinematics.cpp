@@ -97,8 +97,8 @@ SolveStatus PathKinematics::evaluate(const PathSegment& segment, double s, kinem
   const Twist twist_W = segment.twist_W();
   Twist twist_B;
   twist_B << X_BW_.linear() * twist_W.head<3>(), X_BW_.linear() * twist_W.tail<3>();
-  for (int i = 0; i < axis_count_; ++i) slope[static_cast<std::size_t>(i)] = rates.row(i).dot(twist_B);
-  slope[static_cast<std::size_t>(axis_count_)] = twist_W.head<3>().norm();
+  for (int i = 0; i < axis_count_; ++i) slope[i] = rates.row(i).dot(twist_B);
+  slope[axis_count_] = twist_W.head<3>().norm();
   return SolveStatus::ok;
 }
 
@@ -109,7 +109,7 @@ SolveStatus PathKinematics::evaluate_rotary(const PathSegment& segment, double s
     const auto& [from, to] = *segment.rotary;
     rate = {X_BW_.linear() * segment.tip_slope(), (to.b - from.b) / segment.length,
             (to.c - from.c) / segment.length};
-    slope[static_cast<std::size_t>(axis_count_)] = segment.tip_slope().norm();
+    slope[axis_count_] = segment.tip_slope().norm();
   }
   return mechanism_.axes_at_turns(turned_tip(segment, s), rate, position,
                                   std::span(slope).first(static_cast<std::size_t>(axis_count_)));
@@ -130,8 +130,7 @@ SolveStatus PathKinematics::evaluate_self_motion(const PathSegment& segment, dou
   const double share = s / segment.length;
   for (const SolveStatus status : {at(share - kStep, before), at(share + kStep, after), at(share, position)})
     if (status != SolveStatus::ok) return status;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axis_count_); ++i)
-    slope[i] = (after[i] - before[i]) / (2 * kStep * segment.length);
+  for (int i = 0; i < axis_count_; ++i) slope[i] = (after[i] - before[i]) / (2 * kStep * segment.length);
   return SolveStatus::ok;
 }
 
@@ -139,7 +138,7 @@ std::pair<int, double> PathKinematics::largest_turn(const kinematics::AxisVector
                                                     const kinematics::AxisVector& to) const {
   std::pair<int, double> largest{0, 0.0};
   for (int i = 0; i < axis_count_; ++i) {
-    const double turn = std::abs(to[static_cast<std::size_t>(i)] - from[static_cast<std::size_t>(i)]);
+    const double turn = std::abs(to[i] - from[i]);
     if (mechanism_.axis_is_angle(i) && turn > largest.second) largest = {i, turn};
   }
   return largest;

@@ -23,13 +23,13 @@ struct Bounds {
 
   void add(double A, double B, double C) {
     const double sign = A < 0 ? -1 : 1;
-    rows[static_cast<std::size_t>(count++)] = {sign * A, sign * B, C};
+    rows[count++] = {sign * A, sign * B, C};
   }
 };
 
 Bounds bounds_of(const Piece& piece, const ChannelLimits& limits) {
   Bounds bounds;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.count); ++i) {
+  for (int i = 0; i < limits.count; ++i) {
     const double curvature = (piece.slope_end[i] - piece.slope_begin[i]) / piece.length;
     const double C = limits.acceleration[i] * (1 - piece.used[i]);
     bounds.add(piece.slope_begin[i], curvature, C);
@@ -52,7 +52,7 @@ struct Range {
 // The tightest bounds on u at x, also such that x at the end of the piece stays in [0, x_end_max].
 Range acceleration_range(const Bounds& bounds, double length, double x_end_max, double x) {
   Range range{{0, -0.5 / length}, {0.5 * x_end_max / length, -0.5 / length}};
-  for (std::size_t k = 0; k < static_cast<std::size_t>(bounds.count); ++k) {
+  for (int k = 0; k < bounds.count; ++k) {
     const auto& [A, B, C] = bounds.rows[k];
     if (A < kNoSlope) continue;
     const Line low{-C / A, -B / A}, high{C / A, -B / A};
@@ -66,7 +66,7 @@ Range acceleration_range(const Bounds& bounds, double length, double x_end_max, 
 // Newton's steps from above come down to its root without passing it.
 double largest_speed2(const Bounds& bounds, double length, double x_end_max, double cap) {
   double x = cap;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(bounds.count); ++k) {
+  for (int k = 0; k < bounds.count; ++k) {
     const auto& [A, B, C] = bounds.rows[k];
     if (A < kNoSlope && std::abs(B) * x > C) x = C / std::abs(B);
   }
@@ -123,7 +123,7 @@ CornerWindow corner_window(const std::deque<Piece>& pieces, std::size_t k, const
 }
 
 void take_share(Piece& piece, const CornerWindow& window, const ChannelLimits& limits) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.count); ++i) {
+  for (int i = 0; i < limits.count; ++i) {
     const double jump = window.speed * window.jump[i];
     if (jump <= limits.velocity_jump[i]) continue;
     const double share = (jump - limits.velocity_jump[i]) / (limits.acceleration[i] * limits.cycle_time);
@@ -140,7 +140,7 @@ double Piece::duration() const {
 
 double corner_speed(const ChannelArray& jump, const ChannelLimits& limits) {
   double speed = kInfinity;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.count); ++i)
+  for (int i = 0; i < limits.count; ++i)
     if (jump[i] > 0)
       speed = std::min(
           speed,
@@ -150,7 +150,7 @@ double corner_speed(const ChannelArray& jump, const ChannelLimits& limits) {
 
 double cycle_reach(double speed, const ChannelArray& slope, const ChannelLimits& limits) {
   double acceleration = kInfinity;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.count); ++i)
+  for (int i = 0; i < limits.count; ++i)
     if (std::abs(slope[i]) > kNoSlope)
       acceleration = std::min(acceleration, limits.acceleration[i] / std::abs(slope[i]));
   if (acceleration == kInfinity) acceleration = 0;

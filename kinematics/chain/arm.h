@@ -60,11 +60,6 @@ struct ArmSolutions {
 int arm_branches(const ArmGeometry& geometry, const Pose& X_BT,
                  std::span<ArmSolution, kArmBranches> solutions, std::span<const double> previous = {});
 
-/// arm_branches() of every pose, on `threads` threads (0: as many as the machine has). The bytes depend on
-/// neither `threads` nor the poses around.
-void arm_inverse_batch(const ArmGeometry& geometry, std::span<const Pose> X_BT,
-                       std::span<ArmSolutions> solutions, int threads = 0);
-
 /// How far the arm is from each of its three singular postures.
 struct ArmClearance {
   double wrist = 0;     ///< [rad], q5 from 0 or half a turn, where j4 and j6 turn about one line

@@ -1,10 +1,8 @@
-// The closed form works on sines and cosines only; the angles of all branches, and in a batch of many poses,
-// are then taken in one vectorised pass.
+// The closed form works on sines and cosines only; the angles of all branches are then taken in one
+// vectorised pass.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <thread>
-#include <vector>
 
 #include "kinematics/chain/angles.h"
 #include "kinematics/chain/arm.h"
@@ -27,6 +25,11 @@ constexpr int kPostures = 4;
 struct ArmSines {
   bool exists[kPostures];
   bool wrist_straight[kPostures];
+};
+
+/// An angle by its sine and cosine.
+struct Turn {
+  double sine, cosine;
 };
 
 /// A pair of sine and cosine for each slot.
@@ -58,8 +61,10 @@ Target wrist_target(const ArmGeometry& g, const Pose& X_BT) {
 /// j4, j5, j6 turn about x, y, x of the forearm: M = Rx(q4) Ry(q5) Rx(q6) of what is left to turn. q6 comes
 /// from what q4 leaves, not from M alone: so their sum stays exact where each of them is hardly defined.
 /// `theta` = q2 + q3.
-bool place_wrist(const Target& to, double s1, double c1, double s_theta, double c_theta,
-                 std::span<const double> previous, int posture, const Slots& slots) {
+bool place_wrist(const Target& to, const Turn& q1, const Turn& theta, std::span<const double> previous,
+                 int posture, const Slots& slots) {
+  const auto [s1, c1] = q1;
+  const auto [s_theta, c_theta] = theta;
   const Vec3 x(c1 * c_theta, s1 * c_theta, -s_theta), y(-s1, c1, 0), z(c1 * s_theta, s1 * s_theta, c_theta);
   const double m00 = x.dot(to.flange_z), m10 = y.dot(to.flange_z), m20 = z.dot(to.flange_z);
   const double s5 = std::sqrt(m10 * m10 + m20 * m20);
@@ -76,9 +81,17 @@ bool place_wrist(const Target& to, double s1, double c1, double s_theta, double 
   return straight;
 }
 
-/// Postures of one shoulder: the plane of j2 and j3, u forwards, w up, both from axis 2.
-void place_plane(const ArmGeometry& g, const Target& to, double u, double w, double s1, double c1, bool back,
+/// One of the two turns of j1 that bring the wrist centre into the plane of j2 and j3.
+struct Shoulder {
+  Turn q1;
+  double u, w;  // [m], wrist centre in that plane, forwards and up from axis 2
+  bool back;    // the wrist centre lies behind axis 2
+};
+
+/// Postures of one shoulder.
+void place_plane(const ArmGeometry& g, const Target& to, const Shoulder& shoulder,
                  std::span<const double> previous, const Slots& slots, ArmSines& found) {
+  const auto [q1, u, w, back] = shoulder;
   const double forearm = std::sqrt(g.a3 * g.a3 + g.d4 * g.d4);
   const double sum = g.a2 + forearm, difference = g.a2 - forearm;
   const double reach2 = u * u + w * w;
@@ -109,7 +122,7 @@ void place_plane(const ArmGeometry& g, const Target& to, double u, double w, dou
     const double s3 = s * c_forearm - c_elbow * s_forearm, c3 = c_elbow * c_forearm + s * s_forearm;
     found.exists[posture] = true;
     found.wrist_straight[posture] =
-        place_wrist(to, s1, c1, s2 * c3 + c2 * s3, c2 * c3 - s2 * s3, previous, posture, slots);
+        place_wrist(to, q1, {s2 * c3 + c2 * s3, c2 * c3 - s2 * s3}, previous, posture, slots);
   }
 }
 
@@ -128,8 +141,8 @@ void place_arm(const ArmGeometry& g, const Pose& X_BT, std::span<const double> p
     slots.set(kQ1, y / r, x / r);
   slots.set(kForearm, g.d4, g.a3);
   const double s1 = slots.sine[kQ1], c1 = slots.cosine[kQ1];
-  place_plane(g, to, r - g.a1, w, s1, c1, false, previous, slots, found);
-  if (!on_axis_1) place_plane(g, to, -r - g.a1, w, -s1, -c1, true, previous, slots, found);
+  place_plane(g, to, {{s1, c1}, r - g.a1, w, false}, previous, slots, found);
+  if (!on_axis_1) place_plane(g, to, {{-s1, -c1}, -r - g.a1, w, true}, previous, slots, found);
 }
 
 double half_turn_on(double q) { return q > 0 ? q - kPi : q + kPi; }
@@ -145,7 +158,7 @@ int gather(const ArmSines& found, const double* angle, std::span<ArmSolution, kA
     s.axes[1] = angle[kQ2 + posture];
     const double elbow = angle[kElbow + back];
     s.axes[2] = wrapped((bent_up ? -elbow : elbow) - angle[kForearm]);
-    for (int k = 0; k < 3; ++k) s.axes[static_cast<std::size_t>(3 + k)] = angle[kQ4 + 4 * k + posture];
+    for (int k = 0; k < 3; ++k) s.axes[3 + k] = angle[kQ4 + 4 * k + posture];
     s.branch = {back, bent_up, false};
     if (found.wrist_straight[posture]) continue;
     ArmSolution& other = solutions[count++];
@@ -158,22 +171,6 @@ int gather(const ArmSines& found, const double* angle, std::span<ArmSolution, kA
   return static_cast<int>(count);
 }
 
-void solve_range(const ArmGeometry& geometry, std::span<const Pose> X_BT, std::span<ArmSolutions> solutions) {
-  constexpr std::size_t kBlock = 32;
-  double sine[kBlock * kSlots], cosine[kBlock * kSlots], angle[kBlock * kSlots];
-  ArmSines found[kBlock];
-  for (std::size_t start = 0; start < X_BT.size(); start += kBlock) {
-    const std::size_t size = std::min(kBlock, X_BT.size() - start);
-    for (std::size_t i = 0; i < size; ++i)
-      place_arm(geometry, X_BT[start + i], {}, {sine + i * kSlots, cosine + i * kSlots}, found[i]);
-    angles_of(sine, cosine, angle, static_cast<int>(size) * kSlots);
-    for (std::size_t i = 0; i < size; ++i) {
-      ArmSolutions& to = solutions[start + i];
-      to.count = gather(found[i], angle + i * kSlots, to.all);
-    }
-  }
-}
-
 }  // namespace
 
 int arm_branches(const ArmGeometry& geometry, const Pose& X_BT,
@@ -183,24 +180,6 @@ int arm_branches(const ArmGeometry& geometry, const Pose& X_BT,
   place_arm(geometry, X_BT, previous, {sine, cosine}, found);
   angles_of(sine, cosine, angle, kSlots);
   return gather(found, angle, solutions);
-}
-
-void arm_inverse_batch(const ArmGeometry& geometry, std::span<const Pose> X_BT,
-                       std::span<ArmSolutions> solutions, int threads) {
-  constexpr std::size_t kWorthAThread = 1024;  // some 0.3 ms of work, ten times what a thread costs
-  const std::size_t count = std::min(X_BT.size(), solutions.size());
-  const std::size_t wanted =
-      threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t workers = std::clamp<std::size_t>(count / kWorthAThread, 1, wanted);
-  const std::size_t share = (count + workers - 1) / workers;
-  const auto work = [&](std::size_t worker) {
-    const std::size_t start = std::min(count, worker * share);
-    const std::size_t size = std::min(share, count - start);
-    solve_range(geometry, X_BT.subspan(start, size), solutions.subspan(start, size));
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t worker = 1; worker < workers; ++worker) others.emplace_back(work, worker);
-  work(0);
 }
 
 }  // namespace understudy::kinematics

@@ -8,7 +8,7 @@ namespace {
 using LinkPoses = PerAxis<Pose>;
 
 const Pose& carrier(const LinkPoses& poses, int axis, const Pose& frame) {
-  return axis < 0 ? frame : poses[static_cast<std::size_t>(axis)];
+  return axis < 0 ? frame : poses[axis];
 }
 
 /// Velocity of the chain's axis, told at point p_O of what it carries.
@@ -55,7 +55,7 @@ void link_poses(const Chain& chain, std::span<const double> axes, std::span<Pose
   for (std::size_t i = 0; i < chain.axes.size(); ++i) {
     const ChainAxis& axis = chain.axes[i];
     const Pose X = screw_motion(axis, axes[i]);
-    poses[i] = axis.parent < 0 ? X : poses[static_cast<std::size_t>(axis.parent)] * X;
+    poses[i] = axis.parent < 0 ? X : poses[axis.parent] * X;
   }
 }
 
@@ -79,10 +79,9 @@ Pose forward(const Chain& chain, std::span<const double> axes, ChainJacobian& ja
   // What carries the tool moves it forwards, what carries the work moves it backwards; what carries both
   // moves nothing.
   const auto add_branch = [&](int last, double sign) {
-    for (int i = last; i >= 0; i = chain.axes[static_cast<std::size_t>(i)].parent) {
+    for (int i = last; i >= 0; i = chain.axes[i].parent) {
       Vec3 v, omega;
-      add_screw(chain.axes[static_cast<std::size_t>(i)], poses[static_cast<std::size_t>(i)],
-                X_OT.translation(), v, omega);
+      add_screw(chain.axes[i], poses[i], X_OT.translation(), v, omega);
       jacobian.col(i).head<3>() += sign * (R_SO * v);
       jacobian.col(i).tail<3>() += sign * (R_SO * omega);
     }

@@ -1,19 +1,13 @@
 #include "kinematics/chain/chain_mechanism.h"
 
-#include <Eigen/SVD>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "kinematics/chain/task_jacobian.h"
+
 namespace understudy::kinematics {
 namespace {
-
-/// A singular value below this share of the largest is a direction that the axes do not move.
-constexpr double kRankTolerance = 1e-9;
-
-using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMaxAxes>;
-using TaskRows = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6>;
 
 /// From twists to the task: all six, or without the turn about the tool's axis. Angles as lengths.
 TaskRows task_rows(const Pose& X_ST, bool follows_spin, double length_scale) {
@@ -33,7 +27,7 @@ TaskJacobian scaled_jacobian(const Chain& chain, const TaskRows& rows, const Cha
                              double length_scale) {
   TaskJacobian scaled = rows * J;
   for (int i = 0; i < chain.size(); ++i)
-    if (chain.axes[static_cast<std::size_t>(i)].angle) scaled.col(i) /= length_scale;
+    if (chain.axes[i].angle) scaled.col(i) /= length_scale;
   return scaled;
 }
 
@@ -75,14 +69,10 @@ ChainMechanism::ChainMechanism(const ChainDescription& description, bool follows
       follows_spin_(follows_spin),
       X_ST_home_(kinematics::forward(description_.chain, description_.home)) {}
 
-std::string ChainMechanism::axis_name(int axis) const {
-  return chain_.axes[static_cast<std::size_t>(axis)].name;
-}
-bool ChainMechanism::axis_is_angle(int axis) const {
-  return chain_.axes[static_cast<std::size_t>(axis)].angle;
-}
+std::string ChainMechanism::axis_name(int axis) const { return chain_.axes[axis].name; }
+bool ChainMechanism::axis_is_angle(int axis) const { return chain_.axes[axis].angle; }
 AxisRange ChainMechanism::axis_range(int axis) const {
-  const ChainAxis& a = chain_.axes[static_cast<std::size_t>(axis)];
+  const ChainAxis& a = chain_.axes[axis];
   return {a.lower, a.upper};
 }
 
@@ -146,12 +136,12 @@ SolveStatus ChainMechanism::axis_rates(const Pose& X_ST, std::span<const double>
   const double scale = description_.length_scale;
   const TaskRows rows = task_rows(X_ST, follows_spin_, scale);
   const TaskJacobian scaled = scaled_jacobian(chain_, rows, J, scale);
-  Eigen::JacobiSVD<TaskJacobian> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(kRankTolerance);
-  rates.topRows(n) = svd.solve(rows);
+  AxisRows solution;
+  const bool full_rank = solve_by_singular_values(scaled, rows, solution);
+  rates.topRows(n) = solution;
   for (int i = 0; i < n; ++i)
-    if (chain_.axes[static_cast<std::size_t>(i)].angle) rates.row(i) /= scale;
-  return svd.rank() < rows.rows() ? SolveStatus::singular : SolveStatus::ok;
+    if (chain_.axes[i].angle) rates.row(i) /= scale;
+  return full_rank ? SolveStatus::ok : SolveStatus::singular;
 }
 
 double ChainMechanism::condition_number(const Pose& X_ST, std::span<const double> axes) const {
@@ -161,10 +151,7 @@ double ChainMechanism::condition_number(const Pose& X_ST, std::span<const double
   kinematics::forward(chain_, axes, J);
   const double scale = description_.length_scale;
   const TaskRows rows = task_rows(X_ST, follows_spin_, scale);
-  Eigen::JacobiSVD<TaskJacobian> svd(scaled_jacobian(chain_, rows, J, scale));
-  const auto& values = svd.singularValues();
-  const double smallest = chain_.size() < rows.rows() ? 0.0 : values(rows.rows() - 1);
-  return smallest * kSingularCondition > values(0) ? values(0) / smallest : kSingularCondition;
+  return kinematics::condition_number(scaled_jacobian(chain_, rows, J, scale), kSingularCondition);
 }
 
 void ChainMechanism::check(const Pose& X_ST, std::span<const double> axes,

@@ -40,6 +40,18 @@ double turn_within(double angle, double near, const ChainAxis& axis) {
 
 FiveAxisGeometry geometry_of(std::span<const double> p) { return {p[0], p[1], p[2], p[3]}; }
 
+/// What the axes do at a tip's place and turns of the table while the tip moves over the part and the table
+/// turns at these rates.
+FiveAxes rates_at_tip(const FiveAxisGeometry& geometry, const RotaryTarget& at, const RotaryTarget& rate) {
+  const Vec3 b_axis = on_b_axis(geometry), c_axis = on_c_axis(geometry);
+  const Mat3 R_b = turn_y(-at.b), R_c = turn_z(-at.c);
+  const Vec3 from_c = R_c * (at.p_BT - c_axis);
+  const Vec3 turned_rate = R_c * rate.p_BT - rate.c * Vec3::UnitZ().cross(from_c);
+  const Vec3 from_b = R_b * (c_axis + from_c - b_axis);
+  const Vec3 slides = R_b * turned_rate - rate.b * Vec3::UnitY().cross(from_b);
+  return {slides.x(), slides.y(), slides.z(), rate.b, rate.c};
+}
+
 class FiveAxis final : public ChainMechanism {
  public:
   explicit FiveAxis(const ChainDescription& description)
@@ -95,7 +107,7 @@ class FiveAxis final : public ChainMechanism {
     if (axes.size() < kFiveAxes || axis_rates.size() < kFiveAxes || !finite(at) || !finite(rate))
       return SolveStatus::bad_input;
     const FiveAxes q = five_axis_at_tip(geometry_, at.p_BT, at.b, at.c);
-    const FiveAxes q_rate = five_axis_rates_at_tip(geometry_, at.p_BT, at.b, at.c, rate.p_BT, rate.b, rate.c);
+    const FiveAxes q_rate = rates_at_tip(geometry_, at, rate);
     std::copy(q.begin(), q.end(), axes.begin());
     std::copy(q_rate.begin(), q_rate.end(), axis_rates.begin());
     return SolveStatus::ok;
@@ -175,17 +187,6 @@ FiveAxes five_axis_at_tip(const FiveAxisGeometry& geometry, const Vec3& p_ST, do
   const Vec3 turned = c_axis + turn_z(-c) * (p_ST - c_axis);
   const Vec3 slides = b_axis + turn_y(-b) * (turned - b_axis);
   return {slides.x(), slides.y(), slides.z(), b, c};
-}
-
-FiveAxes five_axis_rates_at_tip(const FiveAxisGeometry& geometry, const Vec3& p_ST, double b, double c,
-                                const Vec3& v_ST, double b_rate, double c_rate) {
-  const Vec3 b_axis = on_b_axis(geometry), c_axis = on_c_axis(geometry);
-  const Mat3 R_b = turn_y(-b), R_c = turn_z(-c);
-  const Vec3 from_c = R_c * (p_ST - c_axis);
-  const Vec3 turned_rate = R_c * v_ST - c_rate * Vec3::UnitZ().cross(from_c);
-  const Vec3 from_b = R_b * (c_axis + from_c - b_axis);
-  const Vec3 rate = R_b * turned_rate - b_rate * Vec3::UnitY().cross(from_b);
-  return {rate.x(), rate.y(), rate.z(), b_rate, c_rate};
 }
 
 ChainKind five_axis_kind() {

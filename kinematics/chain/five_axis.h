@@ -45,8 +45,5 @@ Pose five_axis_pose(const FiveAxisGeometry& geometry, const FiveAxes& axes);
 Pose five_axis_tip_pose(const Vec3& p_ST, double b, double c);
 /// With, to axes: b and c stay as they are written, turns and branch included.
 FiveAxes five_axis_at_tip(const FiveAxisGeometry& geometry, const Vec3& p_ST, double b, double c);
-/// What the axes do there while the tip moves over the part at v_ST and the table turns at these rates.
-FiveAxes five_axis_rates_at_tip(const FiveAxisGeometry& geometry, const Vec3& p_ST, double b, double c,
-                                const Vec3& v_ST, double b_rate, double c_rate);
 
 }  // namespace understudy::kinematics

@@ -1,31 +1,30 @@
 #include "kinematics/chain/minimum_norm.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
+
+#include "kinematics/chain/task_jacobian.h"
 
 namespace understudy::kinematics {
 namespace {
 
 constexpr int kTask = 5;
-/// A singular value below this share of the largest is a direction that the axes do not move.
-constexpr double kRankTolerance = 1e-9;
 /// Pivots of J J^T, smallest to largest: above it some 12 digits of the solution are left.
 constexpr double kNormalPivots = 1e-4;
 
-using TaskRows = Eigen::Matrix<double, kTask, 6>;
-using TaskVector = Eigen::Matrix<double, kTask, 1>;
-using TaskJacobian = Eigen::Matrix<double, kTask, Eigen::Dynamic, 0, kTask, kMaxAxes>;
+using TipAndAxisRows = Eigen::Matrix<double, kTask, 6>;
+using TipAndAxis = Eigen::Matrix<double, kTask, 1>;
+using TipAndAxisJacobian = Eigen::Matrix<double, kTask, Eigen::Dynamic, 0, kTask, kMaxAxes>;
 
 bool finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
 /// From twists to the task, angles as lengths.
-TaskRows task_rows(const Pose& X_ST, double metric) {
-  TaskRows rows = TaskRows::Zero();
+TipAndAxisRows task_rows(const Pose& X_ST, double metric) {
+  TipAndAxisRows rows = TipAndAxisRows::Zero();
   rows.topLeftCorner<3, 3>().setIdentity();
   rows.block<1, 3>(3, 3) = metric * X_ST.linear().col(0).transpose();
   rows.block<1, 3>(4, 3) = metric * X_ST.linear().col(1).transpose();
@@ -33,18 +32,15 @@ TaskRows task_rows(const Pose& X_ST, double metric) {
 }
 
 /// The smallest y with J y = wanted, or nearest to it where J has lost rank: then false.
-bool smallest_solution(const TaskJacobian& J, const TaskVector& wanted, AxisColumn& y) {
+bool smallest_solution(const TipAndAxisJacobian& J, const TipAndAxis& wanted, AxisColumn& y) {
   // Normal equations halve the digits of an ill-conditioned J, but are ten times quicker where it is not.
   const Eigen::LDLT<Eigen::Matrix<double, kTask, kTask>> normal(J * J.transpose());
-  const TaskVector pivots = normal.vectorD();
+  const TipAndAxis pivots = normal.vectorD();
   if (normal.info() == Eigen::Success && pivots.minCoeff() > kNormalPivots * pivots.maxCoeff()) {
     y = J.transpose() * normal.solve(wanted);
     return true;
   }
-  Eigen::JacobiSVD<TaskJacobian> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(kRankTolerance);
-  y = svd.solve(wanted);
-  return svd.rank() == kTask;
+  return solve_by_singular_values(J, wanted, y);
 }
 
 }  // namespace
@@ -70,7 +66,7 @@ SolveStatus minimum_norm_rates(const Chain& chain, std::span<const double> axes,
       (some_motion && !finite(null_space_motion.first(n))))
     return SolveStatus::bad_input;
   ChainJacobian J;
-  const TaskRows rows = task_rows(forward(chain, axes, J), metric);
+  const TipAndAxisRows rows = task_rows(forward(chain, axes, J), metric);
   // In y = W q, with W = metric for angles and 1 for slides, the norm is the plain one.
   AxisColumn weight(chain.size()), y_null = AxisColumn::Zero(chain.size());
   for (std::size_t i = 0; i < n; ++i) {
@@ -78,9 +74,9 @@ SolveStatus minimum_norm_rates(const Chain& chain, std::span<const double> axes,
     weight[k] = chain.axes[i].angle ? metric : 1.0;
     if (some_motion) y_null[k] = weight[k] * null_space_motion[i];
   }
-  TaskJacobian J_scaled = rows * J;
+  TipAndAxisJacobian J_scaled = rows * J;
   for (Eigen::Index k = 0; k < weight.size(); ++k) J_scaled.col(k) /= weight[k];
-  const TaskVector wanted = rows * twist - J_scaled * y_null;
+  const TipAndAxis wanted = rows * twist - J_scaled * y_null;
   AxisColumn y;
   const bool full_rank = smallest_solution(J_scaled, wanted, y);
   y += y_null;

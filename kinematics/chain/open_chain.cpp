@@ -51,18 +51,17 @@ Reach reach_of(const Chain& chain) {
   if (chain.work_axis >= 0 || chain.tool_axis < 0) return {};
   std::array<const ChainAxis*, kMaxAxes> path{};  // from the tool down
   int count = 0;
-  for (int i = chain.tool_axis; i >= 0; i = path[static_cast<std::size_t>(count++)]->parent)
-    path[static_cast<std::size_t>(count)] = &chain.axes[static_cast<std::size_t>(i)];
+  for (int i = chain.tool_axis; i >= 0; i = path[count++]->parent) path[count] = &chain.axes[i];
   const Vec3 tip = chain.X_OT_zero.translation();
   Vec3 centre = tip, p = tip;
   double radius = 0;
   bool turned = false;
   for (int k = count - 1; k >= 0; --k) {
-    const ChainAxis& axis = *path[static_cast<std::size_t>(k)];
+    const ChainAxis& axis = *path[k];
     if (!axis.angle) {
       radius += std::max(std::abs(axis.lower), std::abs(axis.upper));
     } else if (!turned) {
-      centre = p = foot(axis, k > 0 ? path[static_cast<std::size_t>(k) - 1]->point : tip);
+      centre = p = foot(axis, k > 0 ? path[k - 1]->point : tip);
       turned = true;
     } else {
       const Vec3 next = foot(axis, p);
@@ -84,8 +83,7 @@ class OpenChain final : public ChainMechanism {
       for (std::size_t i = 0; i < description.chain.axes.size(); ++i) {
         const AxisRange range =
             start_range(description.chain.axes[i], description.home[i], description.length_scale);
-        further_[static_cast<std::size_t>(start)][i] =
-            range.lower + halton(start + 1, kPrimes[i]) * (range.upper - range.lower);
+        further_[start][i] = range.lower + halton(start + 1, kPrimes[i]) * (range.upper - range.lower);
       }
   }
 

@@ -49,7 +49,7 @@ void evaluate(const Chain& chain, const Pose& X_goal, bool follows_spin, double 
   const Mat3 R_TS = scale * X.linear().transpose();
   for (int i = 0; i < chain.size(); ++i) {
     at.J.col(i).tail<3>() = (R_TS * at.J.col(i).tail<3>()).eval();
-    if (chain.axes[static_cast<std::size_t>(i)].angle) at.J.col(i) /= scale;
+    if (chain.axes[i].angle) at.J.col(i) /= scale;
   }
   if (!follows_spin) at.J.row(5).setZero();
 }
@@ -72,7 +72,7 @@ AxisColumn damped_step(const Iterate& at, double damping, int task_size) {
 void move(const Chain& chain, double scale, AxisColumn step, const Iterate& from, Iterate& to) {
   double largest = 0;
   for (int i = 0; i < chain.size(); ++i)
-    if (chain.axes[static_cast<std::size_t>(i)].angle) {
+    if (chain.axes[i].angle) {
       step[i] /= scale;
       largest = std::max(largest, std::abs(step[i]));
     }

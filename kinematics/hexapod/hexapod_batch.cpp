@@ -65,12 +65,10 @@ void inverse_batch(const HexapodGeometry& geometry, std::span<const Pose> X_BT,
     std::array<bool, kBlock> ok;
     for (long at = begin; at < end; at += kBlock) {
       const long size = std::min(kBlock, end - at);
-      const auto first = static_cast<std::size_t>(at);
-      const long done = many(g, X_BT[first].data(), lengths[first].data(), ok.data(), size);
+      const long done = many(g, X_BT[at].data(), lengths[at].data(), ok.data(), size);
       for (long n = 0; n < size; ++n) {
-        const auto k = static_cast<std::size_t>(at + n);
-        const bool have = n < done && ok[static_cast<std::size_t>(n)];
-        status[k] = have ? SolveStatus::ok : inverse(geometry, X_BT[k], lengths[k]);
+        const bool have = n < done && ok[n];
+        status[at + n] = have ? SolveStatus::ok : inverse(geometry, X_BT[at + n], lengths[at + n]);
       }
     }
   });
@@ -87,11 +85,10 @@ void forward_batch(const HexapodGeometry& geometry, std::span<const StrutLengths
     std::array<simd::Answer, kBlock> answers;
     for (long at = begin; at < end; at += kBlock) {
       const long size = std::min(kBlock, end - at);
-      const auto first = static_cast<std::size_t>(at);
-      const long done = many(g, lengths[first].data(), seeds[first].data(), settings, answers.data(), size);
+      const long done = many(g, lengths[at].data(), seeds[at].data(), settings, answers.data(), size);
       for (long n = 0; n < size; ++n) {
-        const auto k = static_cast<std::size_t>(at + n);
-        const simd::Answer& a = answers[static_cast<std::size_t>(n)];
+        const long k = at + n;
+        const simd::Answer& a = answers[n];
         results[k] = n < done && a.ok ? ForwardResult{SolveStatus::ok, pose_of(a.X),
                                                       static_cast<int>(a.iterations), a.residual}
                                       : forward(geometry, lengths[k], seeds[k], options);

@@ -12,8 +12,7 @@ struct Strut {
 };
 
 Strut strut_segment(const HexapodGeometry& geometry, const Pose& X_BT, int strut) {
-  const auto i = static_cast<std::size_t>(strut);
-  return {geometry.base_joint[i], X_BT * geometry.platform_joint[i]};
+  return {geometry.base_joint[strut], X_BT * geometry.platform_joint[strut]};
 }
 
 // Closest points of two segments p + s u and q + t v, s and t in [0, 1]: minimise over s with t free, clamp
@@ -36,22 +35,29 @@ struct Range {
   double low, high;
 };
 
-// The name is only built for what is outside: this runs at every point of every path.
-void check_range(LimitKind kind, const char* what, int index, const char* suffix, double value, Range range,
-                 const char* unit, std::vector<LimitViolation>& violations) {
+/// Its name, "base joint 2 (lateral)", is only built for what is outside: check_range runs at every point of
+/// every path.
+struct Part {
+  const char* what;
+  int index;  // from 0
+  const char* suffix = "";
+};
+
+void check_range(LimitKind kind, const Part& part, double value, Range range, const char* unit,
+                 std::vector<LimitViolation>& violations) {
   if (value >= range.low && value <= range.high) return;
-  violations.push_back(
-      {kind, numbered(what, index) + suffix, value, value > range.high ? range.high : range.low, unit});
+  violations.push_back({kind, numbered(part.what, part.index) + part.suffix, value,
+                        value > range.high ? range.high : range.low, unit});
 }
 
 void check_joints(const HexapodLimits& limits, const StrutAngles& angles, int strut,
                   std::vector<LimitViolation>& violations) {
-  check_range(LimitKind::joint_angle, "base joint", strut, "", angles.alpha,
+  check_range(LimitKind::joint_angle, {"base joint", strut}, angles.alpha,
               {limits.base_alpha_min, limits.base_alpha_max}, "rad", violations);
-  check_range(LimitKind::joint_angle, "base joint", strut, " (lateral)", angles.beta,
+  check_range(LimitKind::joint_angle, {"base joint", strut, " (lateral)"}, angles.beta,
               {-limits.base_beta_max, limits.base_beta_max}, "rad", violations);
-  check_range(LimitKind::joint_angle, "ball joint", strut, "", angles.ball,
-              {limits.ball_min, limits.ball_max}, "rad", violations);
+  check_range(LimitKind::joint_angle, {"ball joint", strut}, angles.ball, {limits.ball_min, limits.ball_max},
+              "rad", violations);
 }
 
 void report_out_of_reach(const HexapodGeometry& geometry, const Pose& X_BT,
@@ -87,11 +93,10 @@ double screw_distance(const HexapodGeometry& geometry, const Pose& X_BT, int str
 
 StrutAngles strut_angles(const HexapodGeometry& geometry, const HexapodJoints& joints, const Pose& X_BT,
                          int strut) {
-  const auto i = static_cast<std::size_t>(strut);
   const Strut segment = strut_segment(geometry, X_BT, strut);
   const Vec3 u = (segment.ball - segment.base).normalized();
-  const Vec3 e_r = joints.radial_axis[i], e_z = Vec3::UnitZ(), e_t = e_z.cross(e_r);
-  const double stud = -u.dot(X_BT.linear() * joints.stud_axis[i]);
+  const Vec3 e_r = joints.radial_axis[strut], e_z = Vec3::UnitZ(), e_t = e_z.cross(e_r);
+  const double stud = -u.dot(X_BT.linear() * joints.stud_axis[strut]);
   return {std::atan2(-u.dot(e_r), -u.z()), std::asin(std::clamp(u.dot(e_t), -1.0, 1.0)),
           std::acos(std::clamp(stud, -1.0, 1.0))};
 }
@@ -103,9 +108,10 @@ void check(const HexapodGeometry& geometry, const HexapodJoints& joints, const H
     report_out_of_reach(geometry, X_BT, violations);
     return;
   }
-  for (int i = 0; i < kStruts; ++i)
-    check_range(LimitKind::strut_length, "strut", i, "", lengths[static_cast<std::size_t>(i)],
-                {limits.strut_min, limits.strut_max}, "m", violations);
+  int strut = 0;
+  for (const double length : lengths)
+    check_range(LimitKind::strut_length, {"strut", strut++}, length, {limits.strut_min, limits.strut_max},
+                "m", violations);
   for (int i = 0; i < kStruts; ++i)
     check_joints(limits, strut_angles(geometry, joints, X_BT, i), i, violations);
   for (int i = 0; i < kStruts; ++i) {

@@ -17,16 +17,15 @@ constexpr int kRoundsMax = 30;  // of the fixed point
 /// About the strut, from the motor's inner axis to the joint axis that the screw carries.
 SolveStatus joint_rotation(const HexapodGeometry& geometry, const HexapodJoints& joints, const Pose& X_BT,
                            int strut, double& angle) {
-  const auto i = static_cast<std::size_t>(strut);
   angle = 0;
-  const Vec3 d = X_BT * geometry.platform_joint[i] - geometry.base_joint[i];
+  const Vec3 d = X_BT * geometry.platform_joint[strut] - geometry.base_joint[strut];
   const double span = d.norm();
   if (!std::isfinite(span)) return SolveStatus::bad_input;
   if (!(span > 0)) return SolveStatus::singular;
   const Vec3 u = d / span;
-  const Vec3 outer = Vec3::UnitZ().cross(joints.radial_axis[i]).normalized();
+  const Vec3 outer = Vec3::UnitZ().cross(joints.radial_axis[strut]).normalized();
   const Vec3 at_motor = outer.cross(u);
-  const Vec3 at_screw = (X_BT.linear() * joints.stud_axis[i]).cross(u);
+  const Vec3 at_screw = (X_BT.linear() * joints.stud_axis[strut]).cross(u);
   if (!(at_motor.norm() > kStretched && at_screw.norm() > kStretched)) return SolveStatus::singular;
   angle = std::atan2(u.dot(at_motor.cross(at_screw)), at_motor.dot(at_screw));
   return SolveStatus::ok;
@@ -38,7 +37,7 @@ SolveStatus lengthening(const HexapodGeometry& geometry, const ScrewCoupling& co
     double angle = 0;
     const SolveStatus status = passive_rotation(geometry, coupling, X_BT, i, angle);
     if (status != SolveStatus::ok) return status;
-    change[static_cast<std::size_t>(i)] = coupling.lead / kTurn * angle;
+    change[i] = coupling.lead / kTurn * angle;
   }
   return SolveStatus::ok;
 }
@@ -60,7 +59,7 @@ SolveStatus passive_rotation(const HexapodGeometry& geometry, const ScrewCouplin
                              int strut, double& angle) {
   const SolveStatus status = joint_rotation(geometry, coupling.joints, X_BT, strut, angle);
   if (status != SolveStatus::ok) return status;
-  angle = nearest_turn(angle - coupling.angle_at_home[static_cast<std::size_t>(strut)], 0);
+  angle = nearest_turn(angle - coupling.angle_at_home[strut], 0);
   return SolveStatus::ok;
 }
 

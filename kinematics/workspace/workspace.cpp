@@ -19,8 +19,6 @@ namespace {
 
 constexpr std::int64_t kChunk = 1024;  // points: a few milliseconds, so that threads end together
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 bool same(const WorkspaceLimit& limit, LimitKind kind, const std::string& part, bool above) {
   return limit.kind == kind && limit.above == above && limit.part == part;
 }
@@ -51,7 +49,7 @@ class Evaluation {
         request_(request),
         result_(result),
         cells_(request.grid.cells()),
-        axes_(at(mechanism.axis_count())) {
+        axes_(mechanism.axis_count()) {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     use_.assign(axes_.size(), {kFar, -kFar});
     for (int i = 0; i < mechanism.axis_count(); ++i) ranges_.push_back(mechanism.axis_range(i));
@@ -80,11 +78,11 @@ class Evaluation {
     if (broken_.empty()) {
       ++reachable;
       use_.swap(point_use_);
-      result_.margin[at(i)] = static_cast<float>(margin_);
-      result_.condition[at(i)] = static_cast<float>(condition_);
+      result_.margin[i] = static_cast<float>(margin_);
+      result_.condition[i] = static_cast<float>(condition_);
       return;
     }
-    result_.binding[at(i)] = static_cast<std::uint16_t>(binding_ + 1);
+    result_.binding[i] = static_cast<std::uint16_t>(binding_ + 1);
     count();
   }
 
@@ -105,11 +103,11 @@ class Evaluation {
 
   void meet(const LimitViolation& violation) {
     const int limit = find_or_add(limits, violation, violation.part);
-    WorkspaceLimit& known = limits[at(limit)];
+    WorkspaceLimit& known = limits[limit];
     if (known.broken == 0) known.family = find_or_add(families, violation, limit_family(violation.part));
     add_once(broken_, limit);
     add_once(broken_families_, known.family);
-    const double excess = excess_of(violation, families[at(known.family)].part);
+    const double excess = excess_of(violation, families[known.family].part);
     if (excess <= worst_excess_) return;
     worst_excess_ = excess;
     binding_ = limit;
@@ -135,13 +133,13 @@ class Evaluation {
   }
 
   void count() {
-    for (const int limit : broken_) ++limits[at(limit)].broken;
-    for (const int family : broken_families_) ++families[at(family)].broken;
-    WorkspaceLimit& first = limits[at(binding_)];
+    for (const int limit : broken_) ++limits[limit].broken;
+    for (const int family : broken_families_) ++families[family].broken;
+    WorkspaceLimit& first = limits[binding_];
     ++first.binds;
-    ++families[at(first.family)].binds;
+    ++families[first.family].binds;
     if (broken_.size() == 1) ++first.alone;
-    if (broken_families_.size() == 1) ++families[at(first.family)].alone;
+    if (broken_families_.size() == 1) ++families[first.family].alone;
   }
 
   const Mechanism& mechanism_;
@@ -212,7 +210,7 @@ void renumber(const std::vector<Evaluation>& parts, const std::vector<int>& work
       number[p].push_back(static_cast<std::uint16_t>(1 + position(result.limits, limit, limit.part)));
   for (std::size_t i = 0; i < result.binding.size(); ++i) {
     std::uint16_t& binding = result.binding[i];
-    if (binding > 0) binding = number[at(worker_of_chunk[i / kChunk])][at(binding - 1)];
+    if (binding > 0) binding = number[worker_of_chunk[i / kChunk]][binding - 1];
   }
 }
 
@@ -221,7 +219,7 @@ void renumber(const std::vector<Evaluation>& parts, const std::vector<int>& work
 std::array<int, 3> WorkspaceGrid::cells() const {
   std::array<int, 3> count{};
   for (int i = 0; i < 3; ++i)  // the box may miss a whole number of steps by rounding
-    count[at(i)] = std::max(1, static_cast<int>(std::floor((upper[i] - lower[i]) / step + 1e-6)));
+    count[i] = std::max(1, static_cast<int>(std::floor((upper[i] - lower[i]) / step + 1e-6)));
   return count;
 }
 
@@ -238,7 +236,7 @@ Vec3 WorkspaceGrid::point(int x, int y, int z) const {
 
 std::size_t Workspace::index(int x, int y, int z) const {
   const auto n = grid.cells();
-  return at((std::int64_t{z} * n[1] + y) * n[0] + x);
+  return (std::int64_t{z} * n[1] + y) * n[0] + x;
 }
 
 std::string limit_family(const std::string& part) {
@@ -260,11 +258,11 @@ Workspace evaluate_workspace(const Mechanism& mechanism, const WorkspaceRequest&
     throw std::invalid_argument("a workspace needs points, an orientation and a thread");
   Workspace result;
   result.grid = request.grid;
-  result.binding.assign(at(size), 0);
-  result.margin.assign(at(size), 0);
-  result.condition.assign(at(size), 0);
+  result.binding.assign(size, 0);
+  result.margin.assign(size, 0);
+  result.condition.assign(size, 0);
   const std::int64_t chunks = (size + kChunk - 1) / kChunk;
-  std::vector<int> worker_of_chunk(at(chunks), 0);
+  std::vector<int> worker_of_chunk(chunks, 0);
   const auto threads = static_cast<std::size_t>(std::min<std::int64_t>(request.threads, chunks));
   std::vector<Evaluation> parts(threads, Evaluation(mechanism, request, result));
   std::vector<std::exception_ptr> failures(threads);
@@ -274,7 +272,7 @@ Workspace evaluate_workspace(const Mechanism& mechanism, const WorkspaceRequest&
     try {
       for (std::int64_t chunk = next++; chunk < chunks; chunk = next++) {
         stop_if_interrupted();
-        worker_of_chunk[at(chunk)] = static_cast<int>(worker);
+        worker_of_chunk[chunk] = static_cast<int>(worker);
         parts[worker].points(chunk * kChunk, std::min(size, (chunk + 1) * kChunk));
         const std::lock_guard lock(progress_mutex);
         ++done;

@@ -8,8 +8,6 @@
 namespace understudy::kinematics {
 namespace {
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 /// Points that end at `last` from the grid's middle, doubled to stay whole.
 std::int64_t off_centre(const std::array<int, 3>& n, const std::array<int, 3>& last, int side) {
   std::int64_t sum = 0;
@@ -31,9 +29,9 @@ void widen(const std::vector<int>& height, int y, std::vector<int>& rising, Rect
   const int n = static_cast<int>(height.size());
   rising.clear();
   for (int x = 0; x <= n; ++x) {
-    const int here = x < n ? height[at(x)] : 0;
-    while (!rising.empty() && height[at(rising.back())] >= here) {
-      const int bar = height[at(rising.back())];
+    const int here = x < n ? height[x] : 0;
+    while (!rising.empty() && height[rising.back()] >= here) {
+      const int bar = height[rising.back()];
       rising.pop_back();
       const Rectangle r{rising.empty() ? 0 : rising.back() + 1, x - 1, y - bar + 1, y};
       if (bar > 0 && r.area() > best.area()) best = r;
@@ -45,14 +43,14 @@ void widen(const std::vector<int>& height, int y, std::vector<int>& rising, Rect
 /// In a mask of n[0] x n[1] points.
 class RectangleSearch {
  public:
-  explicit RectangleSearch(const std::array<int, 3>& n) : n_(n), height_(at(n[0])) {}
+  explicit RectangleSearch(const std::array<int, 3>& n) : n_(n), height_(n[0]) {}
   Rectangle largest(const std::vector<bool>& mask) {
     Rectangle best;
     std::fill(height_.begin(), height_.end(), 0);
     for (int y = 0; y < n_[1]; ++y) {
       for (int x = 0; x < n_[0]; ++x) {
-        int& bar = height_[at(x)];
-        bar = mask[at(std::int64_t{y} * n_[0] + x)] ? bar + 1 : 0;
+        int& bar = height_[x];
+        bar = mask[std::int64_t{y} * n_[0] + x] ? bar + 1 : 0;
       }
       widen(height_, y, rising_, best);
     }
@@ -71,13 +69,13 @@ class RectangleSearch {
 std::optional<PointBox> largest_cube(const Workspace& workspace) {
   const auto n = workspace.grid.cells();
   const std::int64_t layer = std::int64_t{n[0] + 1} * (n[1] + 1);
-  std::vector<int> below(at(layer), 0), here(at(layer), 0);
+  std::vector<int> below(layer, 0), here(layer, 0);
   std::array<int, 3> best_last{};
   int best = 0;
   for (int z = 0; z < n[2]; ++z) {
     for (int y = 0; y < n[1]; ++y) {
       for (int x = 0; x < n[0]; ++x) {
-        const std::size_t i = at(std::int64_t{y + 1} * (n[0] + 1) + x + 1), up = i - at(n[0] + 1);
+        const std::size_t i = std::int64_t{y + 1} * (n[0] + 1) + x + 1, up = i - (n[0] + 1);
         here[i] = workspace.reaches(x, y, z) ? 1 + std::min({here[i - 1], here[up], here[up - 1], below[i],
                                                              below[i - 1], below[up], below[up - 1]})
                                              : 0;
@@ -102,7 +100,7 @@ std::optional<PointBox> largest_box(const Workspace& workspace) {
   std::int64_t best = 0;
   PointBox box;
   for (int z_first = 0; z_first < n[2]; ++z_first) {
-    std::vector<bool> mask(at(std::int64_t{n[0]} * n[1]), true);
+    std::vector<bool> mask(std::int64_t{n[0]} * n[1], true);
     for (int z = z_first; z < n[2]; ++z) {
       const std::size_t first = workspace.index(0, 0, z);
       for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = mask[i] && workspace.binding[first + i] == 0;
@@ -119,14 +117,14 @@ std::optional<PointBox> largest_box(const Workspace& workspace) {
 
 std::vector<double> reachable_quantiles(const Workspace& workspace, const std::vector<float>& values) {
   std::vector<float> sorted;
-  sorted.reserve(at(workspace.reachable));
+  sorted.reserve(workspace.reachable);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (workspace.binding[i] == 0) sorted.push_back(values[i]);
   std::vector<double> quantiles;
   if (sorted.empty()) return quantiles;
   std::sort(sorted.begin(), sorted.end());
   for (const double share : kWorkspaceQuantiles)
-    quantiles.push_back(sorted[at(std::llround(share * static_cast<double>(sorted.size() - 1)))]);
+    quantiles.push_back(sorted[std::llround(share * static_cast<double>(sorted.size() - 1))]);
   return quantiles;
 }
 

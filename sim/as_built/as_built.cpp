@@ -47,16 +47,18 @@ void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
 
 /// As the controller knows the machine, or as it was drawn.
 AsBuilt without_errors(const machine::MachineDescription& machine, bool drawn) {
+  const bool before_calibration = drawn && machine.calibration;
   AsBuilt built;
-  if (!machine.is_chain()) {
-    built.hexapod = drawn && machine.calibration ? machine.hexapod().design : machine.hexapod().geometry;
-    built.nut_play.fill(machine.hexapod().play.screw_nut);
-    built.ball_play.fill(machine.hexapod().play.ball_joint);
-    return built;
-  }
-  const kinematics::ChainDescription& known = machine.chain().kinematics;
-  built.chain = drawn && machine.calibration ? known.design : known.chain;
-  for (std::size_t i = 0; i < built.chain.axes.size(); ++i) built.axis_play[i] = machine.chain().play[i];
+  machine.visit(
+      [&](const machine::HexapodModel& hexapod) {
+        built.hexapod = before_calibration ? hexapod.design : hexapod.geometry;
+        built.nut_play.fill(hexapod.play.screw_nut);
+        built.ball_play.fill(hexapod.play.ball_joint);
+      },
+      [&](const machine::ChainModel& chain) {
+        built.chain = before_calibration ? chain.kinematics.design : chain.kinematics.chain;
+        for (std::size_t i = 0; i < built.chain.axes.size(); ++i) built.axis_play[i] = chain.play[i];
+      });
   return built;
 }
 

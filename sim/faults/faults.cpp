@@ -13,11 +13,6 @@ namespace {
 
 bool ends_by(const FaultEvent& event, double time) { return time >= event.time + event.duration; }
 
-bool has_play(const machine::MachineDescription& machine, int axis) {
-  if (machine.is_chain()) return machine.chain().play[axis] > 0;
-  return machine.hexapod().play.screw_nut > 0 || machine.hexapod().play.ball_joint > 0;
-}
-
 }  // namespace
 
 const char* to_string(FaultKind kind) {
@@ -72,7 +67,7 @@ void check_faults(const std::vector<FaultEvent>& events, const machine::MachineD
       throw InputError(
           fmt::format("{}: {} steps, not a positive multiple of {}: a rotor slips by whole cycles", what,
                       event.steps, kElectricalCycle));
-    if (event.kind == FaultKind::loose_joint && !has_play(machine, event.axis))
+    if (event.kind == FaultKind::loose_joint && !machine.has_play(event.axis))
       throw InputError(
           fmt::format("{} of axis {}: the machine has no play there to grow", what, event.axis + 1));
     if (event.kind == FaultKind::loose_joint && !(event.amount > 0))
@@ -96,7 +91,7 @@ FaultyDrives::FaultyDrives(const machine::MachineDescription& machine, std::vect
 }
 
 void FaultyDrives::release(int axis, Plant& plant) {
-  Axis& a = axes_[axis];
+  Axis& a = axes_[static_cast<std::size_t>(axis)];
   a.condition.released = a.counts_only = true;
   plant.set_condition(axis, a.condition);
 }
@@ -161,7 +156,7 @@ void FaultyDrives::apply(double time, DriveCommand& command, Plant& plant) {
   });
   std::erase_if(growths_, [&](Growth& growth) {
     const FaultEvent& event = growth.event;
-    Axis& axis = axes_[event.axis];
+    Axis& axis = axes_[static_cast<std::size_t>(event.axis)];
     const bool grown = ends_by(event, time);
     const double due = grown ? event.amount : event.amount * (time - event.time) / event.duration;
     axis.condition.growth += due - growth.done;

@@ -34,17 +34,21 @@ Lean lean_of(const Vec3& axis) {
 }
 
 std::vector<kinematics::LimitSpan> limit_spans(const machine::MachineDescription& machine) {
-  if (machine.is_chain()) {
-    std::vector<kinematics::LimitSpan> spans;
-    for (const auto& axis : machine.chain().kinematics.chain.axes)
-      spans.push_back({"axis " + axis.name, axis.upper - axis.lower});
-    return spans;
-  }
-  const auto& limits = machine.hexapod().limits;
-  return {{"strut", limits.strut_max - limits.strut_min},
-          {"base joint", limits.base_alpha_max - limits.base_alpha_min},
-          {"base joint (lateral)", 2 * limits.base_beta_max},
-          {"ball joint", limits.ball_max - limits.ball_min}};
+  using Spans = std::vector<kinematics::LimitSpan>;
+  return machine.visit(
+      [](const machine::HexapodModel& hexapod) -> Spans {
+        const auto& limits = hexapod.limits;
+        return {{"strut", limits.strut_max - limits.strut_min},
+                {"base joint", limits.base_alpha_max - limits.base_alpha_min},
+                {"base joint (lateral)", 2 * limits.base_beta_max},
+                {"ball joint", limits.ball_max - limits.ball_min}};
+      },
+      [](const machine::ChainModel& chain) {
+        Spans spans;
+        for (const auto& axis : chain.kinematics.chain.axes)
+          spans.push_back({"axis " + axis.name, axis.upper - axis.lower});
+        return spans;
+      });
 }
 
 kinematics::WorkspaceGrid make_grid(const machine::MachineDescription& machine,
@@ -105,14 +109,17 @@ double degrees_within(const char* option, double value, double low, double high)
 }  // namespace
 
 std::array<double, 6> default_workspace_box(const machine::MachineDescription& machine) {
-  if (!machine.is_chain()) {
-    const Vec3 home = (machine.X_WB * machine.X_BT_home).translation();
-    return box_around(home, Vec3::Constant(0.050));
-  }
-  const Vec3 size = std::get<geometry::Box>(machine.table.form).size;
-  const double height = height_of(machine.chain().kinematics.chain).value_or(std::min(size.x(), size.y()));
-  const Vec3 middle = machine.table.X_FS.translation();
-  return box_around({middle.x(), middle.y(), height / 2}, {size.x() / 2, size.y() / 2, height / 2});
+  return machine.visit(
+      [&](const machine::HexapodModel&) {
+        const Vec3 home = (machine.X_WB * machine.X_BT_home).translation();
+        return box_around(home, Vec3::Constant(0.050));
+      },
+      [&](const machine::ChainModel& chain) {
+        const Vec3 size = std::get<geometry::Box>(machine.table.form).size;
+        const double height = height_of(chain.kinematics.chain).value_or(std::min(size.x(), size.y()));
+        const Vec3 middle = machine.table.X_FS.translation();
+        return box_around({middle.x(), middle.y(), height / 2}, {size.x() / 2, size.y() / 2, height / 2});
+      });
 }
 
 WorkspaceStudy plan_workspace(const machine::MachineDescription& machine, const WorkspaceOptions& options) {

@@ -78,7 +78,7 @@ TEST_P(CycleOf, KinematicsNeitherAllocatesNorLocksNorTouchesFiles) {
 
 TEST_P(CycleOf, TheNextPlannedPointCostsNothing) {
   const Pose X_WT_home = machine_.X_WB * mechanism_->home();
-  MotionPlanner planner(*mechanism_, machine_.X_WB, motion_limits(machine_), X_WT_home, 0);
+  MotionPlanner planner(*mechanism_, machine_.X_WB, motion_limits(machine_), {X_WT_home});
   Random random(62, "planned cycle");
   for (int i = 0; i < 40; ++i) {
     toolpath::Step step;
@@ -214,7 +214,7 @@ TEST(GapCycle, ControllingTheGapAlongAPathNeitherAllocatesNorLocks) {
                               [&](const OffsetChange& change) { offsets.push_back(change); });
   const auto mechanism = hexapod().make_mechanism();
   const Pose X_WT_S = make_pose(Quat::Identity(), Vec3(0, 0, kTable + kGap));
-  MotionPlanner planner(*mechanism, hexapod().X_WB, motion_limits(hexapod()), X_WT_S, 0.05);
+  MotionPlanner planner(*mechanism, hexapod().X_WB, motion_limits(hexapod()), {X_WT_S, 0.05});
   planner.push(step_to(toolpath::StepKind::print, {10e-3, 0, kTable + kGap}, 5e-3, 6, 1e-4));
   planner.finish();
   gap.start(Vec3::Zero(), kGap, 5e-6);

@@ -40,7 +40,7 @@ struct FiveAxisForTest {
   }
 
   std::vector<PlannedPoint> plan(const std::string& text) const {
-    MotionPlanner planner(*mechanism, machine.X_WB, limits, X_WT_home, 0);
+    MotionPlanner planner(*mechanism, machine.X_WB, limits, {X_WT_home});
     std::vector<PlannedPoint> points;
     PlannedPoint point;
     for (const toolpath::Step& step : program(text).steps) {

@@ -4,7 +4,7 @@ namespace understudy::toolpath {
 
 double Lattice::length(std::size_t strut) const {
   const auto& [a, b] = struts[strut];
-  return (nodes[static_cast<std::size_t>(b)].position - nodes[static_cast<std::size_t>(a)].position).norm();
+  return (nodes[b].position - nodes[a].position).norm();
 }
 
 void place_lattice(Lattice& lattice, double scale, const Vec3& place) {
@@ -19,9 +19,9 @@ std::vector<int> hanging_nodes(const Lattice& lattice) {
   std::vector<bool> used(lattice.nodes.size()), reached(lattice.nodes.size());
   std::vector<std::vector<int>> neighbours(lattice.nodes.size());
   for (const auto& [a, b] : lattice.struts) {
-    neighbours[static_cast<std::size_t>(a)].push_back(b);
-    neighbours[static_cast<std::size_t>(b)].push_back(a);
-    used[static_cast<std::size_t>(a)] = used[static_cast<std::size_t>(b)] = true;
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+    used[a] = used[b] = true;
   }
   std::vector<int> open;
   for (std::size_t i = 0; i < lattice.nodes.size(); ++i)
@@ -30,11 +30,11 @@ std::vector<int> hanging_nodes(const Lattice& lattice) {
       open.push_back(static_cast<int>(i));
     }
   while (!open.empty()) {
-    const auto node = static_cast<std::size_t>(open.back());
+    const int node = open.back();
     open.pop_back();
     for (const int next : neighbours[node])
-      if (!reached[static_cast<std::size_t>(next)]) {
-        reached[static_cast<std::size_t>(next)] = true;
+      if (!reached[next]) {
+        reached[next] = true;
         open.push_back(next);
       }
   }

@@ -15,8 +15,6 @@ constexpr int kAzimuths = 24;
 constexpr double kRounding = 1e-9;               // [m]
 constexpr double kTolerance = 50 * kMicrometre;  // of distances that only rank axes
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 }  // namespace
 
 std::vector<Vec3> tool_axes(double tilt_max) {
@@ -34,7 +32,7 @@ StrutAccess::StrutAccess(const Lattice& lattice, const SequenceLimits& limits)
     : lattice_(lattice), limits_(limits), tool_(limits.tool), axes_(tool_axes(limits.tilt_max)) {}
 
 Vec3 StrutAccess::tip(int node, const Vec3& axis) const {
-  return tip_at(lattice_.nodes[at(node)], axis, limits_.strut_diameter, limits_.ground_gap);
+  return tip_at(lattice_.nodes[node], axis, limits_.strut_diameter, limits_.ground_gap);
 }
 
 StrutPrint StrutAccess::print_along(int strut, int from, int to, const Vec3& axis,
@@ -43,8 +41,8 @@ StrutPrint StrutAccess::print_along(int strut, int from, int to, const Vec3& axi
   // Beyond the plane across the axis that everything built lies below.
   double level = -std::numeric_limits<double>::infinity();
   const auto raise = [&](int s) {
-    for (const int node : lattice_.struts[at(s)])
-      level = std::max(level, axis.dot(lattice_.nodes[at(node)].position) + 0.5 * limits_.strut_diameter);
+    for (const int node : lattice_.struts[s])
+      level = std::max(level, axis.dot(lattice_.nodes[node].position) + 0.5 * limits_.strut_diameter);
   };
   for (const int s : built) raise(s);
   print.out_from = limits_.lift + std::max(0.0, level - axis.dot(tip(from, axis)));
@@ -65,9 +63,8 @@ bool StrutAccess::allowed(const StrutPrint& print) const {
 }
 
 StrutBody StrutAccess::body(int strut, const StrutPrint& print) const {
-  const auto& [a, b] = lattice_.struts[at(strut)];
-  StrutBody body{lattice_.nodes[at(a)].position, lattice_.nodes[at(b)].position,
-                 0.5 * limits_.strut_diameter};
+  const auto& [a, b] = lattice_.struts[strut];
+  StrutBody body{lattice_.nodes[a].position, lattice_.nodes[b].position, 0.5 * limits_.strut_diameter};
   const Vec3 along = body.to - body.from;
   const Vec3 joint = std::min(1.0, limits_.joint / along.norm()) * along;
   if (a == print.from || a == print.to) body.from += joint;
@@ -77,7 +74,7 @@ StrutBody StrutAccess::body(int strut, const StrutPrint& print) const {
 }
 
 StrutBody StrutAccess::fresh(const StrutPrint& print) const {
-  const Vec3 from = lattice_.nodes[at(print.from)].position, to = lattice_.nodes[at(print.to)].position;
+  const Vec3 from = lattice_.nodes[print.from].position, to = lattice_.nodes[print.to].position;
   const Vec3 along = to - from;
   return {from, to - std::min(1.0, limits_.joint / along.norm()) * along, 0.5 * limits_.strut_diameter};
 }

@@ -33,18 +33,18 @@ class CubeGrid {
   using Inside = std::function<bool(const Vec3&)>;
   LatticeFill fill(const Inside& inside) const {
     Lattice all;
-    std::vector<int> index(static_cast<std::size_t>(count(0) * count(1) * count(2)), -1);
+    std::vector<int> index(count(0) * count(1) * count(2), -1);
     for (int n = 0; n < static_cast<int>(index.size()); ++n) {
       const Vec3 p = node(n);
       if (!inside(p)) continue;
-      index[static_cast<std::size_t>(n)] = static_cast<int>(all.nodes.size());
+      index[n] = static_cast<int>(all.nodes.size());
       all.nodes.push_back({p, n < count(0) * count(1)});
     }
     const int stride[] = {1, count(0), count(0) * count(1)};
     for (int n = 0; n < static_cast<int>(index.size()); ++n)
       for (int k = 0; k < 3; ++k) {
         if (n / stride[k] % count(k) + 1 >= count(k)) continue;
-        const int a = index[static_cast<std::size_t>(n)], b = index[static_cast<std::size_t>(n + stride[k])];
+        const int a = index[n], b = index[n + stride[k]];
         if (a >= 0 && b >= 0 && inside(0.5 * (node(n) + node(n + stride[k])))) all.struts.push_back({a, b});
       }
     return connected(all);
@@ -60,9 +60,8 @@ class CubeGrid {
   // Without what no strut connects to the table.
   static LatticeFill connected(const Lattice& all) {
     std::vector<bool> keep(all.nodes.size());
-    for (const auto& [a, b] : all.struts)
-      keep[static_cast<std::size_t>(a)] = keep[static_cast<std::size_t>(b)] = true;
-    for (const int n : hanging_nodes(all)) keep[static_cast<std::size_t>(n)] = false;
+    for (const auto& [a, b] : all.struts) keep[a] = keep[b] = true;
+    for (const int n : hanging_nodes(all)) keep[n] = false;
     LatticeFill result;
     std::vector<int> index(all.nodes.size(), -1);
     for (std::size_t n = 0; n < all.nodes.size(); ++n) {
@@ -74,9 +73,7 @@ class CubeGrid {
       result.lattice.nodes.push_back(all.nodes[n]);
     }
     for (const auto& [a, b] : all.struts)
-      if (keep[static_cast<std::size_t>(a)] && keep[static_cast<std::size_t>(b)])
-        result.lattice.struts.push_back(
-            {index[static_cast<std::size_t>(a)], index[static_cast<std::size_t>(b)]});
+      if (keep[a] && keep[b]) result.lattice.struts.push_back({index[a], index[b]});
     return result;
   }
 

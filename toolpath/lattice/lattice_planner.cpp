@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kSameAxis = 1e-9;  // [rad], axes come from one list
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 void check(const LatticePlan& plan) {
   check_positive("feed", plan.feed / kMillimetrePerMinute, "mm/min");
   check_positive("approach feed", plan.approach_feed / kMillimetrePerMinute, "mm/min");
@@ -41,11 +39,10 @@ class LatticePrint {
       builder_.travel(tool(print.from, print.axis, std::min(plan_.approach, print.out_from)));
       builder_.move(start, plan_.approach_feed);
     }
-    const double length = lattice_.length(at(print.strut));
+    const double length = lattice_.length(print.strut);
     builder_.print(tool(print.to, print.axis), plan_.feed, strand_area(plan_.limits.strut_diameter) * length);
     builder_.dwell(plan_.dwell);
-    for (const int node : {print.from, print.to})
-      top_ = std::max(top_, lattice_.nodes[at(node)].position.z());
+    for (const int node : {print.from, print.to}) top_ = std::max(top_, lattice_.nodes[node].position.z());
     printed_ += length;
     last_ = &print;
   }
@@ -58,7 +55,7 @@ class LatticePrint {
 
  private:
   Pose tool(int node, const Vec3& axis, double out = 0) const {
-    const LatticeNode& n = lattice_.nodes[at(node)];
+    const LatticeNode& n = lattice_.nodes[node];
     return tool_at(tip_at(n, axis, plan_.limits.strut_diameter, plan_.limits.ground_gap), axis, out);
   }
 

@@ -16,8 +16,6 @@ namespace {
 
 constexpr int kLookedAt = 16;  // candidates that an error chooses from
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 // The frame while it is taken apart.
 class Disassembly {
  public:
@@ -25,7 +23,7 @@ class Disassembly {
       : lattice_(lattice), limits_(limits), access_(lattice, limits), touching_(lattice.nodes.size()) {
     for (int s = 0; s < static_cast<int>(lattice.struts.size()); ++s) {
       standing_.push_back(s);
-      for (const int node : lattice.struts[at(s)]) touching_[at(node)].push_back(s);
+      for (const int node : lattice.struts[s]) touching_[node].push_back(s);
     }
     is_standing_.assign(standing_.size(), true);
   }
@@ -55,14 +53,12 @@ class Disassembly {
   std::vector<Candidate> last_ones() const {
     std::vector<Candidate> candidates;
     for (const int s : standing_) {
-      const auto& [a, b] = lattice_.struts[at(s)];
-      const double z_a = lattice_.nodes[at(a)].position.z(), z_b = lattice_.nodes[at(b)].position.z();
+      const auto& [a, b] = lattice_.struts[s];
+      const double z_a = lattice_.nodes[a].position.z(), z_b = lattice_.nodes[b].position.z();
       for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
         if (!anchored(from, s)) continue;
         const double travel =
-            next_from_ < 0
-                ? 0
-                : (lattice_.nodes[at(to)].position - lattice_.nodes[at(next_from_)].position).norm();
+            next_from_ < 0 ? 0 : (lattice_.nodes[to].position - lattice_.nodes[next_from_].position).norm();
         candidates.push_back({s, from, to, std::lround(to_um(std::max(z_a, z_b))),
                               std::lround(to_um(std::min(z_a, z_b))), travel});
       }
@@ -78,9 +74,9 @@ class Disassembly {
   }
 
   bool anchored(int node, int without) const {
-    if (lattice_.nodes[at(node)].grounded) return true;
-    return std::any_of(touching_[at(node)].begin(), touching_[at(node)].end(),
-                       [&](int s) { return s != without && is_standing_[at(s)]; });
+    if (lattice_.nodes[node].grounded) return true;
+    return std::any_of(touching_[node].begin(), touching_[node].end(),
+                       [&](int s) { return s != without && is_standing_[s]; });
   }
 
   bool take_clear(const std::vector<Candidate>& candidates, StrutPrint& print) {
@@ -126,11 +122,10 @@ class Disassembly {
   }
 
   std::string reason(int strut, const StrutAccess::Obstacle& obstacle) const {
-    const auto& [a, b] = lattice_.struts[at(strut)];
-    const std::string which =
-        fmt::format("strut {} from {} to {}: no tool axis within {:g} deg of vertical is ", strut,
-                    in_mm(lattice_.nodes[at(a)].position), in_mm(lattice_.nodes[at(b)].position),
-                    to_deg(limits_.tilt_max));
+    const auto& [a, b] = lattice_.struts[strut];
+    const std::string which = fmt::format(
+        "strut {} from {} to {}: no tool axis within {:g} deg of vertical is ", strut,
+        in_mm(lattice_.nodes[a].position), in_mm(lattice_.nodes[b].position), to_deg(limits_.tilt_max));
     if (!std::isfinite(obstacle.distance)) return which + "above the table and in reach";
     const std::string near =
         obstacle.strut == strut ? "the strand itself" : fmt::format("strut {}", obstacle.strut);
@@ -139,11 +134,11 @@ class Disassembly {
   }
 
   void take(int strut) {
-    is_standing_[at(strut)] = false;
+    is_standing_[strut] = false;
     standing_.erase(std::lower_bound(standing_.begin(), standing_.end(), strut));
   }
   void put_back(int strut) {
-    is_standing_[at(strut)] = true;
+    is_standing_[strut] = true;
     standing_.insert(std::lower_bound(standing_.begin(), standing_.end(), strut), strut);
   }
 
@@ -152,19 +147,19 @@ class Disassembly {
     std::vector<int> open;
     std::size_t count = 0;
     const auto reach = [&](int s) {
-      if (reached[at(s)] || !is_standing_[at(s)]) return;
-      reached[at(s)] = true;
+      if (reached[s] || !is_standing_[s]) return;
+      reached[s] = true;
       ++count;
       open.push_back(s);
     };
     for (const int s : standing_)
-      for (const int node : lattice_.struts[at(s)])
-        if (lattice_.nodes[at(node)].grounded) reach(s);
+      for (const int node : lattice_.struts[s])
+        if (lattice_.nodes[node].grounded) reach(s);
     while (!open.empty()) {
       const int s = open.back();
       open.pop_back();
-      for (const int node : lattice_.struts[at(s)])
-        for (const int other : touching_[at(node)]) reach(other);
+      for (const int node : lattice_.struts[s])
+        for (const int other : touching_[node]) reach(other);
     }
     return count == standing_.size();
   }

@@ -32,8 +32,7 @@ class Stretch {
   }
   double length() const { return arc_.back(); }
   Vec3 at(double s) const {
-    const auto next = std::upper_bound(arc_.begin() + 1, arc_.end() - 1, s) - arc_.begin();
-    const auto i = static_cast<std::size_t>(next);
+    const auto i = std::upper_bound(arc_.begin() + 1, arc_.end() - 1, s) - arc_.begin();
     return points_[i - 1] + (s - arc_[i - 1]) / (arc_[i] - arc_[i - 1]) * (points_[i] - points_[i - 1]);
   }
   /// Where the curve must be looked at between two arc lengths: quarters, for an S has its chord through the

@@ -29,17 +29,12 @@ class Slicer {
   }
 
  private:
-  std::size_t corner(int t, int k) const {
-    return static_cast<std::size_t>(
-        mesh_.triangles()[static_cast<std::size_t>(t)][static_cast<std::size_t>(k % 3)]);
-  }
+  int corner(int t, int k) const { return mesh_.triangles()[t][k % 3]; }
   bool above(int t, int k) const { return heights_[corner(t, k)] >= 0; }
   bool crossed(int t) const {
-    return !seen_[static_cast<std::size_t>(t)] && (above(t, 0) != above(t, 1) || above(t, 1) != above(t, 2));
+    return !seen_[t] && (above(t, 0) != above(t, 1) || above(t, 1) != above(t, 2));
   }
-  int neighbour(int t, int side) const {
-    return mesh_.neighbours()[static_cast<std::size_t>(t)][static_cast<std::size_t>(side)];
-  }
+  int neighbour(int t, int side) const { return mesh_.neighbours()[t][side]; }
   // Side that runs from above to below, through which the line comes in, and the other.
   int entry(int t) const { return side_where(t, true); }
   int exit(int t) const { return side_where(t, false); }
@@ -50,7 +45,7 @@ class Slicer {
   }
   Vec3 crossing(int t, int side) const {
     // Always from the upper to the lower end, so that both triangles of an edge compute the same point.
-    std::size_t high = corner(t, side), low = corner(t, side + 1);
+    int high = corner(t, side), low = corner(t, side + 1);
     if (heights_[high] < heights_[low]) std::swap(high, low);
     const double s = heights_[high] / (heights_[high] - heights_[low]);
     return mesh_.vertices()[high] + s * (mesh_.vertices()[low] - mesh_.vertices()[high]);
@@ -60,7 +55,7 @@ class Slicer {
     SectionLine line;
     line.points.push_back(crossing(t, entry(t)));
     while (t >= 0 && crossed(t)) {
-      seen_[static_cast<std::size_t>(t)] = true;
+      seen_[t] = true;
       line.points.push_back(crossing(t, exit(t)));
       line.triangles.push_back(t);
       t = neighbour(t, exit(t));

@@ -16,16 +16,14 @@ std::vector<std::vector<Vec3>> facing_runs(const Mesh& mesh, const SectionLine& 
   const std::size_t count = line.triangles.size();
   std::vector<bool> faces;
   for (const int t : line.triangles) {
-    const auto& [a, b, c] = mesh.triangles()[static_cast<std::size_t>(t)];
-    const Vec3& p = mesh.vertices()[static_cast<std::size_t>(a)];
-    const Vec3 n = (mesh.vertices()[static_cast<std::size_t>(b)] - p)
-                       .cross(mesh.vertices()[static_cast<std::size_t>(c)] - p);
+    const auto& [a, b, c] = mesh.triangles()[t];
+    const Vec3& p = mesh.vertices()[a];
+    const Vec3 n = (mesh.vertices()[b] - p).cross(mesh.vertices()[c] - p);
     faces.push_back(n.dot(up) > 0);
   }
   const bool closed = line.closed();
   const auto outside = std::find(faces.begin(), faces.end(), false);
-  const std::size_t shift =
-      closed && outside != faces.end() ? static_cast<std::size_t>(outside - faces.begin()) : 0;
+  const std::size_t shift = closed && outside != faces.end() ? outside - faces.begin() : 0;
   std::vector<std::vector<Vec3>> runs;
   bool inside = false;
   for (std::size_t n = 0; n < count; ++n) {

@@ -82,14 +82,16 @@ XMLElement& add_model(tinyxml2::XMLDocument& document, const std::string& name, 
 
 std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built, const Pose& X_WT,
                        const MujocoOptions& options) {
-  return machine.is_chain() ? write_chain_mjcf(machine, as_built, options)
-                            : write_hexapod_mjcf(machine, as_built, X_WT, options);
+  return machine.visit(
+      [&](const machine::HexapodModel&) { return write_hexapod_mjcf(machine, as_built, X_WT, options); },
+      [&](const machine::ChainModel&) { return write_chain_mjcf(machine, as_built, options); });
 }
 
 std::unique_ptr<Plant> make_mujoco_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const MujocoOptions& options) {
-  return machine.is_chain() ? make_mujoco_chain(machine, as_built, options)
-                            : make_mujoco_hexapod(machine, as_built, options);
+  return machine.visit(
+      [&](const machine::HexapodModel&) { return make_mujoco_hexapod(machine, as_built, options); },
+      [&](const machine::ChainModel&) { return make_mujoco_chain(machine, as_built, options); });
 }
 
 }  // namespace understudy::sim

@@ -13,8 +13,9 @@ constexpr int kRounds = 4;
 
 QuasistaticMachine::QuasistaticMachine(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                        const QuasistaticOptions& options)
-    : mechanics_(machine.is_chain() ? make_chain_mechanics(machine, as_built, options)
-                                    : make_hexapod_mechanics(machine, as_built, options)),
+    : mechanics_(machine.visit(
+          [&](const machine::HexapodModel&) { return make_hexapod_mechanics(machine, as_built, options); },
+          [&](const machine::ChainModel&) { return make_chain_mechanics(machine, as_built, options); })),
       drives_(machine.drives),
       plays_(mechanics_->axis_count()),
       behind_(plays_),

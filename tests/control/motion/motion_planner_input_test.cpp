@@ -47,11 +47,11 @@ TEST(MotionPlannerInput, UnreachablePoseNamesLineStrutAndByHowMuch) {
 TEST(MotionPlannerInput, PoseOutOfReachBetweenReachableOnesIsRefused) {
   const HexapodForTest hexapod;
   const auto mechanism = hexapod.with_limits(limits_of_turning(0.188));
-  MotionPlanner planner(*mechanism, hexapod.machine.X_WB, hexapod.limits, hexapod.X_WT_home, 0);
+  MotionPlanner planner(*mechanism, hexapod.machine.X_WB, hexapod.limits, {hexapod.X_WT_home});
   const Pose X_WT = hexapod.at(Vec3::Zero(), {0, 0, from_deg(52)});
   EXPECT_THAT(refusal(planner, hexapod.print_to(X_WT, 0.01, 3)), HasSubstr("mm, shorter than 188.0"));
   const auto wider = hexapod.with_limits(limits_of_turning(0.187));
-  MotionPlanner free_planner(*wider, hexapod.machine.X_WB, hexapod.limits, hexapod.X_WT_home, 0);
+  MotionPlanner free_planner(*wider, hexapod.machine.X_WB, hexapod.limits, {hexapod.X_WT_home});
   EXPECT_EQ(refusal(free_planner, hexapod.print_to(X_WT, 0.01, 3)), "accepted");
 }
 

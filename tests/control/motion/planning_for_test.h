@@ -56,7 +56,7 @@ struct HexapodForTest {
   }
 
   MotionPlanner planner(double start_time = 0, PoseCheck check = PoseCheck::limits) const {
-    return {*mechanism, machine.X_WB, limits, X_WT_home, start_time, check};
+    return {*mechanism, machine.X_WB, limits, MotionStart{X_WT_home, start_time}, check};
   }
 };
 

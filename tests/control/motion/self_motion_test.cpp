@@ -35,7 +35,7 @@ class SelfMotion : public ::testing::Test {
         limits_(motion_limits(machine_)) {}
 
   std::vector<PlannedPoint> plan(const std::vector<Step>& steps) {
-    MotionPlanner planner(*mechanism_, machine_.X_WB, limits_, machine_.X_WB * machine_.X_BT_home, 0);
+    MotionPlanner planner(*mechanism_, machine_.X_WB, limits_, {machine_.X_WB * machine_.X_BT_home});
     std::vector<PlannedPoint> points;
     PlannedPoint point;
     for (const Step& step : steps) {

@@ -251,30 +251,5 @@ TEST(Angles, OfManyPairsAreThoseOfTheCLibrary) {
   }
 }
 
-TEST(ArmBatch, IsTheSingleSolutionToTheByteForAnyNumberOfThreads) {
-  Random random(7, "arm batch");
-  std::vector<Pose> poses;
-  for (int n = 0; n < 5000; ++n) {
-    ArmAxes q = random_axes(random);
-    if (n % 50 == 0) q[4] = 0;
-    poses.push_back(tool_by_table(q));
-    if (n % 70 == 0) poses.back().translation().x() += 1;
-    if (n % 90 == 0) poses.back().linear()(0, 0) = kNaN;
-  }
-  for (const int threads : {0, 1, 2, 3, 7}) {
-    std::vector<ArmSolutions> all(poses.size());
-    arm_inverse_batch(geometry(), poses, all, threads);
-    for (std::size_t n = 0; n < poses.size(); ++n) {
-      ArmSolutions one;
-      one.count = arm_branches(geometry(), poses[n], one.all);
-      ASSERT_EQ(one.count, all[n].count);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(one.count); ++k) {
-        EXPECT_EQ(one.all[k].axes, all[n].all[k].axes);
-        EXPECT_EQ(one.all[k].branch, all[n].all[k].branch);
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace understudy::kinematics

@@ -1,6 +1,6 @@
 // The four test paths of Yu 2023, section 4 (figure 6, table 2), see
 // docs/reference.md#finishing-stage.
-#include "kinematics/chain/finishing_follower.h"
+#include "tests/kinematics/chain/finishing_follower.h"
 
 #include <gtest/gtest.h>
 

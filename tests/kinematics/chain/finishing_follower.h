@@ -1,7 +1,8 @@
 // Follows a path of poses point by point with redundant axes (Yu 2023, figure 5): the way to the next point
 // plus a PI controller's answer to the error left at the last one, made into axis steps of the smallest norm.
 // The paper stops there. `corrections` adds Newton steps at each point, which remove what the first step's
-// linearisation leaves.
+// linearisation leaves. Here, to reproduce the paper's figures with the product's minimum_norm_rates: the
+// product itself plans with Mechanism::inverse.
 #pragma once
 
 #include <array>

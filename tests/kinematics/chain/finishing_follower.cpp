@@ -1,4 +1,4 @@
-#include "kinematics/chain/finishing_follower.h"
+#include "tests/kinematics/chain/finishing_follower.h"
 
 #include <algorithm>
 #include <cmath>

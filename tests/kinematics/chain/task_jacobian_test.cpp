@@ -1,0 +1,64 @@
+#include "kinematics/chain/task_jacobian.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/guard/cycle_guard.h"
+
+namespace understudy::kinematics {
+namespace {
+
+// Three dimensions of task by four axes: two axes share the first, one makes each of the others.
+TaskJacobian four_axes(double last) {
+  TaskJacobian J = TaskJacobian::Zero(3, 4);
+  J << 1, 1, 0, 0,  //
+      0, 0, 2, 0,   //
+      0, 0, 0, last;
+  return J;
+}
+
+TEST(TaskJacobian, EqualAxesShareAVelocityEqually) {
+  AxisColumn y;
+  ASSERT_TRUE(solve_by_singular_values(four_axes(4), Eigen::Vector3d(1, 1, 1), y));
+  // By hand: of all y with y1 + y2 = 1 the shortest has two halves. Rounding of numbers near 1.
+  EXPECT_TRUE(y.isApprox(Eigen::Vector4d(0.5, 0.5, 0.5, 0.25), 1e-14)) << y.transpose();
+}
+
+TEST(TaskJacobian, ALostDirectionIsLeftOutAndSaid) {
+  AxisColumn y;
+  EXPECT_FALSE(solve_by_singular_values(four_axes(1e-10), Eigen::Vector3d(1, 1, 1), y));
+  EXPECT_TRUE(y.isApprox(Eigen::Vector4d(0.5, 0.5, 0.5, 0), 1e-9)) << y.transpose();
+}
+
+TEST(TaskJacobian, RowsAreSolvedColumnByColumn) {
+  TaskRows wanted = TaskRows::Zero(3, 6);
+  wanted.col(0) << 1, 1, 1;
+  wanted.col(5) << 0, -2, 0;
+  AxisRows y;
+  ASSERT_TRUE(solve_by_singular_values(four_axes(4), wanted, y));
+  EXPECT_TRUE(y.col(0).isApprox(Eigen::Vector4d(0.5, 0.5, 0.5, 0.25), 1e-14));
+  EXPECT_TRUE(y.col(5).isApprox(Eigen::Vector4d(0, 0, -1, 0), 1e-14));
+  EXPECT_LE(y.middleCols(1, 4).norm(), 1e-14);
+}
+
+TEST(TaskJacobian, ConditionNumberIsTheRatioOfSingularValuesUpToItsBound) {
+  // Singular values of four_axes: sqrt(2), 2 and `last`.
+  EXPECT_NEAR(condition_number(four_axes(4), 1e7), 4 / std::sqrt(2.0), 1e-14);
+  EXPECT_EQ(condition_number(four_axes(1e-10), 1e7), 1e7);
+  const TaskJacobian fewer = TaskJacobian::Identity(3, 2);
+  EXPECT_EQ(condition_number(fewer, 1e7), 1e7);
+}
+
+TEST(TaskJacobian, NothingAllocates) {
+  const TaskJacobian J = four_axes(1e-10);
+  const TaskColumn wanted = Eigen::Vector3d(1, 1, 1);
+  AxisColumn y;
+  const long before = allocations();
+  const bool full_rank = solve_by_singular_values(J, wanted, y);
+  EXPECT_EQ(allocations() - before, 0);
+  EXPECT_FALSE(full_rank);
+}
+
+}  // namespace
+}  // namespace understudy::kinematics
