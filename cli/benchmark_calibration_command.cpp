@@ -48,10 +48,10 @@ calibration::MeasurementNoise noise_of(const std::string& word) {
   return {from_mm(um * 1e-3), mrad * 1e-3};
 }
 
-vision::SightMethod method_of(const std::string& word) {
-  if (word == "polyline") return vision::SightMethod::layer_polyline;
-  if (word == "line") return vision::SightMethod::layer_line;
-  if (word == "pinhole") return vision::SightMethod::pinhole;
+vision::ViewRayMethod method_of(const std::string& word) {
+  if (word == "polyline") return vision::ViewRayMethod::layer_polyline;
+  if (word == "line") return vision::ViewRayMethod::layer_line;
+  if (word == "pinhole") return vision::ViewRayMethod::pinhole;
   refuse("--method", word, "polyline line pinhole");
 }
 

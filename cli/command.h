@@ -20,6 +20,7 @@ void add_sweep(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_kinematics(CLI::App& app, Action& action);  ///< axes, poses
 void add_calibrate(CLI::App& app, Action& action);
+void add_measure(CLI::App& app, Action& action);  ///< board, targets, pose
 void add_sample_poses(CLI::App& app, Action& action);
 void add_render(CLI::App& app, Action& action);
 void add_workspace(CLI::App& app, Action& action);

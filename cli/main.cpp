@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
   cli::add_plan(app, action);
   cli::add_kinematics(app, action);
   cli::add_calibrate(app, action);
+  cli::add_measure(app, action);
   cli::add_export(app, action);
   cli::add_inspection(app, action);
   check_first_word(app, argc, argv);

@@ -1,4 +1,6 @@
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,8 +11,10 @@
 #include "cli/machine_option.h"
 #include "cli/noise_option.h"
 #include "cli/progress.h"
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "report/picture/png.h"
 #include "studies/calibration/sample_poses.h"
 
 namespace understudy::cli {
@@ -19,8 +23,20 @@ namespace {
 struct SampleCall {
   studies::SamplePosesRequest request;
   std::vector<double> noise;
-  std::string as_built, output, from = "noise";
+  std::string as_built, output, pictures, from = "noise";
 };
+
+/// The pictures, what is believed, and under truth/ what is.
+void write_record(const std::filesystem::path& folder, const studies::PictureRecord& record,
+                  const machine::MachineDescription& machine) {
+  const std::string by = "by: " + command_line();
+  write_file(folder / "rig.yaml", vision::rig_yaml(record.rig, "the designed measuring set-up, " + by));
+  write_file(folder / "commanded.csv", calibration::measurements_csv(record.commanded, machine, by));
+  vision::RigDescription built = record.rig;
+  built.rig.cameras = record.built.cameras;
+  write_file(folder / "truth/rig.yaml", vision::rig_yaml(built, "the cameras as they were built, " + by));
+  write_file(folder / "truth/poses.csv", calibration::measurements_csv(record.truth, machine, by));
+}
 
 int run_sample(const SampleCall& call) {
   studies::SamplePosesRequest request = call.request;
@@ -28,16 +44,32 @@ int run_sample(const SampleCall& call) {
   if (!call.as_built.empty()) request.as_built = call.as_built;
   request.from_pixels = call.from == "pixels";
   const auto machine = machine::load_machine(request.machine);
+  if (!call.pictures.empty() && !request.from_pixels)
+    throw InputError("--pictures needs --from pixels: drawn noise has no pictures");
+  std::optional<OutputFolder> folder;
+  studies::PictureRecord record;
+  if (!call.pictures.empty()) {
+    folder.emplace(call.pictures, "rig.yaml");
+    for (const char* inner : {"boards", "poses", "truth"})
+      std::filesystem::create_directories(folder->path() / inner);
+    record.keep = [&](const std::string& name, const Image& picture) {
+      stop_if_interrupted();
+      write_file(folder->path() / name, report::encode_png(picture));
+    };
+  }
   calibration::Measurements sample;
   {
     ProgressLine line;
-    sample = studies::sample_poses(request, machine,
-                                   [&](double share) { line.show(share, "photographing boards"); });
+    sample = studies::sample_poses(
+        request, machine, [&](double share) { line.show(share, "photographing boards"); }, &record);
   }
   stop_if_interrupted();
+  if (folder) write_record(folder->path(), record, machine);
   write_file(call.output, calibration::measurements_csv(sample, machine, "by: " + command_line()));
+  if (folder) folder->commit();
   fmt::print("{}: {} poses{}\n", call.output, sample.poses.size(),
              request.as_built ? ", measured on the twin" : "; replace them by the measured ones");
+  if (folder) fmt::print("pictures: {}\n", call.pictures);
   return kGood;
 }
 
@@ -64,6 +96,10 @@ void add_sample_poses(CLI::App& app, Action& action) {
           "that pictures of chessboards have calibrated")
       ->check(CLI::IsMember({"noise", "pixels"}))
       ->capture_default_str();
+  command->add_option(
+      "--pictures", call->pictures,
+      "folder for the pictures, whole, with rig.yaml and commanded.csv as `understudy measure` takes "
+      "them, and the truth beside them; with --from pixels");
   command->add_option("--noise", call->noise, "um,mrad: 1 sigma of a measured pose on each axis; else 20,0.2")
       ->delimiter(',')
       ->expected(2);

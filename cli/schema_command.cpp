@@ -14,6 +14,7 @@
 #include "regression/scenario_file.h"
 #include "report/json_schema.h"
 #include "sim/as_built/as_built_file.h"
+#include "vision/boards/rig_file.h"
 
 namespace understudy::cli {
 namespace {
@@ -38,6 +39,8 @@ const Kind kKinds[] = {
      [](const SchemaRequest& r) { regression::load_scenario(r.file); }},
     {"as-built", "Understudy: machine as built", sim::as_built_schema,
      [](const SchemaRequest& r) { sim::make_as_built(machine::load_machine(r.machine), r.file, 1); }},
+    {"rig", "Understudy: two cameras that measure a machine", vision::rig_schema,
+     [](const SchemaRequest& r) { vision::load_rig(r.file); }},
 };
 
 int run_schema(const Kind& kind, const SchemaRequest& request) {

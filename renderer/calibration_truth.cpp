@@ -5,31 +5,12 @@
 
 namespace understudy::renderer {
 
-BoardScene board_scene(const CalibrationRig& rig, int camera, int layer, const BoardPlacement& placement) {
-  BoardScene s;
-  const MountedCamera& mounted = rig.cameras[static_cast<std::size_t>(camera)];
-  s.camera = mounted.camera;
-  s.board = rig.board;
-  s.X_CG = mounted.X_WC.inverse() * rig.X_WG(camera, layer);
-  s.placement = placement;
-  return s;
-}
-
-TargetScene target_scene(const CalibrationRig& rig, int camera, const Pose& X_WT) {
-  TargetScene s;
-  const MountedCamera& mounted = rig.cameras[static_cast<std::size_t>(camera)];
-  s.camera = mounted.camera;
-  s.radius = rig.target_radius;
-  const Pose X_CT = mounted.X_WC.inverse() * X_WT;
-  for (const Vec3& p_T : rig.targets) s.centres_C.push_back(X_CT * p_T);
-  return s;
-}
-
 std::vector<std::optional<Vec2>> true_corners(const BoardScene& scene) {
   std::vector<std::optional<Vec2>> pixels;
-  for (int r = 0; r < scene.board.rows; ++r) {
-    for (int c = 0; c < scene.board.columns; ++c) {
-      pixels.push_back(scene.camera.project(scene.X_CG * scene.placement.moved(scene.board.corner(c, r))));
+  for (int r = 0; r < scene.rows; ++r) {
+    for (int c = 0; c < scene.columns; ++c) {
+      const Vec3 p_G = scene.square * Vec3(c - 0.5 * (scene.columns - 1), r - 0.5 * (scene.rows - 1), 0);
+      pixels.push_back(scene.camera.project(scene.X_CG * p_G));
     }
   }
   return pixels;

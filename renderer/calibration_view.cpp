@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "renderer/gl_context.h"
 #include "renderer/sensor.h"
 #include "renderer/shaders.h"
@@ -41,12 +42,12 @@ void check(const Camera& c, const Exposure& e) {
 
 void check(const BoardScene& s) {
   check(s.camera, s.exposure);
-  check(s.board.columns >= 2 && s.board.columns <= 200, "board columns", s.board.columns, "in 2..200");
-  check(s.board.rows >= 2 && s.board.rows <= 200, "board rows", s.board.rows, "in 2..200");
-  check(s.board.square > 0, "board square [m]", s.board.square, "positive");
-  check(s.board.margin >= 0, "board margin [m]", s.board.margin, "0 or more");
+  check(s.columns >= 2 && s.columns <= 200, "board columns", s.columns, "in 2..200");
+  check(s.rows >= 2 && s.rows <= 200, "board rows", s.rows, "in 2..200");
+  check(s.square > 0, "board square [m]", s.square, "positive");
+  check(s.margin >= 0, "board margin [m]", s.margin, "0 or more");
   check(s.X_CG.matrix().allFinite(), "board pose", s.X_CG.translation().x(), "finite");
-  const double squares_px = s.camera.focal_px * s.board.square / std::max(s.X_CG.translation().z(), 1e-9);
+  const double squares_px = s.camera.focal_px * s.square / std::max(s.X_CG.translation().z(), 1e-9);
   check(squares_px > 12 * s.exposure.blur_px, "board square [px]", squares_px, "above 12 blurs");
 }
 
@@ -68,10 +69,8 @@ Region clipped(const Region& r, const Camera& camera) {
 
 /// Ray (x, y, 1) of the camera to the board's plane, in squares from the outer corner of the first square.
 Mat3 ray_to_squares(const BoardScene& s) {
-  const BoardPlacement& p = s.placement;
-  const Mat3 R = s.X_CG.linear() * exp_rotation(p.rotation) * (1 + p.scale) * s.board.square;
-  const Vec3 origin = s.X_CG * p.offset;
-  const Vec3 first = origin - R.col(0) * 0.5 * (s.board.columns + 1) - R.col(1) * 0.5 * (s.board.rows + 1);
+  const Mat3 R = s.X_CG.linear() * s.square;
+  const Vec3 first = s.X_CG.translation() - R.col(0) * 0.5 * (s.columns + 1) - R.col(1) * 0.5 * (s.rows + 1);
   Mat3 from_squares;
   from_squares << R.col(0), R.col(1), first;
   return from_squares.inverse();
@@ -142,9 +141,8 @@ Image CalibrationView::render(const BoardScene& scene, const Region& region) {
   const Eigen::Matrix3f to_grid = ray_to_squares(scene).cast<float>();
   gl.Uniform1i(s.program.uniform("spheres"), 0);
   gl.UniformMatrix3fv(s.program.uniform("to_grid"), 1, GL_FALSE, to_grid.data());
-  gl.Uniform3f(s.program.uniform("sheet"), static_cast<float>(scene.board.columns + 1),
-               static_cast<float>(scene.board.rows + 1),
-               static_cast<float>(scene.board.margin / scene.board.square));
+  gl.Uniform3f(s.program.uniform("sheet"), static_cast<float>(scene.columns + 1),
+               static_cast<float>(scene.rows + 1), static_cast<float>(scene.margin / scene.square));
   return s.shoot(scene.camera, scene.exposure, read_out);
 }
 

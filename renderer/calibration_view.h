@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/calibration_rig.h"
+#include "core/image.h"
 
 namespace understudy::renderer {
 
@@ -23,12 +23,15 @@ struct Exposure {
   std::uint64_t seed = 0, frame = 0;  ///< of shot and read noise
 };
 
+/// A chessboard as it was printed and stands. Frame G: origin in the middle of the inner corners, x along a
+/// row to the right, y down, z away from the camera.
 struct BoardScene {
   Camera camera;
   Exposure exposure;
-  Board board;
-  Pose X_CG = Pose::Identity();  ///< where the board is meant to be, camera frame
-  BoardPlacement placement;      ///< and how far it is from there
+  int columns = 0, rows = 0;     ///< of inner corners
+  double square = 0;             ///< [m], side
+  double margin = 0;             ///< [m] of white paper around the squares
+  Pose X_CG = Pose::Identity();  ///< of the sheet, camera frame
   double ink = 0.1;              ///< reflectance; paper has 1
   double background = 0.3;       ///< reflectance of what is behind the sheet
 };
@@ -40,9 +43,6 @@ struct TargetScene {
   double radius = 0;            ///< [m]
   double albedo = 0.15;         ///< of the spheres, lit from above; the backdrop has 1
 };
-
-BoardScene board_scene(const CalibrationRig& rig, int camera, int layer, const BoardPlacement& placement);
-TargetScene target_scene(const CalibrationRig& rig, int camera, const Pose& X_WT);
 
 /// Owns an OSMesa context; use from one thread. Throws MachineError when no context can be made, InputError
 /// for a scene that has no picture. Each pixel is the mean of a picture whose edges are blurred in closed
@@ -61,7 +61,7 @@ class CalibrationView {
   std::unique_ptr<State> state_;
 };
 
-/// True pixels of the board's inner corners, in the order of Board::corner; nothing for those behind the
+/// True pixels of the board's inner corners, row by row from the upper left; nothing for those behind the
 /// camera. Those outside the sensor are reported as well.
 std::vector<std::optional<Vec2>> true_corners(const BoardScene& scene);
 

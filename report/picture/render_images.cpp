@@ -14,6 +14,7 @@
 #include "report/picture/scene_pictures.h"
 #include "sim/as_built/as_built.h"
 #include "sim/sensors/microscope.h"
+#include "studies/calibration/rig_scenes.h"
 
 namespace understudy::report {
 namespace {
@@ -63,17 +64,18 @@ std::string laser(const RenderRequest& request, const MachineDescription& machin
   return encode_png(microscope.expose(X_WT, whole(camera), 1));
 }
 
-CalibrationRig rig_of(const RenderRequest& request, const MachineDescription& machine) {
+vision::CalibrationRig rig_of(const RenderRequest& request, const MachineDescription& machine) {
   if (request.camera < 0 || request.camera > 1)
     throw InputError(fmt::format("--camera {} is not 0 or 1", request.camera));
-  return default_calibration_rig((machine.X_WB * machine.X_BT_home).translation());
+  return vision::default_calibration_rig((machine.X_WB * machine.X_BT_home).translation());
 }
 
 std::string chessboard(const RenderRequest& request, const MachineDescription& machine, ordered_json& truth) {
-  const CalibrationRig rig = rig_of(request, machine);
+  const vision::CalibrationRig rig = rig_of(request, machine);
   if (request.layer < 0 || request.layer >= rig.layers)
     throw InputError(fmt::format("--layer {} is outside 0 to {}", request.layer, rig.layers - 1));
-  renderer::BoardScene scene = renderer::board_scene(rig, request.camera, request.layer, {});
+  renderer::BoardScene scene =
+      studies::board_scene(rig, studies::built_as_designed(rig), request.camera, request.layer);
   scene.exposure.seed = request.seed;
   truth["camera"] = camera_value(scene.camera);
   truth["X_CG"] = pose_value(scene.X_CG);
@@ -87,8 +89,9 @@ std::string chessboard(const RenderRequest& request, const MachineDescription& m
 
 std::string targets(const RenderRequest& request, const MachineDescription& machine, const Pose& X_WT,
                     ordered_json& truth) {
-  const CalibrationRig rig = rig_of(request, machine);
-  renderer::TargetScene scene = renderer::target_scene(rig, request.camera, X_WT);
+  const vision::CalibrationRig rig = rig_of(request, machine);
+  renderer::TargetScene scene =
+      studies::target_scene(rig, studies::built_as_designed(rig), request.camera, X_WT);
   scene.exposure.seed = request.seed;
   truth["camera"] = camera_value(scene.camera);
   truth["X_WC"] = pose_value(rig.cameras[request.camera].X_WC);

@@ -14,16 +14,19 @@
 namespace understudy::studies {
 namespace {
 
-using vision::SightMethod;
+using vision::BoardPlacement;
+using vision::CalibrationRig;
+using vision::MountedCamera;
+using vision::ViewRayMethod;
 
-constexpr SightMethod kMethods[] = {SightMethod::layer_polyline, SightMethod::layer_line,
-                                    SightMethod::pinhole};
+constexpr ViewRayMethod kMethods[] = {ViewRayMethod::layer_polyline, ViewRayMethod::layer_line,
+                                      ViewRayMethod::pinhole};
 constexpr double kAxisKnown = 0.1;  // [px], 1 sigma of the principal point
 
 struct ReferenceRow {
   const char* name;
   double pixel;
-  BoardTolerance boards;
+  vision::BoardTolerance boards;
   double expected_um[3];  // in the order of kMethods; 0: not told
 };
 const ReferenceRow kReference[] = {
@@ -69,11 +72,11 @@ vision::CameraLayers layers_of(const CalibrationRig& designed, int camera, const
 
 }  // namespace
 
-double camera_study(const CameraStudySetting& setting, SightMethod method, int threads) {
-  const CalibrationRig designed = default_calibration_rig(Vec3(0, 0, 0.1));
+double camera_study(const CameraStudySetting& setting, ViewRayMethod method, int threads) {
+  const CalibrationRig designed = vision::default_calibration_rig(Vec3(0, 0, 0.1));
   const auto built = built_cameras(designed);
   const Vec3 middle = designed.cameras[0].X_WC * Vec3(0, 0, designed.middle_distance);
-  const vision::CalibrationUncertainty doubt{
+  const vision::CalibrationUncertainty uncertainty{
       .boards = setting.boards, .corner_px = setting.pixel, .principal_px = kAxisKnown, .replicas = 0};
   std::vector<double> squares(static_cast<std::size_t>(setting.draws), 0.0);
   in_parallel(squares.size(), threads, [&](std::size_t d) {
@@ -83,7 +86,7 @@ double camera_study(const CameraStudySetting& setting, SightMethod method, int t
       const auto k = static_cast<std::size_t>(i);
       layers[k] = layers_of(designed, i, built[k], setting, random);
     }
-    const auto model = vision::calibrate_stereo(method, layers, doubt);
+    const auto model = vision::calibrate_stereo(method, layers, uncertainty);
     for (int n = 0; n < setting.points; ++n) {
       Vec3 p_W = middle;
       for (Eigen::Index k = 0; k < 3; ++k) p_W[k] += random.uniform(-25e-3, 25e-3);

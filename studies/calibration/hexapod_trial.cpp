@@ -129,23 +129,24 @@ class HexapodTrials : public TrialRunner {
                   renderer::CalibrationView& view, Problem& problem, Trial& trial) const {
     const MeasuringStand& stand =
         condition.disturbance == Disturbance::boards ? *setting_.misplaced_stand : *setting_.stand;
-    std::vector<PixelPose> poses;
+    std::vector<CameraPose> poses;
     for (std::size_t j = 0; j < exact.size(); ++j) {
       const PoseSample& sample = exact[j];
       const auto expected = kinematics::forward(nominal_, commanded(sample), sample.X_BT);
       const std::uint64_t frame =
           hash_bits(setting_.seed + static_cast<std::uint64_t>(machine), 1000 * condition.poses + j);
-      poses.push_back(stand.measure(view, sample.X_BT, expected.X_BT, frame));
+      poses.push_back(stand.measure(view, machine_.X_WB * sample.X_BT, machine_.X_WB * expected.X_BT, frame));
     }
     take_out_frame(poses);
+    const Pose X_BW = machine_.X_WB.inverse();
     for (std::size_t j = 0; j < exact.size(); ++j) {
       if (!poses[j].ok()) {
         ++trial.lost_poses;
         continue;
       }
       PoseSample sample = exact[j];
-      sample.X_BT = poses[j].X_BT;
-      sample.covariance = poses[j].covariance;
+      sample.X_BT = X_BW * poses[j].X_WT;
+      sample.covariance = told_in(X_BW.linear(), poses[j].covariance);
       trial.beyond = std::max(trial.beyond, poses[j].beyond);
       problem.samples.push_back(sample);
     }

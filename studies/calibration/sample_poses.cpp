@@ -131,11 +131,12 @@ class Measurer {
   }
   const MeasuringStand* stand() const { return stand_.get(); }
 
-  /// False where the cameras find no pose. Its covariance is known when all poses are: finish().
-  bool measure(const Pose& X_BT_true, std::uint64_t frame, MeasuredPose& pose) {
+  /// Of the commanded `pose`, from pictures the `number`th, it makes the measured one; false where the
+  /// cameras find none. Its covariance is known when all poses are: finish().
+  bool measure(const Pose& X_BT_true, std::uint64_t number, MeasuredPose& pose) {
     if (stand_) {
-      const PixelPose seen = stand_->measure(*view_, X_BT_true, roughly(X_BT_true), frame);
-      pose.X_WT = X_WB_ * seen.X_BT;
+      const CameraPose seen = stand_->measure(*view_, X_WB_ * X_BT_true, pose.X_WT, number);
+      pose.X_WT = seen.X_WT;
       if (seen.ok()) seen_.push_back(seen);
       return seen.ok();
     }
@@ -151,30 +152,22 @@ class Measurer {
   void finish(Measurements& sample) {
     if (!stand_) return;
     sample.frame = take_out_frame(seen_);
-    for (std::size_t j = 0; j < seen_.size(); ++j)
-      sample.poses[j].covariance = told_in(X_WB_.linear(), seen_[j].covariance);
+    for (std::size_t j = 0; j < seen_.size(); ++j) sample.poses[j].covariance = seen_[j].covariance;
   }
 
  private:
-  /// An uncalibrated machine may miss by more than a target's size: somebody points at the targets.
-  Pose roughly(const Pose& X_BT) {
-    Twist e;
-    for (Eigen::Index k = 0; k < 6; ++k) e[k] = (k < 3 ? 1e-3 : 5e-3) * noise_.normal();  // [m], [rad]
-    return make_pose(Mat3(exp_rotation(e.tail<3>()) * X_BT.linear()), X_BT.translation() + e.head<3>());
-  }
-
   Pose X_WB_;
   Mat6 covariance_;
   Random noise_;
   std::unique_ptr<MeasuringStand> stand_;
   std::unique_ptr<renderer::CalibrationView> view_;
-  std::vector<PixelPose> seen_;
+  std::vector<CameraPose> seen_;
 };
 
 }  // namespace
 
 Measurements sample_poses(const SamplePosesRequest& request, const MachineDescription& machine,
-                          const std::function<void(double)>& progress) {
+                          const std::function<void(double)>& progress, PictureRecord* record) {
   check(request, machine);
   const auto mechanism = machine.make_mechanism();
   Measurements sample;
@@ -185,10 +178,13 @@ Measurements sample_poses(const SamplePosesRequest& request, const MachineDescri
   if (request.from_pixels) {
     StandOptions options;
     options.seed = request.seed;
+    if (record) options.keep = record->keep;
     stand = std::make_unique<MeasuringStand>(machine, options, 1, progress);
   }
+  if (record && stand) record->rig = stand->description(), record->built = stand->built();
+  Measurements commanded, truth;
   Measurer measurer(request, machine, std::move(stand));
-  std::uint64_t frame = 0;
+  std::uint64_t number = 0;
   for (const Pose& X_BT : choose(request, machine, *mechanism, measurer.stand())) {
     MeasuredPose pose;
     pose.axes.resize(static_cast<std::size_t>(mechanism->axis_count()));
@@ -197,11 +193,15 @@ Measurements sample_poses(const SamplePosesRequest& request, const MachineDescri
     if (built) {
       Pose X_true;
       if (!true_pose(machine, *built, pose.axes, X_BT, X_true)) continue;
-      if (!measurer.measure(X_true, ++frame, pose)) continue;
+      commanded.poses.push_back(pose);
+      truth.poses.push_back(pose);
+      truth.poses.back().X_WT = machine.X_WB * X_true;
+      if (!measurer.measure(X_true, ++number, pose)) continue;
     }
     sample.poses.push_back(std::move(pose));
   }
   measurer.finish(sample);
+  if (record) record->commanded = std::move(commanded), record->truth = std::move(truth);
   return sample;
 }
 

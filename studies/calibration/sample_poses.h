@@ -8,6 +8,7 @@
 
 #include "calibration/machine/measurement_table.h"
 #include "machine/default_machine.h"
+#include "studies/calibration/pixel_measurement.h"
 
 namespace understudy::studies {
 
@@ -25,12 +26,22 @@ struct SamplePosesRequest {
   std::uint64_t seed = 1;
 };
 
+/// What a run from pixels knows beside its measurements.
+struct PictureRecord {
+  PictureSink keep;                     ///< set by the caller: gets all pictures
+  vision::RigDescription rig;           ///< as it is believed to be; its file is not named
+  BuiltRig built;                       ///< as it is
+  calibration::Measurements commanded;  ///< a row for each pose that was photographed, from pose 1
+  calibration::Measurements truth;      ///< likewise: where the tool was
+};
+
 /// Poses within the machine's limits with the axes that its model computes for them. Measured: where the
 /// twin's geometry puts the tool then, with noise; its play is left out. Else the poses asked for, to be
 /// replaced by measured ones. Throws InputError; MachineError where nothing can be rendered. `progress` gets
-/// 0..1.
+/// 0..1; `record` is filled from pixels only.
 calibration::Measurements sample_poses(const SamplePosesRequest& request,
                                        const machine::MachineDescription& machine,
-                                       const std::function<void(double)>& progress = {});
+                                       const std::function<void(double)>& progress = {},
+                                       PictureRecord* record = nullptr);
 
 }  // namespace understudy::studies

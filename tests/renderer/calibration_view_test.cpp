@@ -19,8 +19,25 @@ Exposure clean() {
   return e;
 }
 
+/// 150 mm are seen at 400 mm (docs/reference.md#two-cameras).
+Camera straight_lens() {
+  return {.width = 1600, .height = 1200, .focal_px = 4267, .centre_px = {799.5, 599.5}};
+}
+
+/// A sheet that faces the camera at `depth` [m].
+BoardScene board_at(double depth) {
+  BoardScene s;
+  s.camera = straight_lens();
+  s.columns = 12;
+  s.rows = 9;
+  s.square = 10e-3;
+  s.margin = 2.5e-3;
+  s.X_CG = Pose(Eigen::Translation3d(0, 0, depth));
+  return s;
+}
+
 Camera bent_lens() {
-  Camera c = default_calibration_rig(Vec3(0, 0, 0.1)).cameras[0].camera;
+  Camera c = straight_lens();
   c.k1 = -0.12, c.k2 = 0.15, c.p1 = 4e-4, c.p2 = -3e-4;
   return c;
 }
@@ -58,18 +75,18 @@ double pixel_by_brute_force(int x, int y, double blur, const Lit& lit) {
 // brute force cuts the Gaussian at 4 sigma and sums in steps of a sixteenth: 1 grey level of 200.
 TEST(CalibrationView, ABoardsCornerIsLitAsGeometrySays) {
   CalibrationView view;
-  const CalibrationRig rig = default_calibration_rig(Vec3(0, 0, 0.1));
-  BoardScene s = board_scene(rig, 0, 2, {Vec3(0.3e-3, 0.1e-3, 0), Vec3(0.02, -0.03, 0.2), 0});
+  BoardScene s = board_at(385e-3);
+  s.X_CG = s.X_CG * make_pose(exp_rotation(Vec3(0.02, -0.03, 0.2)), Vec3(0.3e-3, 0.1e-3, 0));
   s.exposure = clean();
   const auto corners = true_corners(s);
-  const Pose X_GC = (s.X_CG * make_pose(exp_rotation(s.placement.rotation), s.placement.offset)).inverse();
+  const Pose X_GC = s.X_CG.inverse();
   const auto lit = [&](const Vec2& p) {
     const Vec3 way((p.x() - s.camera.centre_px.x()) / s.camera.focal_px,
                    (p.y() - s.camera.centre_px.y()) / s.camera.focal_px, 1);
     const Vec3 o = X_GC.translation(), d = X_GC.linear() * way;
     const Vec3 at = o - o.z() / d.z() * d;
-    const double column = std::floor(at.x() / s.board.square + 0.5 * (s.board.columns + 1));
-    const double row = std::floor(at.y() / s.board.square + 0.5 * (s.board.rows + 1));
+    const double column = std::floor(at.x() / s.square + 0.5 * (s.columns + 1));
+    const double row = std::floor(at.y() / s.square + 0.5 * (s.rows + 1));
     const bool inked = static_cast<int>(column + row) % 2 == 0;
     const double falloff = std::pow(way.squaredNorm(), -2);
     return s.exposure.ambient_level + s.exposure.gain * falloff * (inked ? s.ink : 1.0);
@@ -91,7 +108,7 @@ TEST(CalibrationView, ABoardsCornerIsLitAsGeometrySays) {
 TEST(CalibrationView, ASpheresOutlineHasItsAreaAndItsCentre) {
   CalibrationView view;
   TargetScene s;
-  s.camera = default_calibration_rig(Vec3(0, 0, 0.1)).cameras[0].camera;
+  s.camera = straight_lens();
   s.exposure = clean();
   s.exposure.ambient_level = 0;
   s.exposure.noise = true;  // one grey level: without it, rounding would be alike over whole bands
@@ -127,7 +144,7 @@ TEST(CalibrationView, ASpheresOutlineHasItsAreaAndItsCentre) {
 }
 
 TEST(CalibrationView, TheOutlinesCentreLiesOutsideOfTheSpheres) {
-  const Camera c = default_calibration_rig(Vec3(0, 0, 0.1)).cameras[0].camera;
+  const Camera c = straight_lens();
   const Vec3 p(75e-3, 0, 0.4);
   // f X / Z (Z^2 / (Z^2 - R^2) - 1) = 800 px * 25 / 159975.
   EXPECT_NEAR(true_outline_centre(c, p, 5e-3)->x() - true_sphere_centre(c, p)->x(), 0.12503, 1e-4);
@@ -136,8 +153,7 @@ TEST(CalibrationView, TheOutlinesCentreLiesOutsideOfTheSpheres) {
 
 TEST(CalibrationView, APixelDoesNotDependOnTheRegionAndBytesRepeat) {
   CalibrationView view, other;
-  const CalibrationRig rig = default_calibration_rig(Vec3(0, 0, 0.1));
-  BoardScene board = board_scene(rig, 0, 5, {});
+  BoardScene board = board_at(400e-3);
   board.camera = bent_lens();
   const Image large = view.render(board, {300, 200, 300, 260}),
               small = other.render(board, {411, 317, 64, 50});
@@ -153,7 +169,6 @@ TEST(CalibrationView, APixelDoesNotDependOnTheRegionAndBytesRepeat) {
 
 TEST(CalibrationView, RefusesScenesWithoutAPicture) {
   CalibrationView view;
-  const CalibrationRig rig = default_calibration_rig(Vec3(0, 0, 0.1));
   const auto message = [&](auto scene) -> std::string {
     try {
       view.render(scene, {0, 0, 8, 8});
@@ -162,12 +177,15 @@ TEST(CalibrationView, RefusesScenesWithoutAPicture) {
     }
     return "drawn";
   };
-  BoardScene sharp = board_scene(rig, 0, 0, {}), fisheye = sharp;
+  BoardScene sharp = board_at(375e-3), fisheye = sharp;
   sharp.exposure.blur_px = 0;
   EXPECT_NE(message(sharp).find("blur [px] is 0.0"), std::string::npos);
   fisheye.camera.k1 = -3;
   EXPECT_NE(message(fisheye).find("distortion"), std::string::npos);
-  TargetScene behind = target_scene(rig, 1, make_pose(Quat::Identity(), Vec3(0, -1, 0.1)));
+  TargetScene behind;
+  behind.camera = straight_lens();
+  behind.radius = 5e-3;
+  behind.centres_C = {Vec3(0, 0, -0.6)};
   EXPECT_NE(message(behind).find("target distance"), std::string::npos);
 }
 

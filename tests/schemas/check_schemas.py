@@ -20,7 +20,7 @@ import tempfile
 import jsonschema
 import yaml
 
-KINDS = ("machine", "material", "scenario", "as-built")
+KINDS = ("machine", "material", "scenario", "as-built", "rig")
 HEADER = re.compile(r"^# yaml-language-server: \$schema=(\S+)$")
 SLIPS_IN_A_FILE = 12
 

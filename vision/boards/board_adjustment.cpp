@@ -79,17 +79,17 @@ struct NormalEquations {
   double squares = 0;  // of the misses [px^2]
 };
 
-NormalEquations gather(const CameraLayers& layers, const CalibrationUncertainty& doubt,
+NormalEquations gather(const CameraLayers& layers, const CalibrationUncertainty& uncertainty,
                        const CameraParameters& camera, const std::vector<Placement>& placements) {
   constexpr Eigen::Index kHead = kCameraParameters;
   const auto boards = static_cast<Eigen::Index>(layers.layers.size());
-  const double weight = 1 / std::pow(std::max(doubt.corner_px, kExactCorner), 2);
-  const Placement prior = prior_weights(doubt.boards);
+  const double weight = 1 / std::pow(std::max(uncertainty.corner_px, kExactCorner), 2);
+  const Placement prior = prior_weights(uncertainty.boards);
   const Pose X_FW = layers.camera.X_WC.inverse();
   NormalEquations n{Eigen::MatrixXd::Zero(kHead + kPlacement * boards, kHead + kPlacement * boards),
                     Eigen::VectorXd::Zero(kHead + kPlacement * boards)};
-  if (doubt.principal_px > 0) {
-    const double known = 1 / std::pow(doubt.principal_px, 2);
+  if (uncertainty.principal_px > 0) {
+    const double known = 1 / std::pow(uncertainty.principal_px, 2);
     n.N.diagonal().segment<2>(7).array() += known;
     n.right.segment<2>(7) += known * (layers.camera.camera.centre_px - camera.segment<2>(7));
   }
@@ -122,13 +122,13 @@ void step(CameraParameters& camera, std::vector<Placement>& placements, const Ei
 
 }  // namespace
 
-BoardAdjustment adjust_boards(const CameraLayers& layers, const CalibrationUncertainty& doubt,
+BoardAdjustment adjust_boards(const CameraLayers& layers, const CalibrationUncertainty& uncertainty,
                               const CameraParameters& start) {
   BoardAdjustment result;
   result.camera = start;
   std::vector<Placement> placements(layers.layers.size(), Placement::Zero());
   for (int i = 0; i < kIterations; ++i) {
-    const NormalEquations n = gather(layers, doubt, result.camera, placements);
+    const NormalEquations n = gather(layers, uncertainty, result.camera, placements);
     // Unknowns differ by 1e8 in size.
     const Eigen::VectorXd scale = n.N.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::LDLT<Eigen::MatrixXd> solver(scale.asDiagonal() * n.N * scale.asDiagonal());

@@ -16,13 +16,13 @@ struct BoardAdjustment {
   double residual_px = 0;  ///< RMS of u and v about the adjusted boards
 };
 
-/// Maximum likelihood over the camera and over each board's placement (seven numbers), which the doubt binds
-/// to where the board is meant to be; F is the frame of the designed camera. What the slope of the boards'
-/// offsets over depth does to the view lines (2 mrad for 0.1 mm) cannot be distinguished from an offset of
-/// the principal point. Where that is known, the camera's direction comes from the mean tilt of all boards,
-/// seen in their perspective (0.3 mrad for 1 mrad each), and the view lines' errors fall to that of the mean
-/// offset. `start` must be near (cv::calibrateCamera with all boards where they are meant to be).
-BoardAdjustment adjust_boards(const CameraLayers& layers, const CalibrationUncertainty& doubt,
+/// Maximum likelihood over the camera and over each board's placement (seven numbers), which the uncertainty
+/// binds to where the board is meant to be; F is the frame of the designed camera. What the slope of the
+/// boards' offsets over depth does to the view rays (2 mrad for 0.1 mm) cannot be distinguished from an
+/// offset of the principal point. Where that is known, the camera's direction comes from the mean tilt of all
+/// boards, seen in their perspective (0.3 mrad for 1 mrad each), and the view rays' errors fall to that of
+/// the mean offset. `start` must be near (cv::calibrateCamera with all boards where they are meant to be).
+BoardAdjustment adjust_boards(const CameraLayers& layers, const CalibrationUncertainty& uncertainty,
                               const CameraParameters& start);
 
 }  // namespace understudy::vision

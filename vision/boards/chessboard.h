@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/calibration_rig.h"
 #include "core/image.h"
+#include "vision/boards/calibration_rig.h"
 
 namespace understudy::vision {
 

@@ -17,10 +17,10 @@ struct Cell {
   double a, b;      // in 0..1 inside
 };
 
-class LayerSight : public SightModel {
+class LayerViewRays : public ViewRayModel {
  public:
-  LayerSight(const CameraLayers& layers, const CalibrationUncertainty& doubt, bool straight);
-  ViewRay sight(const Vec2& pixel, int replica) const override;
+  LayerViewRays(const CameraLayers& layers, const CalibrationUncertainty& uncertainty, bool straight);
+  ViewRay view_ray(const Vec2& pixel, int replica) const override;
   int replicas() const override { return static_cast<int>(databases_.size()) - 1; }
 
  private:
@@ -44,18 +44,20 @@ LayerTable table_of(const Board& board, const BoardLayer& layer, const BoardPlac
   return table;
 }
 
-LayerSight::LayerSight(const CameraLayers& layers, const CalibrationUncertainty& doubt, bool straight)
+LayerViewRays::LayerViewRays(const CameraLayers& layers, const CalibrationUncertainty& uncertainty,
+                             bool straight)
     : board_(layers.board), straight_(straight) {
-  Random random(doubt.seed, "camera calibration replicas");
-  for (int replica = -1; replica < doubt.replicas; ++replica) {
+  Random random(uncertainty.seed, "camera calibration replicas");
+  for (int replica = -1; replica < uncertainty.replicas; ++replica) {
     std::vector<LayerTable> database;
     for (const BoardLayer& layer : layers.layers) {
       if (replica < 0) {
         database.push_back(table_of(board_, layer, {}));
         continue;
       }
-      database.push_back(table_of(board_, layer, sample_placement(doubt.boards, random)));
-      for (Vec2& p : database.back().pixel) p += doubt.corner_px * Vec2(random.normal(), random.normal());
+      database.push_back(table_of(board_, layer, sample_placement(uncertainty.boards, random)));
+      for (Vec2& p : database.back().pixel)
+        p += uncertainty.corner_px * Vec2(random.normal(), random.normal());
     }
     databases_.push_back(std::move(database));
   }
@@ -63,7 +65,7 @@ LayerSight::LayerSight(const CameraLayers& layers, const CalibrationUncertainty&
 
 /// Walks from cell to cell towards the pixel, each step the inverse of the cell's bilinear map. A pixel
 /// outside of the grid belongs to the nearest cell, continued.
-Cell LayerSight::find_cell(const LayerTable& table, const Vec2& pixel) const {
+Cell LayerViewRays::find_cell(const LayerTable& table, const Vec2& pixel) const {
   Cell cell{(board_.columns - 1) / 2, (board_.rows - 1) / 2, 0.5, 0.5};
   for (int step = 0; step < 2 * (board_.columns + board_.rows); ++step) {
     const Vec2& p00 = table.pixel[index(cell.column, cell.row)];
@@ -95,7 +97,7 @@ Cell LayerSight::find_cell(const LayerTable& table, const Vec2& pixel) const {
   return cell;
 }
 
-Vec3 LayerSight::place(const LayerTable& table, const Vec2& pixel) const {
+Vec3 LayerViewRays::place(const LayerTable& table, const Vec2& pixel) const {
   const Cell c = find_cell(table, pixel);
   return (1 - c.b) *
              ((1 - c.a) * table.p_W[index(c.column, c.row)] + c.a * table.p_W[index(c.column + 1, c.row)]) +
@@ -104,35 +106,36 @@ Vec3 LayerSight::place(const LayerTable& table, const Vec2& pixel) const {
 }
 
 /// Least squares over the position along the chord, whose errors hardly matter.
-ViewRay straightened(const ViewRay& sight) {
-  const Vec3 chord = (sight.points.back() - sight.points.front()).normalized();
+ViewRay straightened(const ViewRay& ray) {
+  const Vec3 chord = (ray.points.back() - ray.points.front()).normalized();
   Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : sight.points) mean += p / static_cast<double>(sight.points.size());
+  for (const Vec3& p : ray.points) mean += p / static_cast<double>(ray.points.size());
   Vec3 slope = Vec3::Zero();
   double squares = 0;
-  for (const Vec3& p : sight.points) {
+  for (const Vec3& p : ray.points) {
     const double along = chord.dot(p - mean);
     slope += along * (p - mean);
     squares += along * along;
   }
   slope /= squares;
-  return {{mean + chord.dot(sight.points.front() - mean) * slope,
-           mean + chord.dot(sight.points.back() - mean) * slope}};
+  return {{mean + chord.dot(ray.points.front() - mean) * slope,
+           mean + chord.dot(ray.points.back() - mean) * slope}};
 }
 
-ViewRay LayerSight::sight(const Vec2& pixel, int replica) const {
-  ViewRay sight;
+ViewRay LayerViewRays::view_ray(const Vec2& pixel, int replica) const {
+  ViewRay ray;
   for (const LayerTable& table : databases_[static_cast<std::size_t>(replica + 1)]) {
-    sight.points.push_back(place(table, pixel));
+    ray.points.push_back(place(table, pixel));
   }
-  return straight_ ? straightened(sight) : sight;
+  return straight_ ? straightened(ray) : ray;
 }
 
 }  // namespace
 
-std::shared_ptr<const SightModel> calibrate_layers(const CameraLayers& layers,
-                                                   const CalibrationUncertainty& doubt, bool straight) {
-  return std::make_shared<LayerSight>(layers, doubt, straight);
+std::shared_ptr<const ViewRayModel> calibrate_layers(const CameraLayers& layers,
+                                                     const CalibrationUncertainty& uncertainty,
+                                                     bool straight) {
+  return std::make_shared<LayerViewRays>(layers, uncertainty, straight);
 }
 
 }  // namespace understudy::vision

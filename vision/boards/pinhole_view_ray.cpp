@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kWorstResidual = 20;  // [px]: boards misplaced by 1 mm give 10
 
-class PinholeSight : public SightModel {
+class PinholeViewRays : public ViewRayModel {
  public:
-  PinholeSight(const CameraLayers& layers, const CalibrationUncertainty& doubt);
-  ViewRay sight(const Vec2& pixel, int replica) const override;
+  PinholeViewRays(const CameraLayers& layers, const CalibrationUncertainty& uncertainty);
+  ViewRay view_ray(const Vec2& pixel, int replica) const override;
   int replicas() const override { return static_cast<int>(cameras_.size()) - 1; }
   double residual_px() const override { return residual_; }
 
@@ -67,7 +67,7 @@ CameraParameters calibrate_at_once(const CameraLayers& layers) {
   return v;
 }
 
-void PinholeSight::add(const CameraParameters& v, const MountedCamera& designed) {
+void PinholeViewRays::add(const CameraParameters& v, const MountedCamera& designed) {
   MountedCamera m = designed;
   m.camera.focal_px = v[6];
   m.camera.centre_px = v.segment<2>(7);
@@ -76,12 +76,12 @@ void PinholeSight::add(const CameraParameters& v, const MountedCamera& designed)
   cameras_.push_back(m);
 }
 
-PinholeSight::PinholeSight(const CameraLayers& layers, const CalibrationUncertainty& doubt) {
+PinholeViewRays::PinholeViewRays(const CameraLayers& layers, const CalibrationUncertainty& uncertainty) {
   cv::setNumThreads(1);
   const Pose X_FW = layers.camera.X_WC.inverse();
   near_ = (X_FW * layers.layers.front().X_WG).translation().z();
   far_ = (X_FW * layers.layers.back().X_WG).translation().z();
-  const BoardAdjustment adjusted = adjust_boards(layers, doubt, calibrate_at_once(layers));
+  const BoardAdjustment adjusted = adjust_boards(layers, uncertainty, calibrate_at_once(layers));
   if (!adjusted.camera.allFinite() || !adjusted.covariance.allFinite()) {
     throw InputError(
         "camera calibration: the pinhole cannot be fitted to the boards within their tolerances");
@@ -93,8 +93,8 @@ PinholeSight::PinholeSight(const CameraLayers& layers, const CalibrationUncertai
   const CameraCovariance correlation =
       scale.cwiseInverse().asDiagonal() * adjusted.covariance * scale.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<CameraCovariance> axes(correlation);
-  Random random(doubt.seed, "camera calibration replicas");
-  for (int r = 0; r < doubt.replicas; ++r) {
+  Random random(uncertainty.seed, "camera calibration replicas");
+  for (int r = 0; r < uncertainty.replicas; ++r) {
     CameraParameters draw;
     for (int i = 0; i < kCameraParameters; ++i) {
       draw[i] = std::sqrt(std::max(0.0, axes.eigenvalues()[i])) * random.normal();
@@ -103,7 +103,7 @@ PinholeSight::PinholeSight(const CameraLayers& layers, const CalibrationUncertai
   }
 }
 
-ViewRay PinholeSight::sight(const Vec2& pixel, int replica) const {
+ViewRay PinholeViewRays::view_ray(const Vec2& pixel, int replica) const {
   const MountedCamera& m = cameras_[static_cast<std::size_t>(replica + 1)];
   const Vec2 ray = ray_of_pixel(m.camera, pixel);
   const Vec3 direction(ray.x(), ray.y(), 1);
@@ -112,9 +112,9 @@ ViewRay PinholeSight::sight(const Vec2& pixel, int replica) const {
 
 }  // namespace
 
-std::shared_ptr<const SightModel> calibrate_pinhole(const CameraLayers& layers,
-                                                    const CalibrationUncertainty& doubt) {
-  return std::make_shared<PinholeSight>(layers, doubt);
+std::shared_ptr<const ViewRayModel> calibrate_pinhole(const CameraLayers& layers,
+                                                      const CalibrationUncertainty& uncertainty) {
+  return std::make_shared<PinholeViewRays>(layers, uncertainty);
 }
 
 }  // namespace understudy::vision

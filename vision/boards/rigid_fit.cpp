@@ -1,24 +1,33 @@
 #include "vision/boards/rigid_fit.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 namespace understudy::vision {
 
+namespace {
+
+/// Area of the triangle relative to the square of its longest side; 0 where the points coincide.
+bool in_line(const std::array<Vec3, 3>& p) {
+  const Vec3 a = p[1] - p[0], b = p[2] - p[0];
+  const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+  return !(a.cross(b).norm() > 1e-6 * longest);
+}
+
+Mat3 as_columns(const std::array<Vec3, 3>& p) {
+  Mat3 columns;
+  columns << p[0], p[1], p[2];
+  return columns;
+}
+
+}  // namespace
+
 std::optional<RigidFit> fit_rigid(const std::array<Vec3, 3>& p_T, const std::array<Vec3, 3>& p_W) {
-  const Vec3 middle_T = (p_T[0] + p_T[1] + p_T[2]) / 3, middle_W = (p_W[0] + p_W[1] + p_W[2]) / 3;
-  Mat3 H = Mat3::Zero();
-  for (std::size_t k = 0; k < 3; ++k) H += (p_W[k] - middle_W) * (p_T[k] - middle_T).transpose();
-  if (!H.allFinite()) return std::nullopt;
-  const Eigen::JacobiSVD<Mat3> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // Singular values are squares of extents.
-  if (!(svd.singularValues()[1] > 1e-12 * svd.singularValues()[0])) return std::nullopt;
-  const Mat3& U = svd.matrixU();
-  const Mat3& V = svd.matrixV();
-  const double hand = U.determinant() * V.determinant() > 0 ? 1 : -1;
-  const Mat3 R = U * Vec3(1, 1, hand).asDiagonal() * V.transpose();
-  RigidFit fit{make_pose(R, Vec3(middle_W - R * middle_T)), 0};
+  const Mat3 from = as_columns(p_T), to = as_columns(p_W);
+  if (!from.allFinite() || !to.allFinite() || in_line(p_T) || in_line(p_W)) return std::nullopt;
+  RigidFit fit{Pose(Eigen::umeyama(from, to, false)), 0};
   double squares = 0;
   for (std::size_t k = 0; k < 3; ++k) squares += (p_W[k] - fit.X_WT * p_T[k]).squaredNorm();
   fit.residual_rms = std::sqrt(squares / 3);

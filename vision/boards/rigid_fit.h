@@ -1,4 +1,4 @@
-// The rigid motion that brings points onto measured ones (Kabsch 1976 by singular values; Song 2015, section
+// The rigid motion that brings points onto measured ones (Umeyama 1991, as Eigen has it; Song 2015, section
 // 4).
 #pragma once
 

@@ -9,7 +9,8 @@ namespace understudy::vision {
 namespace {
 
 Approach approach(const StereoModel& model, const Vec2& first, const Vec2& second, int replica) {
-  return closest_approach(model.cameras[0]->sight(first, replica), model.cameras[1]->sight(second, replica));
+  return closest_approach(model.cameras[0]->view_ray(first, replica),
+                          model.cameras[1]->view_ray(second, replica));
 }
 
 /// Effect of the calibration's uncertainty on the three points together, replica by replica.
@@ -24,7 +25,7 @@ std::vector<Vec9> replica_shifts(const StereoModel& model,
     }
     return p;
   };
-  const Vec9 as_calibrated = points(SightModel::kAsCalibrated);
+  const Vec9 as_calibrated = points(ViewRayModel::kAsCalibrated);
   std::vector<Vec9> shifts;
   for (int r = 0; r < replicas; ++r) shifts.push_back(points(r) - as_calibrated);
   return shifts;
@@ -38,8 +39,8 @@ const char* to_string(PoseStatus s) {
       return "ok";
     case PoseStatus::target_not_measured:
       return "a target could not be measured";
-    case PoseStatus::sights_do_not_meet:
-      return "the two view lines of a target do not meet";
+    case PoseStatus::view_rays_do_not_meet:
+      return "the two view rays of a target do not meet";
     case PoseStatus::wrong_shape:
       return "the targets do not form their triangle";
     case PoseStatus::targets_in_line:
@@ -48,14 +49,14 @@ const char* to_string(PoseStatus s) {
   return "unknown";
 }
 
-StereoModel calibrate_stereo(SightMethod method, const std::array<CameraLayers, 2>& layers,
-                             const CalibrationUncertainty& doubt) {
+StereoModel calibrate_stereo(ViewRayMethod method, const std::array<CameraLayers, 2>& layers,
+                             const CalibrationUncertainty& uncertainty) {
   StereoModel model;
   for (std::size_t i = 0; i < 2; ++i) {
-    CalibrationUncertainty own = doubt;
-    own.seed = hash_bits(doubt.seed, i);
+    CalibrationUncertainty own = uncertainty;
+    own.seed = hash_bits(uncertainty.seed, i);
     try {
-      model.cameras[i] = calibrate_sight(method, layers[i], own);
+      model.cameras[i] = calibrate_view_rays(method, layers[i], own);
     } catch (const InputError& e) {
       throw InputError("camera " + std::to_string(i) + ": " + e.what());
     }
@@ -64,7 +65,7 @@ StereoModel calibrate_stereo(SightMethod method, const std::array<CameraLayers, 
 }
 
 LocatedPoint locate(const StereoModel& model, const std::array<PixelPoint, 2>& seen) {
-  LocatedPoint located{approach(model, seen[0].pixel, seen[1].pixel, SightModel::kAsCalibrated),
+  LocatedPoint located{approach(model, seen[0].pixel, seen[1].pixel, ViewRayModel::kAsCalibrated),
                        Mat3::Zero()};
   constexpr double kStep = 0.25;  // [px]: far above rounding, far below the cells of a layer
   for (std::size_t camera = 0; camera < 2; ++camera) {
@@ -73,8 +74,8 @@ LocatedPoint locate(const StereoModel& model, const std::array<PixelPoint, 2>& s
       std::array<Vec2, 2> up{seen[0].pixel, seen[1].pixel}, down = up;
       up[camera][axis] += kStep;
       down[camera][axis] -= kStep;
-      J.col(axis) = (approach(model, up[0], up[1], SightModel::kAsCalibrated).point -
-                     approach(model, down[0], down[1], SightModel::kAsCalibrated).point) /
+      J.col(axis) = (approach(model, up[0], up[1], ViewRayModel::kAsCalibrated).point -
+                     approach(model, down[0], down[1], ViewRayModel::kAsCalibrated).point) /
                     (2 * kStep);
     }
     located.covariance += J * seen[camera].covariance * J.transpose();
@@ -96,7 +97,7 @@ PoseMeasurement measure_pose(const StereoModel& model, const std::array<Vec3, 3>
     m.gap = std::max(m.gap, point.place.gap);
     m.beyond = std::max(m.beyond, point.place.beyond);
     if (!(point.place.gap <= options.gap_max)) {
-      m.status = PoseStatus::sights_do_not_meet;
+      m.status = PoseStatus::view_rays_do_not_meet;
       m.target = static_cast<int>(k);
       return m;
     }

@@ -12,12 +12,13 @@
 namespace understudy::vision {
 
 struct StereoModel {
-  std::array<std::shared_ptr<const SightModel>, 2> cameras;
+  std::array<std::shared_ptr<const ViewRayModel>, 2> cameras;
 };
 
-/// Calibrates both cameras; the seeds of their replicas differ. Throws as calibrate_sight, naming the camera.
-StereoModel calibrate_stereo(SightMethod method, const std::array<CameraLayers, 2>& layers,
-                             const CalibrationUncertainty& doubt);
+/// Calibrates both cameras; the seeds of their replicas differ. Throws as calibrate_view_rays, naming the
+/// camera.
+StereoModel calibrate_stereo(ViewRayMethod method, const std::array<CameraLayers, 2>& layers,
+                             const CalibrationUncertainty& uncertainty);
 
 struct PixelPoint {
   Vec2 pixel{0, 0};
@@ -34,15 +35,15 @@ LocatedPoint locate(const StereoModel& model, const std::array<PixelPoint, 2>& s
 
 enum class PoseStatus {
   ok,
-  target_not_measured,  ///< see camera, target and target_status
-  sights_do_not_meet,   ///< the view lines of a target pass each other
-  wrong_shape,          ///< the targets do not form the triangle they are said to
+  target_not_measured,    ///< see camera, target and target_status
+  view_rays_do_not_meet,  ///< the view rays of a target pass each other
+  wrong_shape,            ///< the targets do not form the triangle they are said to
   targets_in_line,
 };
 const char* to_string(PoseStatus s);
 
 struct PoseOptions {
-  double gap_max = 1e-3;    ///< [m] between the two view lines of a target
+  double gap_max = 1e-3;    ///< [m] between the two view rays of a target
   double shape_max = 1e-3;  ///< [m] RMS of the targets about their rigid fit
 };
 
@@ -56,8 +57,8 @@ struct PoseMeasurement {
   Mat6 systematic = Mat6::Zero();  ///< common to all measurements: the cameras' calibration
   /// What each replica of the cameras sees, less the pose: replica r is the same cameras in all measurements.
   std::vector<Twist> replicas;
-  double gap = 0;        ///< [m], the widest between two view lines
-  double beyond = 0;     ///< [m], the farthest outside of the layers: view lines are extrapolated
+  double gap = 0;        ///< [m], the widest between two view rays
+  double beyond = 0;     ///< [m], the farthest outside of the layers: view rays are extrapolated
   double shape_rms = 0;  ///< [m]
 
   /// What the pose's error has for a single measurement.

@@ -19,8 +19,8 @@ struct Segment {
 };
 
 /// The segments of a line with an endless one at either end.
-std::vector<Segment> segments_of(const ViewRay& sight) {
-  const std::vector<Vec3>& p = sight.points;
+std::vector<Segment> segments_of(const ViewRay& ray) {
+  const std::vector<Vec3>& p = ray.points;
   const Vec3 chord = (p.back() - p.front()).normalized();
   std::vector<Segment> segments{{p.front(), chord, -kEndless, 0}, {p.back(), chord, 0, kEndless}};
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
@@ -43,13 +43,13 @@ std::pair<Vec3, Vec3> closest(const Segment& a, const Segment& b) {
   return {a.start + s * a.direction, b.start + t * b.direction};
 }
 
-double beyond_ends(const ViewRay& sight, const Vec3& p) {
-  const Vec3 chord = sight.points.back() - sight.points.front();
-  const double along = chord.normalized().dot(p - sight.points.front());
+double beyond_ends(const ViewRay& ray, const Vec3& p) {
+  const Vec3 chord = ray.points.back() - ray.points.front();
+  const double along = chord.normalized().dot(p - ray.points.front());
   return std::max({0.0, -along, along - chord.norm()});
 }
 
-void check(const CameraLayers& layers, const CalibrationUncertainty& doubt) {
+void check(const CameraLayers& layers, const CalibrationUncertainty& uncertainty) {
   if (layers.layers.size() < 2) {
     throw InputError("camera calibration: " + std::to_string(layers.layers.size()) +
                      " layers with a chessboard, must be 2 or more");
@@ -65,8 +65,8 @@ void check(const CameraLayers& layers, const CalibrationUncertainty& doubt) {
                        std::to_string(layers.board.corners()));
     }
   }
-  if (doubt.replicas < 0 || doubt.replicas > 10000) {
-    throw InputError("camera calibration: " + std::to_string(doubt.replicas) +
+  if (uncertainty.replicas < 0 || uncertainty.replicas > 10000) {
+    throw InputError("camera calibration: " + std::to_string(uncertainty.replicas) +
                      " replicas, must be in 0..10000");
   }
 }
@@ -88,23 +88,23 @@ Approach closest_approach(const ViewRay& a, const ViewRay& b) {
   return {middle, std::sqrt(least), std::max(beyond_ends(a, middle), beyond_ends(b, middle))};
 }
 
-const char* to_string(SightMethod m) {
+const char* to_string(ViewRayMethod m) {
   switch (m) {
-    case SightMethod::layer_polyline:
+    case ViewRayMethod::layer_polyline:
       return "polyline";
-    case SightMethod::layer_line:
+    case ViewRayMethod::layer_line:
       return "line";
-    case SightMethod::pinhole:
+    case ViewRayMethod::pinhole:
       return "pinhole";
   }
   return "unknown";
 }
 
-std::shared_ptr<const SightModel> calibrate_sight(SightMethod method, const CameraLayers& layers,
-                                                  const CalibrationUncertainty& doubt) {
-  check(layers, doubt);
-  if (method == SightMethod::pinhole) return calibrate_pinhole(layers, doubt);
-  return calibrate_layers(layers, doubt, method == SightMethod::layer_line);
+std::shared_ptr<const ViewRayModel> calibrate_view_rays(ViewRayMethod method, const CameraLayers& layers,
+                                                        const CalibrationUncertainty& uncertainty) {
+  check(layers, uncertainty);
+  if (method == ViewRayMethod::pinhole) return calibrate_pinhole(layers, uncertainty);
+  return calibrate_layers(layers, uncertainty, method == ViewRayMethod::layer_line);
 }
 
 }  // namespace understudy::vision

@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "core/calibration_rig.h"
+#include "vision/boards/calibration_rig.h"
 
 namespace understudy::vision {
 
-/// A view line in W: two points or more, away from the camera. Beyond its ends it goes on along its chord.
+/// A view ray in W: two points or more, away from the camera. Beyond its ends it goes on along its chord.
 struct ViewRay {
   std::vector<Vec3> points;
 };
@@ -20,7 +20,7 @@ struct Approach {
   double beyond = 0;    ///< [m], how far beyond the ends of a line, the worse of both
 };
 
-/// Where two view lines are closest (Song 2015, appendix B.2: over all pairs of segments).
+/// Where two view rays are closest (Song 2015, appendix B.2: over all pairs of segments).
 Approach closest_approach(const ViewRay& a, const ViewRay& b);
 
 /// The corners of the board in one layer: where it is believed to be and where they were seen.
@@ -45,28 +45,28 @@ struct CalibrationUncertainty {
   std::uint64_t seed = 1;   ///< of the perturbations
 };
 
-enum class SightMethod {
+enum class ViewRayMethod {
   layer_polyline,  ///< the paper's: bilinear in each layer, the points joined
   layer_line,  ///< the same points, a straight line fitted: light in air is straight whatever the lens does
   pinhole,     ///< pinhole with Brown distortion, fitted to all layers at once,
-               ///< each board free to be off its place within the doubt
+               ///< each board free to be off its place within the uncertainty
 };
-const char* to_string(SightMethod m);
+const char* to_string(ViewRayMethod m);
 
 /// A calibrated camera. Replica r of `replicas` is the same calibration from input perturbed within the
-/// doubt; replica r of the two cameras of a set-up are independent when their seeds differ.
-class SightModel {
+/// uncertainty; replica r of the two cameras of a set-up are independent when their seeds differ.
+class ViewRayModel {
  public:
   static constexpr int kAsCalibrated = -1;
-  virtual ~SightModel() = default;
-  virtual ViewRay sight(const Vec2& pixel, int replica) const = 0;
+  virtual ~ViewRayModel() = default;
+  virtual ViewRay view_ray(const Vec2& pixel, int replica) const = 0;
   virtual int replicas() const = 0;
   /// [px] RMS of the corners about the model, where the model does not pass through them by construction.
   virtual double residual_px() const { return 0; }
 };
 
 /// Throws InputError: fewer than two layers, corners missing or not finite, a pinhole that does not fit.
-std::shared_ptr<const SightModel> calibrate_sight(SightMethod method, const CameraLayers& layers,
-                                                  const CalibrationUncertainty& doubt);
+std::shared_ptr<const ViewRayModel> calibrate_view_rays(ViewRayMethod method, const CameraLayers& layers,
+                                                        const CalibrationUncertainty& uncertainty);
 
 }  // namespace understudy::vision

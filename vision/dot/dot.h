@@ -35,9 +35,9 @@ double speckle_area_px2(double wavelength, double aperture_sine, double px_per_m
 
 /// Weighted centroid above the surroundings: under speckle it beats a Gaussian fit. Never throws.
 /// The covariance is that of sum(w I x) / sum(w I), w the window, I above the surroundings, M its Gaussian:
-///   sum w^2 (v + g M) d d^T / F^2   noise: v as found around the spot, g M that of the photons; and the
-///   doubt
-///                                   about the slope of the surroundings, which is subtracted
+///   sum w^2 (v + g M) d d^T / F^2   noise: v as found around the spot, g M that of the photons;
+///                                   and the uncertainty of the slope of the surroundings, which
+///                                   is subtracted
 ///   + A sum w^2 M^2 d d^T / F^2     speckle of correlation area A: A / (8 pi) on a round spot of any size
 /// each over the square of the share in which the window holds on to the centre (0.95 at 3 sigma). It leaves
 /// out the offset between the centroid and the beam's axis on curved or oblique surfaces.

@@ -54,7 +54,7 @@ TEST(PixelMeasurement, PosesShowEveryTargetInBothCameras) {
   Random random(1, "pixel poses");
   for (const Pose& X_BT : stand().poses_in_view(*mechanism, 50, random))
     for (int camera = 0; camera < 2; ++camera) {
-      const auto scene = renderer::target_scene(stand().built(), camera, hexapod().X_WB * X_BT);
+      const auto scene = target_scene(stand().designed(), stand().built(), camera, hexapod().X_WB * X_BT);
       for (const Vec3& c : scene.centres_C) {
         const Vec2 p = *renderer::true_sphere_centre(scene.camera, c);
         EXPECT_GT(std::min(p.x(), p.y()), 53);
@@ -80,11 +80,13 @@ TEST(PixelMeasurement, FindsAnAsBuiltMachineWithinItsCovariance) {
     for (std::size_t i = 0; i < 6; ++i) lengths[i] += built.length_offset[i] - nominal.length_offset[i];
     const Pose truth = kinematics::forward(built, lengths, poses[n]).X_BT;
     EXPECT_GT((truth.translation() - poses[n].translation()).norm(), 0.2e-3);
-    const PixelPose found = stand().measure(view, truth, poses[n], n);
+    const Pose X_WB = hexapod().X_WB;
+    const calibration::CameraPose found = stand().measure(view, X_WB * truth, X_WB * poses[n], n);
     ASSERT_TRUE(found.ok()) << found.failure;
     Twist e;
-    e << truth.translation() - found.X_BT.translation(),
-        log_rotation(Mat3(truth.linear() * found.X_BT.linear().transpose()));
+    const Pose X_WT = X_WB * truth;
+    e << X_WT.translation() - found.X_WT.translation(),
+        log_rotation(Mat3(X_WT.linear() * found.X_WT.linear().transpose()));
     normalised += e.dot(found.covariance.ldlt().solve(e)) / static_cast<double>(poses.size());
     EXPECT_LT(e.head<3>().norm(), 0.1e-3);
   }
@@ -93,11 +95,12 @@ TEST(PixelMeasurement, FindsAnAsBuiltMachineWithinItsCovariance) {
 
 TEST(PixelMeasurement, SaysWhichTargetIsMissingInWhichCamera) {
   renderer::CalibrationView view;
-  Pose away = hexapod().X_BT_home;
-  away.translation().x() += 40e-3;  // seen by camera 1 in depth, by camera 2 across
-  const PixelPose found = stand().measure(view, away, hexapod().X_BT_home, 0);
+  const Pose home = hexapod().X_WB * hexapod().X_BT_home;
+  Pose away = home;
+  away.translation().x() += 40e-3;  // seen by camera 0 in depth, by camera 1 across
+  const calibration::CameraPose found = stand().measure(view, away, home, 0);
   EXPECT_FALSE(found.ok());
-  EXPECT_NE(found.failure.find("camera 2, target 1"), std::string::npos) << found.failure;
+  EXPECT_NE(found.failure.find("camera 1, target 0"), std::string::npos) << found.failure;
 }
 
 // Twenty machines as manufactured, 24 chosen poses each, from pixels alone.

@@ -2,6 +2,8 @@
 #include "vision/boards/chessboard.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -17,18 +19,29 @@ const Vec2 kFirst(70.3, 80.8);
 
 Image board_picture() { return drawn_board(400, 300, kBoard, kFirst, kSquare); }
 
-TEST(Chessboard, CornersOfADrawnBoardAreWhereTheSquaresMeet) {
-  const BoardMeasurement m = measure_board(board_picture(), kBoard);
-  ASSERT_EQ(m.status, BoardStatus::ok) << to_string(m.status);
-  ASSERT_EQ(m.corners_px.size(), 28u);
-  for (int row = 0; row < kBoard.rows; ++row)
-    for (int column = 0; column < kBoard.columns; ++column) {
-      const Vec2 truth = kFirst + kSquare * Vec2(column, row);
-      const Vec2 found = m.corners_px[static_cast<std::size_t>(row * kBoard.columns + column)];
-      // Edges that are drawn a pixel wide shift all corners alike, by a tenth of a pixel.
-      EXPECT_LE((found - truth).norm(), 0.15) << column << ", " << row;
-    }
-  EXPECT_EQ(m.contrast, kPaper - kInk);
+// The finder's gradients are differences over whole pixels, so its error depends on where in a pixel an edge
+// lies: 0.11 px for edges that are drawn sharp, and less the wider they are. Behind a lens 8 bits and the
+// finder leave under 0.03 px RMS, as in rendered pictures; an error that goes up and down with the place has
+// at most sqrt(2) times that.
+TEST(Chessboard, CornersOfADrawnBoardAreWhereTheSquaresMeetWhereverInAPixelThatIs) {
+  constexpr double kRms = 0.03;
+  double squares = 0;
+  int count = 0;
+  for (const Vec2& place : {kFirst, Vec2(70, 80), Vec2(70.5, 80.5), Vec2(70.1, 80.25), Vec2(70.75, 80.6)}) {
+    const BoardMeasurement m = measure_board(drawn_board(400, 300, kBoard, place, kSquare), kBoard);
+    ASSERT_EQ(m.status, BoardStatus::ok) << to_string(m.status);
+    ASSERT_EQ(m.corners_px.size(), 28u);
+    for (int row = 0; row < kBoard.rows; ++row)
+      for (int column = 0; column < kBoard.columns; ++column, ++count) {
+        const Vec2 truth = place + kSquare * Vec2(column, row);
+        const double miss =
+            (m.corners_px[static_cast<std::size_t>(row * kBoard.columns + column)] - truth).norm();
+        EXPECT_LE(miss, std::numbers::sqrt2 * kRms) << column << ", " << row << " of " << place.transpose();
+        squares += miss * miss;
+      }
+    EXPECT_EQ(m.contrast, kPaper - kInk);
+  }
+  EXPECT_LE(std::sqrt(squares / count), kRms);
 }
 
 TEST(Chessboard, TheRegionsPlaceOnTheSensorIsAdded) {

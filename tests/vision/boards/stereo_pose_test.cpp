@@ -82,7 +82,7 @@ TEST(RigidFit, RefusesPointsInALineAndNumbersThatAreNone) {
 
 // e' C^-1 e of six degrees of freedom: mean 6, its own spread over n draws sqrt(12 / n). Every draw has new
 // boards, new corners, a new pose. `replicas` scatter adds 48 / (48 - 7) to the inverse.
-double mean_normalised_error(SightMethod method, const BoardTolerance& boards, int draws,
+double mean_normalised_error(ViewRayMethod method, const BoardTolerance& boards, int draws,
                              double& worst_share) {
   const CalibrationRig rig = reference_rig();
   const auto truth = true_cameras(rig);
@@ -108,7 +108,7 @@ double mean_normalised_error(SightMethod method, const BoardTolerance& boards, i
 }
 
 TEST(PoseMeasurement, ErrorsAreWhatTheCovarianceSays) {
-  for (const SightMethod method : {SightMethod::layer_line, SightMethod::pinhole}) {
+  for (const ViewRayMethod method : {ViewRayMethod::layer_line, ViewRayMethod::pinhole}) {
     double share = 0;
     const double mean = mean_normalised_error(method, {0.1e-3, 1e-3, 1e-3}, 30, share);
     EXPECT_GT(mean, 4.1) << to_string(method);  // 6 - 3 sqrt(12 / 30)
@@ -118,8 +118,8 @@ TEST(PoseMeasurement, ErrorsAreWhatTheCovarianceSays) {
 }
 
 TEST(SlowPoseMeasurement, ErrorsAreWhatTheCovarianceSaysForEveryMethod) {
-  for (const SightMethod method :
-       {SightMethod::layer_polyline, SightMethod::layer_line, SightMethod::pinhole}) {
+  for (const ViewRayMethod method :
+       {ViewRayMethod::layer_polyline, ViewRayMethod::layer_line, ViewRayMethod::pinhole}) {
     double share = 0;
     const double mean = mean_normalised_error(method, {0.2e-3, 2e-3, 2e-3}, 250, share);
     std::printf("%s: mean normalised squared error %.2f, %.3f within 99 %%\n", to_string(method), mean,
@@ -134,7 +134,8 @@ TEST(PoseMeasurement, SaysWhyThereIsNone) {
   const CalibrationRig rig = reference_rig();
   Random random(8, "pose reasons");
   const auto layers = observed_layers(rig, rig.cameras, {}, 0, random);
-  const StereoModel model = calibrate_stereo(SightMethod::layer_line, layers, {.boards = {}, .replicas = 0});
+  const StereoModel model =
+      calibrate_stereo(ViewRayMethod::layer_line, layers, {.boards = {}, .replicas = 0});
   const Pose X_WT = random_pose(random);
   const auto good = observed_targets(rig, rig.cameras, X_WT, 0, random);
   ASSERT_EQ(measure_pose(model, rig.targets, good).status, PoseStatus::ok);
@@ -142,7 +143,7 @@ TEST(PoseMeasurement, SaysWhyThereIsNone) {
   auto crossed = good;  // 30 px of height in one camera only: 2.8 mm
   crossed[1][2].pixel.y() += 30;
   const PoseMeasurement gap = measure_pose(model, rig.targets, crossed);
-  EXPECT_EQ(gap.status, PoseStatus::sights_do_not_meet);
+  EXPECT_EQ(gap.status, PoseStatus::view_rays_do_not_meet);
   EXPECT_EQ(gap.target, 2);
   EXPECT_NEAR(gap.gap, 30 * 0.4 / 4267, 0.4e-3);  // the target is within 14 % of 400 mm
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/calibration_rig.h"
+#include "vision/boards/calibration_rig.h"
 #include "vision/boards/stereo_pose.h"
 
 namespace understudy::vision {

@@ -11,8 +11,8 @@
 namespace understudy::vision {
 namespace {
 
-constexpr SightMethod kMethods[] = {SightMethod::layer_polyline, SightMethod::layer_line,
-                                    SightMethod::pinhole};
+constexpr ViewRayMethod kMethods[] = {ViewRayMethod::layer_polyline, ViewRayMethod::layer_line,
+                                      ViewRayMethod::pinhole};
 
 TEST(ClosestApproach, OfSkewLinesIsHalfWayOnTheirCommonNormal) {
   const ViewRay along_x{{Vec3(-1, 0, 0), Vec3(1, 0, 0)}}, along_y{{Vec3(0.2, -1, 0.5), Vec3(0.2, 1, 0.5)}};
@@ -41,9 +41,9 @@ TEST(ViewRay, EveryMethodFindsThePointWithoutNoise) {
   const auto truth = true_cameras(rig);
   Random random(3, "sight test");
   const auto layers = observed_layers(rig, truth, {}, 0, random);
-  for (const SightMethod method : kMethods) {
+  for (const ViewRayMethod method : kMethods) {
     const StereoModel model = calibrate_stereo(method, layers, {.boards = {}, .replicas = 0});
-    const double limit = method == SightMethod::pinhole ? 0.2e-6 : 5e-6;
+    const double limit = method == ViewRayMethod::pinhole ? 0.2e-6 : 5e-6;
     for (int k = 0; k < 40; ++k) {
       const Vec3 p_W =
           middle_of_volume(rig) +
@@ -59,9 +59,9 @@ TEST(ViewRay, RefusesACalibrationThatCannotBe) {
   const CalibrationRig rig = reference_rig();
   Random random(4, "sight test");
   const auto good = observed_layers(rig, rig.cameras, {}, 0, random)[0];
-  const auto message = [](const CameraLayers& layers, SightMethod method) -> std::string {
+  const auto message = [](const CameraLayers& layers, ViewRayMethod method) -> std::string {
     try {
-      calibrate_sight(method, layers, {.boards = {}, .replicas = 0});
+      calibrate_view_rays(method, layers, {.boards = {}, .replicas = 0});
     } catch (const InputError& e) {
       return e.what();
     }
@@ -69,11 +69,11 @@ TEST(ViewRay, RefusesACalibrationThatCannotBe) {
   };
   CameraLayers one = good, short_one = good, scrambled = good;
   one.layers.resize(1);
-  EXPECT_NE(message(one, SightMethod::layer_line).find("1 layers"), std::string::npos);
+  EXPECT_NE(message(one, ViewRayMethod::layer_line).find("1 layers"), std::string::npos);
   short_one.layers[4].corners_px.pop_back();
-  EXPECT_NE(message(short_one, SightMethod::pinhole).find("layer 4 has 107 corners"), std::string::npos);
+  EXPECT_NE(message(short_one, ViewRayMethod::pinhole).find("layer 4 has 107 corners"), std::string::npos);
   for (auto& layer : scrambled.layers) std::swap(layer.corners_px.front(), layer.corners_px.back());
-  EXPECT_NE(message(scrambled, SightMethod::pinhole).find("px RMS"), std::string::npos);
+  EXPECT_NE(message(scrambled, ViewRayMethod::pinhole).find("px RMS"), std::string::npos);
 }
 
 struct Row {
@@ -91,7 +91,7 @@ const Row kTable[] = {
     {"0.3 mm, 5 mrad, 0.5 %", 0.1, {0.3e-3, 5e-3, 5e-3}, {436, 206, 176}},
 };
 
-double rms_um(const Row& row, SightMethod method, int draws) {
+double rms_um(const Row& row, ViewRayMethod method, int draws) {
   const CalibrationRig rig = reference_rig();
   auto truth = true_cameras(rig);
   // The lens's axis is known beforehand; without that the slope of the boards' offsets costs 40 % in row 3.
@@ -107,9 +107,10 @@ double rms_um(const Row& row, SightMethod method, int draws) {
           middle_of_volume(rig) +
           Vec3(random.uniform(-25e-3, 25e-3), random.uniform(-25e-3, 25e-3), random.uniform(-25e-3, 25e-3));
       const auto seen = observed_point(truth, p_W, row.pixel, random);
-      const Vec3 found = closest_approach(model.cameras[0]->sight(seen[0].pixel, SightModel::kAsCalibrated),
-                                          model.cameras[1]->sight(seen[1].pixel, SightModel::kAsCalibrated))
-                             .point;
+      const Vec3 found =
+          closest_approach(model.cameras[0]->view_ray(seen[0].pixel, ViewRayModel::kAsCalibrated),
+                           model.cameras[1]->view_ray(seen[1].pixel, ViewRayModel::kAsCalibrated))
+              .point;
       error.add((found - p_W).squaredNorm());
     }
   }

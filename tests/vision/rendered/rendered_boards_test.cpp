@@ -7,24 +7,42 @@
 #include <cmath>
 
 #include "renderer/calibration_view.h"
+#include "studies/calibration/rig_scenes.h"
 #include "vision/boards/chessboard.h"
 #include "vision/boards/stereo_pose.h"
 
 namespace understudy::renderer {
 namespace {
 
+using studies::BuiltRig;
+using studies::target_scene;
+using vision::BoardPlacement;
+using vision::BoardTolerance;
+using vision::CalibrationRig;
+using vision::default_calibration_rig;
+
 using vision::BoardStatus;
 using vision::TargetStatus;
 
 constexpr Region kSensor{0, 0, 1600, 1200};
 
-CalibrationRig bent_rig() {
-  CalibrationRig rig = default_calibration_rig(Vec3(0, 0, 0.1));
-  Camera& a = rig.cameras[0].camera;
-  Camera& b = rig.cameras[1].camera;
+CalibrationRig designed_rig() { return default_calibration_rig(Vec3(0, 0, 0.1)); }
+
+/// Built as designed, but for the lenses.
+BuiltRig with_bent_lenses(const CalibrationRig& designed) {
+  BuiltRig built = studies::built_as_designed(designed);
+  Camera& a = built.cameras[0].camera;
+  Camera& b = built.cameras[1].camera;
   a.k1 = -0.12, a.k2 = 0.15, a.p1 = 4e-4, a.p2 = -3e-4;
   b.k1 = 0.08, b.p1 = -2e-4, b.p2 = 5e-4;
-  return rig;
+  return built;
+}
+
+/// A board of camera 0 that is off its place.
+BoardScene misplaced_board(const CalibrationRig& rig, int layer, const BoardPlacement& placement) {
+  BuiltRig built = with_bent_lenses(rig);
+  built.boards[0][static_cast<std::size_t>(layer)] = placement;
+  return studies::board_scene(rig, built, 0, layer);
 }
 
 Pose random_pose(Random& random) {
@@ -60,8 +78,8 @@ double corner_rms(const vision::BoardMeasurement& m, const BoardScene& s) {
 // direction.
 TEST(MeasuredBoard, CornersAreWithinEightHundredthsOfAPixel) {
   CalibrationView view;
-  const CalibrationRig rig = bent_rig();
-  BoardScene s = board_scene(rig, 0, 3, {Vec3(0.3e-3, -0.2e-3, 0.2e-3), Vec3(5e-3, -4e-3, 8e-3), 2e-3});
+  const CalibrationRig rig = designed_rig();
+  BoardScene s = misplaced_board(rig, 3, {Vec3(0.3e-3, -0.2e-3, 0.2e-3), Vec3(5e-3, -4e-3, 8e-3), 2e-3});
   const auto noisy = vision::measure_board(view.render(s, kSensor), rig.board);
   ASSERT_EQ(noisy.status, BoardStatus::ok) << to_string(noisy.status);
   EXPECT_LT(corner_rms(noisy, s), 0.08);
@@ -80,9 +98,9 @@ TEST(MeasuredBoard, CornersAreWithinEightHundredthsOfAPixel) {
 
 TEST(MeasuredBoard, SaysWhyThereAreNoCorners) {
   CalibrationView view;
-  const CalibrationRig rig = bent_rig();
+  const CalibrationRig rig = designed_rig();
   const auto status = [&](const BoardPlacement& placement, double gain) {
-    BoardScene s = board_scene(rig, 0, 5, placement);
+    BoardScene s = misplaced_board(rig, 5, placement);
     s.exposure.gain = gain;
     s.exposure.noise = false;  // half of the time, and no reason here depends on it
     return vision::measure_board(view.render(s, kSensor), rig.board).status;
@@ -93,7 +111,8 @@ TEST(MeasuredBoard, SaysWhyThereAreNoCorners) {
   EXPECT_EQ(status({}, 20), BoardStatus::too_dark);
   EXPECT_EQ(status({Vec3::Zero(), Vec3(0, 0, 3.14159), 0}, 200), BoardStatus::wrongly_turned);
   // Plenty of contrast, and no board in it.
-  TargetScene other = target_scene(rig, 0, make_pose(Quat::Identity(), Vec3(0, 0, 0.1)));
+  TargetScene other =
+      target_scene(rig, with_bent_lenses(rig), 0, make_pose(Quat::Identity(), Vec3(0, 0, 0.1)));
   other.exposure.noise = false;
   EXPECT_EQ(vision::measure_board(view.render(other, {400, 200, 800, 800}), rig.board).status,
             BoardStatus::no_board);
@@ -104,12 +123,13 @@ TEST(MeasuredBoard, SaysWhyThereAreNoCorners) {
 // two degrees of freedom.
 TEST(MeasuredTargets, CentresAreWithinSixHundredthsOfAPixelAndMomentsAreNot) {
   CalibrationView view;
-  const CalibrationRig rig = bent_rig();
+  const CalibrationRig rig = designed_rig();
+  const BuiltRig built = with_bent_lenses(rig);
   double squares = 0, moments = 0, normalised = 0;
   int count = 0;
   for (std::uint64_t i = 0; i < 4; ++i) {
     Random random(i, "measured targets");
-    TargetScene s = target_scene(rig, static_cast<int>(i % 2), random_pose(random));
+    TargetScene s = target_scene(rig, built, static_cast<int>(i % 2), random_pose(random));
     s.exposure.frame = i;
     const Image image = view.render(s, region_of_targets(s, 60));
     vision::TargetOptions options;
@@ -137,8 +157,9 @@ TEST(MeasuredTargets, CentresAreWithinSixHundredthsOfAPixelAndMomentsAreNot) {
 // At the picture's edge the ellipse's centre is 0.12 px outside of the sphere's.
 TEST(MeasuredTargets, TheCentresBiasIsModelled) {
   CalibrationView view;
-  const CalibrationRig rig = default_calibration_rig(Vec3(0, 0, 0.1));
-  TargetScene s = target_scene(rig, 0, make_pose(Quat::Identity(), Vec3(0, 0, 0.1)));
+  const CalibrationRig rig = designed_rig();
+  TargetScene s =
+      target_scene(rig, studies::built_as_designed(rig), 0, make_pose(Quat::Identity(), Vec3(0, 0, 0.1)));
   s.exposure.noise = false;
   s.centres_C = {Vec3(66e-3, -1e-3, 0.4), Vec3(-65e-3, 5e-3, 0.39), Vec3(0, 40e-3, 0.41)};
   const auto m = measured(view, s, s.camera);
@@ -152,8 +173,9 @@ TEST(MeasuredTargets, TheCentresBiasIsModelled) {
 
 TEST(MeasuredTargets, SayWhyACentreIsMissing) {
   CalibrationView view;
-  const CalibrationRig rig = bent_rig();
-  const TargetScene good = target_scene(rig, 0, make_pose(Quat::Identity(), Vec3(0, 0, 0.1)));
+  const CalibrationRig rig = designed_rig();
+  const TargetScene good =
+      target_scene(rig, with_bent_lenses(rig), 0, make_pose(Quat::Identity(), Vec3(0, 0, 0.1)));
   const auto expected = expected_pixels(good);
   const Region region = region_of_targets(good, 60);
   vision::TargetOptions options;
@@ -193,21 +215,24 @@ double seconds_since(std::chrono::steady_clock::time_point from) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
 }
 
-std::array<vision::CameraLayers, 2> photograph_boards(CalibrationView& view, const CalibrationRig& rig,
+std::array<vision::CameraLayers, 2> photograph_boards(CalibrationView& view, const CalibrationRig& designed,
                                                       const BoardTolerance& tolerance, std::uint64_t seed) {
-  std::array<vision::CameraLayers, 2> all;
+  BuiltRig built = with_bent_lenses(designed);
   Random random(seed, "board placement");
+  for (auto& boards : built.boards)
+    for (BoardPlacement& placement : boards) placement = sample_placement(tolerance, random);
+  std::array<vision::CameraLayers, 2> all;
   for (int camera = 0; camera < 2; ++camera) {
     auto& layers = all[static_cast<std::size_t>(camera)];
-    layers.camera = default_calibration_rig(Vec3(0, 0, 0.1)).cameras[static_cast<std::size_t>(camera)];
-    layers.board = rig.board;
-    for (int layer = 0; layer < rig.layers; ++layer) {
-      BoardScene s = board_scene(rig, camera, layer, sample_placement(tolerance, random));
+    layers.camera = designed.cameras[static_cast<std::size_t>(camera)];
+    layers.board = designed.board;
+    for (int layer = 0; layer < designed.layers; ++layer) {
+      BoardScene s = studies::board_scene(designed, built, camera, layer);
       s.exposure.frame = static_cast<std::uint64_t>(100 * camera + layer);
       s.exposure.seed = seed;
-      const auto m = vision::measure_board(view.render(s, kSensor), rig.board);
+      const auto m = vision::measure_board(view.render(s, kSensor), designed.board);
       EXPECT_EQ(m.status, BoardStatus::ok) << to_string(m.status) << ", layer " << layer;
-      layers.layers.push_back({rig.X_WG(camera, layer), m.corners_px});
+      layers.layers.push_back({designed.X_WG(camera, layer), m.corners_px});
     }
   }
   return all;
@@ -218,14 +243,15 @@ struct PhotographedPose {
   std::array<vision::TargetsMeasurement, 2> seen;
 };
 
-std::vector<PhotographedPose> photograph_poses(CalibrationView& view, const CalibrationRig& rig, int poses) {
-  const CalibrationRig designed = default_calibration_rig(Vec3(0, 0, 0.1));
+std::vector<PhotographedPose> photograph_poses(CalibrationView& view, const CalibrationRig& designed,
+                                               int poses) {
+  const BuiltRig built = with_bent_lenses(designed);
   std::vector<PhotographedPose> all;
   Random random(1, "photographed poses");
   for (int i = 0; i < poses; ++i) {
     all.push_back({random_pose(random), {}});
     for (int camera = 0; camera < 2; ++camera) {
-      TargetScene s = target_scene(rig, camera, all.back().X_WT);
+      TargetScene s = target_scene(designed, built, camera, all.back().X_WT);
       s.exposure.frame = static_cast<std::uint64_t>(1000 + 2 * i + camera);
       const auto k = static_cast<std::size_t>(camera);
       all.back().seen[k] = measured(view, s, designed.cameras[k].camera);  // its distortion is not known
@@ -256,12 +282,12 @@ EndToEnd compare(const vision::StereoModel& model, const CalibrationRig& rig,
 // all: below 22.5 in 999 of 1000.
 TEST(MeasuredPose, FromPixelsIsWithinItsCovariance) {
   CalibrationView view;
-  CalibrationRig rig = bent_rig();
+  CalibrationRig rig = designed_rig();
   rig.layers = 2;
   rig.layer_spacing = 50e-3;
   const BoardTolerance tolerance{0.05e-3, 0.5e-3, 0.5e-3};
   const auto model =
-      vision::calibrate_stereo(vision::SightMethod::layer_line, photograph_boards(view, rig, tolerance, 1),
+      vision::calibrate_stereo(vision::ViewRayMethod::layer_line, photograph_boards(view, rig, tolerance, 1),
                                {.boards = tolerance, .corner_px = 0.03});
   const EndToEnd result = compare(model, rig, photograph_poses(view, rig, 2));
   EXPECT_LT(result.normalised, 22.5);
@@ -269,9 +295,9 @@ TEST(MeasuredPose, FromPixelsIsWithinItsCovariance) {
 }
 
 TEST(SlowMeasuredPose, FromPixelsIsWithinItsCovarianceForElevenLayersAndEveryMethod) {
-  using vision::SightMethod;
+  using vision::ViewRayMethod;
   CalibrationView view;
-  const CalibrationRig rig = bent_rig();
+  const CalibrationRig rig = designed_rig();
   auto start = std::chrono::steady_clock::now();
   const auto poses = photograph_poses(view, rig, 24);
   std::printf("24 poses in two cameras drawn and measured: %.1f s\n", seconds_since(start));
@@ -280,7 +306,8 @@ TEST(SlowMeasuredPose, FromPixelsIsWithinItsCovarianceForElevenLayersAndEveryMet
     start = std::chrono::steady_clock::now();
     const auto layers = photograph_boards(view, rig, tolerance, 2);
     std::printf("11 layers in two cameras drawn and measured: %.1f s\n", seconds_since(start));
-    for (const auto method : {SightMethod::layer_polyline, SightMethod::layer_line, SightMethod::pinhole}) {
+    for (const auto method :
+         {ViewRayMethod::layer_polyline, ViewRayMethod::layer_line, ViewRayMethod::pinhole}) {
       start = std::chrono::steady_clock::now();
       const auto model = vision::calibrate_stereo(method, layers, {.boards = tolerance, .corner_px = 0.03});
       const EndToEnd r = compare(model, rig, poses);

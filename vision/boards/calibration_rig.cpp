@@ -1,8 +1,8 @@
-#include "core/calibration_rig.h"
+#include "vision/boards/calibration_rig.h"
 
 #include <cmath>
 
-namespace understudy {
+namespace understudy::vision {
 
 BoardPlacement sample_placement(const BoardTolerance& tolerance, Random& random) {
   BoardPlacement p;
@@ -25,14 +25,14 @@ CalibrationRig default_calibration_rig(const Vec3& home_tip_W) {
   const Vec3 middle = home_tip_W + (rig.targets[0] + rig.targets[1] + rig.targets[2]) / 3;
 
   const Camera camera{.width = 1600, .height = 1200, .focal_px = 4267, .centre_px = {799.5, 599.5}};
-  const Vec3 sights[] = {Vec3::UnitX(), Vec3::UnitY()};
+  const Vec3 optical_axes[] = {Vec3::UnitX(), Vec3::UnitY()};
   for (std::size_t i = 0; i < 2; ++i) {
     const Vec3 down = -Vec3::UnitZ();
     Mat3 R;
-    R << down.cross(sights[i]), down, sights[i];
-    rig.cameras[i] = {camera, make_pose(R, Vec3(middle - rig.middle_distance * sights[i]))};
+    R << down.cross(optical_axes[i]), down, optical_axes[i];
+    rig.cameras[i] = {camera, make_pose(R, Vec3(middle - rig.middle_distance * optical_axes[i]))};
   }
   return rig;
 }
 
-}  // namespace understudy
+}  // namespace understudy::vision

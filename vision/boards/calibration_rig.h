@@ -13,7 +13,7 @@
 #include "core/image.h"
 #include "core/random.h"
 
-namespace understudy {
+namespace understudy::vision {
 
 /// A printed chessboard. Exactly one of columns and rows is odd: then it differs from itself upside down.
 struct Board {
@@ -72,4 +72,4 @@ struct CalibrationRig {
 /// middle of the triangle is in the middle of the volume.
 CalibrationRig default_calibration_rig(const Vec3& home_tip_W);
 
-}  // namespace understudy
+}  // namespace understudy::vision
