@@ -29,8 +29,8 @@ Stop SetpointStreamer::write() {
   if (batch_.empty()) return {};
   const double deadline = port_.now() + kPatience;
   Status s = port_.submit(batch_, deadline);
-  // The queue empties at the cycle's pace: it has room after one batch, or by rounding a cycle later. A second
-  // batch would let a small queue run dry.
+  // The queue empties at the cycle's pace: it has room after one batch, or by rounding a cycle later. A
+  // second batch would let a small queue run dry.
   double pause = static_cast<double>(batch_size_) * cycle_time_;
   for (; s == Status::queue_full; pause = cycle_time_) {
     if (port_.now() > deadline) return stop_of(Status::deadline_exceeded, port_);
