@@ -24,7 +24,7 @@ struct StandOptions {
   vision::BoardTolerance boards{20e-6, 0.2e-3, 0};  ///< how well the boards are placed
   int layers = 11;                                  ///< of each camera, over 50 mm of depth; 2 or more
   std::uint64_t seed = 1;                           ///< of cameras, boards and sensors
-  PictureSink keep;  ///< optional; of boards from the threads that photograph them, of poses whole pictures
+  PictureSink keep{};  ///< optional; of boards from the threads that photograph them, of poses whole pictures
 };
 
 /// What is believed of the stand before a machine, before its cameras are calibrated: the designed rig, how
