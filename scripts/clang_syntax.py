@@ -14,7 +14,7 @@ import shlex
 import subprocess
 import sys
 
-GCC_ONLY = {"-Wno-restrict", "-Wno-stringop-overflow"}
+GCC_ONLY = {"-Wno-restrict", "-Wno-stringop-overflow", "-Wno-array-bounds"}
 
 
 def command(entry):
