@@ -53,7 +53,7 @@ int run_board(const MeasureCall& call) {
   std::size_t rows = 0;
   for (const auto& [picture, seen] : boards) {
     if (seen.status != vision::BoardStatus::ok) {
-      tell_left_out(picture.file, to_string(seen.status));
+      report_left_out(picture.file, to_string(seen.status));
       continue;
     }
     for (int i = 0; i < rig.rig.board.corners(); ++i, ++rows) {

@@ -43,7 +43,7 @@ const calibration::MeasuredPose& row_of_pose(const calibration::Measurements& co
   return commanded.poses[static_cast<std::size_t>(pose) - 1];
 }
 
-void tell_left_out(const std::string& file, const std::string& why) {
+void report_left_out(const std::string& file, const std::string& why) {
   fmt::print(stderr, "{}: {}; left out\n", file, why);
 }
 

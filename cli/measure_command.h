@@ -33,7 +33,7 @@ const calibration::MeasuredPose& row_of_pose(const calibration::Measurements& co
                                              const std::string& file);
 
 /// On standard error: a picture, or part of one, that is left out of the result.
-void tell_left_out(const std::string& file, const std::string& why);
+void report_left_out(const std::string& file, const std::string& why);
 
 /// RFC 4180: in quotes where a comma, a quote or a line's end would split it.
 std::string csv_cell(const std::string& text);

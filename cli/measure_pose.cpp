@@ -29,7 +29,7 @@ vision::StereoModel calibrate_cameras(const vision::RigDescription& rig, std::ui
     line.show(static_cast<double>(done) / static_cast<double>(pictures.size()), "measuring boards");
   });
   for (const auto& [picture, seen] : boards)
-    if (seen.status != vision::BoardStatus::ok) tell_left_out(picture.file, to_string(seen.status));
+    if (seen.status != vision::BoardStatus::ok) report_left_out(picture.file, to_string(seen.status));
   vision::CalibrationUncertainty uncertainty = rig.uncertainty;
   uncertainty.seed = seed;
   return vision::calibrate_rig(rig.rig, vision::seen_boards(boards), vision::ViewRayMethod::pinhole,
@@ -48,7 +48,7 @@ calibration::CameraPose measure_pair(const vision::RigDescription& rig, const vi
   const vision::PoseMeasurement measured = vision::measure_pose(model, rig.rig.targets, seen);
   const calibration::CameraPose pose = calibration::camera_pose(measured);
   if (!pose.ok())
-    tell_left_out(pair[static_cast<std::size_t>(std::max(measured.camera, 0))].file,
+    report_left_out(pair[static_cast<std::size_t>(std::max(measured.camera, 0))].file,
                   fmt::format("pose {}, {}", pair[0].pose, pose.failure));
   return pose;
 }

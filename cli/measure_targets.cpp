@@ -32,7 +32,7 @@ int run_targets(const MeasureCall& call) {
       for (std::size_t k = 0; k < seen.targets.size(); ++k) {
         const vision::TargetMeasurement& target = seen.targets[k];
         if (target.status != vision::TargetStatus::ok) {
-          tell_left_out(picture.file, fmt::format("target {}: {}", k, to_string(target.status)));
+          report_left_out(picture.file, fmt::format("target {}: {}", k, to_string(target.status)));
           continue;
         }
         const Eigen::Matrix2d& c = target.covariance_px2;

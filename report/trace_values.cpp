@@ -1,6 +1,5 @@
 #include "report/trace_values.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -58,12 +57,6 @@ void trace_row(const rehearsal::TracePoint& point, const rehearsal::Record& reco
       throw std::logic_error("trace: " + columns[i] + " is not a finite number at " +
                              std::to_string(point.time) + " s");
   }
-}
-
-std::size_t column_index(const std::vector<std::string>& columns, const std::string& name) {
-  const auto found = std::find(columns.begin(), columns.end(), name);
-  if (found == columns.end()) throw std::logic_error("the trace has no column " + name);
-  return static_cast<std::size_t>(found - columns.begin());
 }
 
 int column_decimals(const std::string& name) {

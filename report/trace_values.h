@@ -16,9 +16,6 @@ std::vector<std::string> trace_columns(const rehearsal::Record& record);
 void trace_row(const rehearsal::TracePoint& point, const rehearsal::Record& record,
                const std::vector<std::string>& columns, std::vector<double>& row);
 
-/// Position of `name` among the columns.
-std::size_t column_index(const std::vector<std::string>& columns, const std::string& name);
-
 /// Decimals that keep a tenth of what the quantity's instrument could resolve, by the unit in the name.
 int column_decimals(const std::string& name);
 
