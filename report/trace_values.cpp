@@ -1,5 +1,6 @@
 #include "report/trace_values.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
