@@ -10,10 +10,11 @@ option(UNDERSTUDY_WERROR "Warnings are errors" OFF)
 option(UNDERSTUDY_PRECOMPILE "Precompile the headers that most sources include, which hides missing includes" OFF)
 set(UNDERSTUDY_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
-# Paths below the source folder are hashed relative to it, so clones in other folders share objects.
+# Paths below the source folder are hashed relative to it, so clones in other folders share objects. What a source
+# includes comes from the compiler (depend mode), not from preprocessing it twice.
 find_program(CCACHE ccache)
 if(CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1
     CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
 endif()
 
