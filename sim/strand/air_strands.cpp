@@ -20,7 +20,6 @@
 namespace understudy::sim {
 namespace {
 
-constexpr double kGroove = 2;             // widths: shorter, a bead reaches across by itself
 constexpr double kInAir = 2;              // diameters above what is below
 constexpr double kStraight = 0.05;        // of the length, beside the chord
 constexpr double kShortest = 0.2e-3;      // [m]: less hangs from the bead's own stiffness
