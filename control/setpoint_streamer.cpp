@@ -29,12 +29,14 @@ Stop SetpointStreamer::write() {
   if (batch_.empty()) return {};
   const double deadline = port_.now() + kPatience;
   Status s = port_.submit(batch_, deadline);
-  // The queue empties at the cycle's pace: it has room after one batch, or by rounding a cycle later. A
+  // The queue empties at the cycle's pace: it has room after one batch, or by rounding a little later. A
   // second batch would let a small queue run dry.
   double pause = static_cast<double>(batch_size_) * cycle_time_;
-  for (; s == Status::queue_full; pause = cycle_time_) {
-    if (port_.now() > deadline) return stop_of(Status::deadline_exceeded, port_);
-    if (Stop stop = wait_until(std::min(port_.now() + pause, deadline + cycle_time_))) return stop;
+  while (s == Status::queue_full) {
+    const double before = port_.now();
+    if (before > deadline) return stop_of(Status::deadline_exceeded, port_);
+    if (Stop stop = wait_until(std::min(before + pause, deadline + cycle_time_))) return stop;
+    pause = port_.now() > before ? cycle_time_ : 2 * pause;  // a port's clock may be coarser than the cycle
     s = port_.submit(batch_, deadline);
   }
   if (s != Status::ok) return stop_of(s, port_);

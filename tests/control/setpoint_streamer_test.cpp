@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "machine/loopback_port.h"
@@ -70,6 +72,29 @@ TEST(SetpointStreamer, WaitsForAFullQueueAndLosesNothing) {
   ASSERT_EQ(port.history().size(), 100u);
   for (int k = 1; k <= 100; ++k) EXPECT_EQ(port.history()[static_cast<std::size_t>(k - 1)].time, kCycle * k);
   EXPECT_GE(port.now(), 100 * kCycle);
+}
+
+/// A port whose clock moves by two cycles or not at all, as a plant of a larger time step does.
+class CoarseClockPort : public LoopbackPort {
+ public:
+  using LoopbackPort::LoopbackPort;
+  Status wait_until(double time) override {
+    const double tick = 2 * kCycle;
+    if (++waits > 1000) return Status::deadline_exceeded;
+    return LoopbackPort::wait_until(tick * std::floor(time / tick + 1e-9));
+  }
+  int waits = 0;
+};
+
+TEST(SetpointStreamer, AClockCoarserThanTheCycleIsWaitedFor) {
+  LoopbackPort::Options options;
+  options.queue_capacity = 10;
+  CoarseClockPort port(options);
+  SetpointStreamer streamer(port, kCycle);
+  const Stop stop = stream(streamer, 100);
+  ASSERT_FALSE(stop) << stop.why << " after " << port.waits << " waits";
+  ASSERT_FALSE(streamer.wait_until_executed());
+  EXPECT_EQ(port.history().size(), 100u);
 }
 
 TEST(SetpointStreamer, AHeldMachineIsGivenUpAfterHalfAMinute) {

@@ -183,8 +183,8 @@ TEST(GapFollower, AStepOfTheMachineIsFollowedWhenItLasts) {
 TEST(GapFollower, LostFramesAreWaitedForAndThenSaidToBeLost) {
   for (const auto& [seconds, stop] : {std::pair{0.3, GapStop::none}, {0.7, GapStop::port_failed}}) {
     auto loop = loop_with([](double t, double) { return kAim - 50e-6 * t; }, 4e-6);
-    loop.set_camera([&](double t, double, double gap) -> FollowerLoop::Look {
-      return {t > 1 && t < 1 + seconds ? GapStop::port_failed : GapStop::none, gap};
+    loop.set_camera([end = 1 + seconds](double t, double, double gap) -> FollowerLoop::Look {
+      return {t > 1 && t < end ? GapStop::port_failed : GapStop::none, gap};
     });
     loop.run(3);
     EXPECT_EQ(loop.follower.stop(), stop) << seconds;

@@ -45,7 +45,7 @@ class Pieces : public testing::Test {
     channels.acceleration.fill(1);
     channels.cycle_time = hexapod_.limits.cycle_time;
     std::deque<Piece> pieces;
-    append_pieces(segment_, 9, exit_speed, {}, path_, hexapod_.limits, channels, axes, pieces);
+    append_pieces(segment_, {9, exit_speed, {}}, path_, {hexapod_.limits, channels}, axes, pieces);
     end_ = axes;
     return pieces;
   }
@@ -95,7 +95,7 @@ TEST_F(Pieces, OfARestIsOneOfNoLength) {
   rest.rest = 0.7;
   kinematics::AxisVector axes = home();
   std::deque<Piece> pieces;
-  append_pieces(rest, 3, 0, {}, path_, hexapod_.limits, {}, axes, pieces);
+  append_pieces(rest, {3, 0, {}}, path_, {hexapod_.limits, {}}, axes, pieces);
   ASSERT_EQ(pieces.size(), 1u);
   EXPECT_EQ(pieces[0].length, 0);
   EXPECT_EQ(pieces[0].rest, 0.7);
