@@ -40,7 +40,7 @@ int run_calibrate(const CalibrateCall& call) {
     write_file(report->path() / "report.html", report::calibration_html(result));
   }
   stop_if_interrupted();
-  machine::write_calibrated(result.machine, call.output);
+  machine::write_calibrated(result.machine, call.output, result.stored);
   if (report) report->commit();
   fmt::print("{}machine: {}\n", report::calibration_text(result), call.output);
   if (report) fmt::print("report: {}\n", (std::filesystem::path(call.report) / "report.html").string());

@@ -150,11 +150,12 @@ void add_rehearse(CLI::App& app, Action& action) {
                       "the inserted part: an STL in mm, or a name under models/parts");
   command->add_option("--material", request->material,
                       "filament: a name under models/materials or a file; the machine's own unless given");
-  command
-      ->add_option("--as-built", request->as_built,
-                   "the twin's errors: nominal, sampled (left after calibration), manufactured, or a file of "
-                   "as-built parameters")
-      ->capture_default_str();
+  command->add_option(
+      "--as-built", request->as_built,
+      "the machine that stands there: the drawing (nominal), off by the tolerances of manufacture "
+      "(manufactured) or those left after a calibration (sampled), or a file of as-built parameters; "
+      "calibrated: what the calibration of --machine leaves open; without it calibrated where --machine "
+      "has a calibration, else sampled");
   command->add_option("--seed", request->seed, "of the as-built errors and of all noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -88,7 +88,7 @@ void add_sample_poses(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option(
       "--as-built", call->as_built,
-      "measure a twin there: nominal, sampled, manufactured, or a file of as-built parameters");
+      "measure a twin there: nominal, sampled, manufactured, calibrated, or a file of as-built parameters");
   command
       ->add_option(
           "--from", call->from,

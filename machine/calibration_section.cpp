@@ -140,7 +140,7 @@ void require_calibratable(const MachineDescription& machine) {
   if (!may_be_calibrated(machine)) throw InputError(not_calibratable(machine));
 }
 
-void read_calibration(YamlMap& root, MachineDescription& machine) {
+void read_calibration(YamlMap& root, MachineDescription& machine, CalibratedParameters& parameters) {
   if (!may_be_calibrated(machine)) return root.refuse("calibration", not_calibratable(machine));
   if (!root.has("calibration")) return;
   if (!root.complete() && !root.recording()) return;  // without the geometry there is nothing to compare with
@@ -149,6 +149,7 @@ void read_calibration(YamlMap& root, MachineDescription& machine) {
                  read_record(map, machine.calibration.emplace());
                  machine.visit([&](const HexapodModel&) { read_struts(map, machine.hexapod()); },
                                [&](const ChainModel&) { read_chain_calibration(map, machine); });
+                 parameters = read_calibrated_parameters(map, machine);
                });
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/yaml_map.h"
+#include "machine/calibrated_parameters.h"
 #include "machine/description.h"
 
 namespace understudy::machine {
@@ -17,11 +18,17 @@ constexpr double kTurnedFromDrawing = 0.17;  // [rad], 10 deg
 void require_calibratable(const MachineDescription& machine);
 
 /// Where the file has one; after the geometry and the axes. Throws InputError for a part that is missing,
-/// told twice, or far from what is drawn.
-void read_calibration(YamlMap& root, MachineDescription& machine);
+/// told twice, or far from what is drawn, and for a covariance that is none.
+void read_calibration(YamlMap& root, MachineDescription& machine, CalibratedParameters& parameters);
+
+/// The keys `play_um` and `covariance_mm_rad` of the section; `machine` has its axes already.
+CalibratedParameters read_calibrated_parameters(YamlMap& map, const MachineDescription& machine);
+std::string calibrated_parameters_text(const MachineDescription& machine,
+                                       const CalibratedParameters& parameters);
 
 /// The section for `machine`, whose geometry (or chain) and calibration record are the calibrated ones.
-std::string calibration_section(const MachineDescription& machine);
+std::string calibration_section(const MachineDescription& machine,
+                                const CalibratedParameters& parameters = {});
 
 /// The text of a machine file with its section `calibration` replaced, or added at its end. All else,
 /// comments too, stays as it is.
@@ -30,6 +37,7 @@ std::string with_section(const std::string& text, const std::string& section);
 /// Writes the machine file at `path`: that of `machine` with the section above. It appears under its name
 /// only when it can be read back. Throws InputError where it cannot be written, or breaks a limit of the
 /// machine.
-void write_calibrated(const MachineDescription& machine, const std::filesystem::path& path);
+void write_calibrated(const MachineDescription& machine, const std::filesystem::path& path,
+                      const CalibratedParameters& parameters = {});
 
 }  // namespace understudy::machine

@@ -65,7 +65,7 @@ bool begins_top_level(const std::string& line) {
 
 }  // namespace
 
-std::string calibration_section(const MachineDescription& machine) {
+std::string calibration_section(const MachineDescription& machine, const CalibratedParameters& parameters) {
   const CalibrationRecord& record = *machine.calibration;
   std::string out = fmt::format(
       "{}\n  # By understudy calibrate: the controller uses this in place of `geometry`.\n"
@@ -74,8 +74,9 @@ std::string calibration_section(const MachineDescription& machine) {
       record.poses);
   if (std::isfinite(record.tip_sigma))
     out += fmt::format("  tip_sigma_um: {:.3f}   # RMS over the work space\n", to_um(record.tip_sigma));
-  return out + machine.visit([](const HexapodModel& hexapod) { return struts_text(hexapod.geometry); },
-                             [](const ChainModel& chain) { return axes_text(chain.kinematics.chain); });
+  out += machine.visit([](const HexapodModel& hexapod) { return struts_text(hexapod.geometry); },
+                       [](const ChainModel& chain) { return axes_text(chain.kinematics.chain); });
+  return out + calibrated_parameters_text(machine, parameters);
 }
 
 std::string with_section(const std::string& text, const std::string& section) {
@@ -94,13 +95,14 @@ std::string with_section(const std::string& text, const std::string& section) {
   return out + "\n" + section;
 }
 
-void write_calibrated(const MachineDescription& machine, const std::filesystem::path& path) {
+void write_calibrated(const MachineDescription& machine, const std::filesystem::path& path,
+                      const CalibratedParameters& parameters) {
   namespace fs = std::filesystem;
   if (path.extension() != ".yaml")
     throw InputError(fmt::format("{}: a machine file ends in .yaml", path.string()));
   const std::string original = read_file(machine.file);
   const fs::path trial = path.parent_path() / ("." + path.stem().string() + ".part.yaml");
-  write_file(trial, with_section(original, calibration_section(machine)));
+  write_file(trial, with_section(original, calibration_section(machine, parameters)));
   try {
     load_machine(fs::absolute(trial).string());
     fs::rename(trial, path);

@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "core/yaml_map.h"
 #include "kinematics/chain/chain_kind.h"
+#include "machine/calibrated_parameters.h"
 #include "machine/calibration_section.h"
 #include "machine/chain_section.h"
 #include "machine/hexapod_section.h"
@@ -83,7 +84,7 @@ std::vector<std::string> mechanism_words() {
   return words;
 }
 
-void read_machine(YamlMap& root, MachineDescription& m) {
+void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& parameters) {
   m.name = root.text("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
@@ -92,7 +93,7 @@ void read_machine(YamlMap& root, MachineDescription& m) {
     read_chain(root, m);
   else
     read_hexapod(root, m);
-  read_calibration(root, m);
+  read_calibration(root, m, parameters);
   root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool); });
   if (root.has("process"))
     root.section("process", "the filament between drive and part",
@@ -119,19 +120,26 @@ void read_machine(YamlMap& root, MachineDescription& m) {
 }  // namespace
 
 MachineDescription load_machine(const std::string& name_or_path) {
+  CalibratedParameters unused;
+  return load_machine(name_or_path, unused);
+}
+
+MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters) {
   MachineDescription machine;
+  parameters = {};
   machine.file = find_model(name_or_path);
   const std::string bytes = read_file(machine.file);
   machine.sha256 = sha256_hex(bytes);
   YamlMap::read_text(bytes, machine.file.string(),
-                     [&machine](YamlMap& root) { read_machine(root, machine); });
+                     [&](YamlMap& root) { read_machine(root, machine, parameters); });
   return machine;
 }
 
 MapSchema machine_schema() {
   return YamlMap::schema([](YamlMap& root) {
     MachineDescription machine;
-    read_machine(root, machine);
+    CalibratedParameters parameters;
+    read_machine(root, machine, parameters);
   });
 }
 

@@ -42,7 +42,7 @@ struct Scenario {
   std::string machine;  ///< name of a model, or a path
   std::filesystem::path program;
   std::string fixture;   ///< name or path of an STL; empty: none
-  std::string as_built;  ///< nominal, sampled, manufactured or a path
+  std::string as_built;  ///< nominal, sampled, manufactured, calibrated or a path
   std::uint64_t seed = 0;
   std::string gap_control, engine;
   std::string material;               ///< empty: the machine's

@@ -17,7 +17,7 @@ namespace {
 
 using namespace rehearsal;
 
-const std::vector<std::string> kAsBuilt{"nominal", "sampled", "manufactured"};
+const std::vector<std::string> kAsBuilt{"nominal", "sampled", "manufactured", "calibrated"};
 const std::vector<std::string> kGapControls{"off", "start", "continuous"};
 const std::vector<std::string> kStatistics{"min", "max", "mean", "median", "p95", "fraction_within"};
 constexpr std::uint64_t kMachinesMax = 1'000'000;  // beyond it a range of seeds is a slip of the pen
@@ -48,8 +48,9 @@ std::string name_or_path(YamlMap& map, const std::string& key, const fs::path& f
 
 /// A word, or the path of an as-built file.
 std::string read_as_built(YamlMap& map, const fs::path& folder) {
-  const std::string text = name_or_path(map, "as_built", folder, ".yaml",
-                                        "nominal, sampled, manufactured, or the path of an as-built file");
+  const std::string text =
+      name_or_path(map, "as_built", folder, ".yaml",
+                   "nominal, sampled, manufactured, calibrated, or the path of an as-built file");
   if (!text.empty() && !is_path(text, ".yaml")) map.check_word("as_built", text, kAsBuilt);
   return text;
 }

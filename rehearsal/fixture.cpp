@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
 
 namespace understudy::rehearsal {
@@ -22,8 +23,7 @@ void check_table(const std::string& path, const geometry::Mesh& mesh) {
 
 void check_home(const std::string& path, const std::shared_ptr<const geometry::Mesh>& mesh,
                 const machine::MachineDescription& machine) {
-  sim::AsBuilt nominal = sim::make_as_built(machine, "nominal", 0);
-  sim::CollisionObserver bodies(machine, nominal, mesh, {});
+  sim::CollisionObserver bodies(machine, sim::as_described(machine), mesh, {});
   sim::Snapshot home;
   home.X_WT = machine.X_WB * machine.X_BT_home;
   const auto mechanism = machine.make_mechanism();

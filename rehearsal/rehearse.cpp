@@ -79,7 +79,9 @@ TwinSetup prepare(const RehearsalRequest& request) {
   }
   if (!request.fixture.empty())
     setup.part = read_fixture(machine::find_fixture(request.fixture), setup.machine);
-  setup.as_built = sim::make_as_built(setup.machine, request.as_built, request.seed);
+  setup.as_built = sim::make_as_built(
+      setup.machine, request.as_built.empty() ? sim::default_as_built(setup.machine) : request.as_built,
+      request.seed);
   setup.engine = request.engine;
   setup.seed = request.seed;
   setup.faults = resolve_faults(request.faults, setup.machine);
@@ -110,8 +112,8 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
     if (std::isfinite(range.upper)) column.max = range.upper;
     record.axes.push_back(column);
   }
-  record.provenance = {kVersion,     setup.machine.sha256, setup.program.sha256,
-                       request.seed, request.as_built,     request.command};
+  record.provenance = {kVersion,     setup.machine.sha256,  setup.program.sha256,
+                       request.seed, setup.as_built.source, request.command};
   for (const sim::FaultEvent& event : setup.faults)
     record.provenance.faults.push_back(describe(event, setup.machine));
   return record;

@@ -32,9 +32,9 @@ struct RehearsalRequest {
   std::string machine = machine::kDefaultMachine;  ///< name or path
   std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
   std::string engine = "mujoco";
-  std::string fixture;               ///< STL path, a name under models/parts, or empty: only the table
-  std::string material;              ///< name or path; empty: the machine's
-  std::string as_built = "sampled";  ///< nominal, sampled, manufactured
+  std::string fixture;   ///< STL path, a name under models/parts, or empty: only the table
+  std::string material;  ///< name or path; empty: the machine's
+  std::string as_built;  ///< of sim::make_as_built; empty: sim::default_as_built
   std::uint64_t seed = 1;
   std::string gap_control;  ///< off, start, continuous; empty: start on a machine that sees, else off
   std::vector<FaultRequest> faults;  ///< what goes wrong on the way

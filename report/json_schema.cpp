@@ -194,10 +194,9 @@ Json Writer::value(const KeySchema& key) {
       json = text(key);
       break;
     case Type::numbers:
-      json = {{"type", "array"},
-              {"minItems", key.count},
-              {"maxItems", key.count},
-              {"items", number(key, "number")}};
+      json = {{"type", "array"}, {"minItems", std::max<std::size_t>(key.count, 1)}};
+      if (key.count > 0) json["maxItems"] = key.count;
+      json["items"] = number(key, "number");
       break;
     case Type::map:
       json["allOf"].push_back(reference(key.maps.front(), key.key));

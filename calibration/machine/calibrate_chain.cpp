@@ -8,6 +8,7 @@
 #include "calibration/absorb_zeros.h"
 #include "calibration/calibrated.h"
 #include "calibration/machine/estimation_report.h"
+#include "calibration/machine/stored_parameters.h"
 #include "calibration/machine/tip_map.h"
 #include "core/error.h"
 #include "core/units.h"
@@ -92,6 +93,7 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
   kinematics::ChainDescription& known = result.machine.chain().kinematics;
   if (known.design.axes.empty()) known.design = known.chain;
   known.chain = absorb_zeros(found.parameters);
+  result.stored = stored_parameters(found, measurements, result.machine);
   result.machine.X_BT_home = kinematics::forward(known.chain, known.home);
   for (std::size_t j = 0; j < problem.samples.size(); ++j) {
     const ChainSample& sample = problem.samples[j];

@@ -6,6 +6,7 @@
 
 #include "calibration/calibrated.h"
 #include "calibration/machine/estimation_report.h"
+#include "calibration/machine/stored_parameters.h"
 #include "calibration/machine/tip_map.h"
 #include "calibration/residual_covariance.h"
 #include "core/error.h"
@@ -90,6 +91,7 @@ void calibrate_hexapod(const Measurements& measurements, const machine::MachineD
   const Calibration found = estimator.calibrate(problem);
   check_found(found, measurements, result.estimator);
   result.machine.hexapod().geometry = found.parameters.geometry;
+  result.stored = stored_parameters(found, unknowns, measurements, result.machine);
   for (std::size_t j = 0; j < problem.samples.size(); ++j)
     result.poses.push_back(residual_of(problem, found, j, measurements.poses[j].line));
   result.parameters = parameter_lines(problem, found, unknowns);

@@ -8,6 +8,7 @@
 #include "calibration/machine/measuring_frame.h"
 #include "calibration/machine/tip_map.h"
 #include "calibration/synthetic.h"
+#include "machine/calibrated_parameters.h"
 #include "machine/description.h"
 
 namespace understudy::calibration {
@@ -45,6 +46,7 @@ struct MachineCalibration {
   int iterations = 0;
   TipMap tip;
   std::vector<std::string> warnings;
+  machine::CalibratedParameters stored;  ///< what the calibrated file keeps besides `machine`
 };
 
 /// RMS of tip residuals [m] over the poses that were used.

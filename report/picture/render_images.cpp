@@ -125,8 +125,8 @@ std::string scene(const MachineDescription& machine, const Pose& X_WT, ordered_j
     truth["axes"][mechanism->axis_name(i) + (angle ? "_deg" : "_mm")] =
         list({angle ? to_deg(value) : to_mm(value)})[0];
   }
-  return encode_png(draw_overview(
-      rehearsal::machine_scene(machine, sim::make_as_built(machine, "nominal", 1), configuration)));
+  return encode_png(
+      draw_overview(rehearsal::machine_scene(machine, sim::as_described(machine), configuration)));
 }
 
 Pose default_pose(const RenderRequest& request, const MachineDescription& machine) {

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "sim/as_built/as_built_file.h"
+#include "sim/as_built/calibrated_draw.h"
 
 namespace understudy::sim {
 namespace {
@@ -45,9 +46,10 @@ void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
     add_axis_errors(tolerance, built);
 }
 
-/// As the controller knows the machine, or as it was drawn.
-AsBuilt without_errors(const machine::MachineDescription& machine, bool drawn) {
-  const bool before_calibration = drawn && machine.calibration;
+enum class Geometry { drawn, described };
+
+AsBuilt without_errors(const machine::MachineDescription& machine, Geometry geometry) {
+  const bool before_calibration = geometry == Geometry::drawn && machine.calibration;
   AsBuilt built;
   machine.visit(
       [&](const machine::HexapodModel& hexapod) {
@@ -64,9 +66,14 @@ AsBuilt without_errors(const machine::MachineDescription& machine, bool drawn) {
 
 }  // namespace
 
+AsBuilt as_described(const machine::MachineDescription& machine) {
+  return without_errors(machine, Geometry::described);
+}
+
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set,
                       std::uint64_t seed) {
-  AsBuilt built = without_errors(machine, set != "nominal" && set != "sampled");
+  if (set == "calibrated") return draw_calibrated(machine, seed);
+  AsBuilt built = without_errors(machine, Geometry::drawn);
   built.source = set;
   built.seed = seed;
   if (set == "sampled") {
@@ -77,6 +84,10 @@ AsBuilt make_as_built(const machine::MachineDescription& machine, const std::str
     read_as_built(set, built);
   }
   return built;
+}
+
+std::string default_as_built(const machine::MachineDescription& machine) {
+  return machine.calibration ? "calibrated" : "sampled";
 }
 
 }  // namespace understudy::sim

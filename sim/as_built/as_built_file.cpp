@@ -74,6 +74,22 @@ void read_axis(YamlMap& map, Told& told, AsBuilt& built) {
   }
 }
 
+/// `position` and `rotation` are keys.
+void read_mount(YamlMap& map, const std::string& position, const std::string& rotation, const char* about,
+                Pose& mount) {
+  Vec3 p = mount.translation();
+  read_if_given(map, position, kPlace, about, p);
+  mount.translation() = p;
+  if (!map.has(rotation)) return;
+  const auto q = map.quantities(rotation, 4, {-1, 1}, "its rotation in O: w, x, y, z, of unit length");
+  if (map.recording()) return;
+  const Quat turn(q[0], q[1], q[2], q[3]);
+  if (std::abs(turn.norm() - 1) > kUnitTolerance)
+    throw InputError(map.place(rotation),
+                     fmt::format("{} has length {:.7f}, not 1", map.path(rotation), turn.norm()));
+  mount = make_pose(turn.normalized(), p);
+}
+
 void read_built(YamlMap& root, AsBuilt& built) {
   Told told{};
   if (root.either("the machine is a hexapod", built.chain.axes.empty())) {
@@ -84,9 +100,9 @@ void read_built(YamlMap& root, AsBuilt& built) {
                 [&](YamlMap& strut, std::size_t) { read_strut(strut, told, built); });
     return;
   }
-  Vec3 tip = built.chain.X_OT_zero.translation();
-  read_if_given(root, "tip_mm", kPlace, "the tip in O with all axes at 0", tip);
-  built.chain.X_OT_zero.translation() = tip;
+  read_mount(root, "tip_mm", "tool_quaternion", "the tip in O with all axes at 0", built.chain.X_OT_zero);
+  read_mount(root, "work_mm", "work_quaternion", "the work's origin in O with all axes at 0",
+             built.chain.X_OS_zero);
   if (root.has("axes"))
     root.list("axes", 0, "those that differ",
               [&](YamlMap& axis, std::size_t) { read_axis(axis, told, built); });
@@ -96,12 +112,17 @@ std::string text(const Vec3& v, double unit) {
   return fmt::format("[{}, {}, {}]", v.x() / unit, v.y() / unit, v.z() / unit);
 }
 
+std::string rotation_text(const Pose& X) {
+  const Quat q(X.linear());
+  return fmt::format("[{}, {}, {}, {}]", q.w(), q.x(), q.y(), q.z());
+}
+
 }  // namespace
 
 void read_as_built(const std::string& file, AsBuilt& built) {
   if (!std::filesystem::is_regular_file(file))
-    throw InputError(
-        fmt::format("as-built \"{}\" is not one of nominal, sampled, manufactured, nor a file", file));
+    throw InputError(fmt::format(
+        "as-built \"{}\" is not one of nominal, sampled, manufactured, calibrated, nor a file", file));
   YamlMap::read_text(read_file(file), file, [&built](YamlMap& root) { read_built(root, built); });
 }
 
@@ -125,7 +146,10 @@ std::string write_as_built(const AsBuilt& built) {
           to_um(built.nut_play[s]), to_um(built.ball_play[s]));
     return out;
   }
-  out += fmt::format("tip_mm: {}\naxes:\n", text(built.chain.X_OT_zero.translation(), kMillimetre));
+  const Pose &X_OT = built.chain.X_OT_zero, &X_OS = built.chain.X_OS_zero;
+  out += fmt::format("tip_mm: {}\ntool_quaternion: {}\nwork_mm: {}\nwork_quaternion: {}\naxes:\n",
+                     text(X_OT.translation(), kMillimetre), rotation_text(X_OT),
+                     text(X_OS.translation(), kMillimetre), rotation_text(X_OS));
   for (std::size_t i = 0; i < built.chain.axes.size(); ++i) {
     const kinematics::ChainAxis& axis = built.chain.axes[i];
     out += fmt::format("  - {{axis: {}, direction: {}, point_mm: {}, ", axis.name, text(axis.direction, 1),

@@ -11,8 +11,14 @@ namespace understudy::sim {
 
 using kinematics::kStruts;
 
+kinematics::ScrewCoupling built_screw_coupling(const machine::MachineDescription& machine) {
+  const machine::HexapodModel& hexapod = machine.hexapod();
+  return kinematics::screw_coupling(machine.calibration ? hexapod.design : hexapod.geometry, hexapod.joints,
+                                    machine.X_BT_home, machine.screw_coupling().lead);
+}
+
 ScrewTurning::ScrewTurning(const machine::MachineDescription& machine, const AsBuilt& as_built)
-    : geometry_(as_built.hexapod), coupling_(machine.screw_coupling()), X_BW_(machine.X_WB.inverse()) {}
+    : geometry_(as_built.hexapod), coupling_(built_screw_coupling(machine)), X_BW_(machine.X_WB.inverse()) {}
 
 double ScrewTurning::growth(const Pose& X_WT, int strut) const {
   if (coupling_.lead == 0) return 0;
@@ -29,7 +35,7 @@ Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt&
   kinematics::StrutLengths lengths{};
   for (std::size_t i = 0; i < kStruts; ++i) lengths[i] = displacement[i] + as_built.hexapod.length_offset[i];
   const auto found =
-      kinematics::forward(as_built.hexapod, machine.screw_coupling(), lengths, machine.X_BT_home);
+      kinematics::forward(as_built.hexapod, built_screw_coupling(machine), lengths, machine.X_BT_home);
   if (found.status != kinematics::SolveStatus::ok)
     throw MachineError(fmt::format(
         "the loops cannot be closed for strut lengths {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} mm: {}",
@@ -41,7 +47,7 @@ Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt&
 kinematics::AxisVector home_displacement(const machine::MachineDescription& machine,
                                          const AsBuilt& as_built) {
   kinematics::StrutLengths lengths{};
-  if (kinematics::inverse(as_built.hexapod, machine.screw_coupling(), machine.X_BT_home, lengths) !=
+  if (kinematics::inverse(as_built.hexapod, built_screw_coupling(machine), machine.X_BT_home, lengths) !=
       kinematics::SolveStatus::ok)
     throw MachineError("the as-built machine does not reach its home pose");
   kinematics::AxisVector displacement{};

@@ -6,6 +6,10 @@
 
 namespace understudy::sim {
 
+/// How the joints turn the screws of the machine that stands there: as it was drawn, whatever a calibration
+/// believes of it; lead 0 where rails guide them.
+kinematics::ScrewCoupling built_screw_coupling(const machine::MachineDescription& machine);
+
 /// What the screws' turning adds to the struts as the joints swing; nothing where rails guide them.
 class ScrewTurning {
  public:

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "kinematics/hexapod/hexapod_passive_rotation.h"
+#include "sim/plant/hexapod_assembly.h"
 #include "sim/plant/joint_constants.h"
 #include "sim/plant/quasistatic/axis_mechanics.h"
 #include "sim/plant/quasistatic/strut_swing.h"
@@ -78,7 +79,7 @@ class HexapodMechanics final : public AxisMechanics {
 HexapodMechanics::HexapodMechanics(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                    const QuasistaticOptions& options)
     : geometry_(as_built.hexapod),
-      coupling_(machine.screw_coupling()),
+      coupling_(built_screw_coupling(machine)),
       masses_(machine.hexapod().masses),
       X_WB_(machine.X_WB),
       X_BT_home_(machine.X_BT_home),
