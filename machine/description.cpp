@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "core/yaml_map.h"
 #include "kinematics/chain/chain_kind.h"
+#include "machine/built_tolerances.h"
 #include "machine/calibrated_parameters.h"
 #include "machine/calibration_section.h"
 #include "machine/chain_section.h"
@@ -34,11 +35,12 @@ ToleranceSet read_tolerance_set(YamlMap& map, bool chain) {
   return set;
 }
 
-void read_tolerances(YamlMap& map, bool chain, Tolerances& tolerances) {
+void read_tolerances(YamlMap& map, bool chain, Tolerances& tolerances, BuiltTolerances& built) {
   map.section("manufactured", "before any calibration",
               [&](YamlMap& set) { tolerances.manufactured = read_tolerance_set(set, chain); });
   map.section("after_calibration", "left after a calibration",
               [&](YamlMap& set) { tolerances.after_calibration = read_tolerance_set(set, chain); });
+  read_built_tolerances(map, built);
 }
 
 void read_gap(YamlMap& map, GapLimits& gap) {
@@ -84,7 +86,15 @@ std::vector<std::string> mechanism_words() {
   return words;
 }
 
-void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& parameters) {
+/// A machine file: the description, and what only a twin needs.
+struct MachineFile {
+  MachineDescription description;
+  CalibratedParameters calibrated;
+  BuiltTolerances tolerances;
+};
+
+void read_machine(YamlMap& root, MachineFile& file) {
+  MachineDescription& m = file.description;
   m.name = root.text("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
@@ -93,7 +103,7 @@ void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& pa
     read_chain(root, m);
   else
     read_hexapod(root, m);
-  read_calibration(root, m, parameters);
+  read_calibration(root, m, file.calibrated);
   root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool); });
   if (root.has("process"))
     root.section("process", "the filament between drive and part",
@@ -106,7 +116,7 @@ void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& pa
                  [&](YamlMap& map) { read_microscope(map, m.microscope); });
   }
   root.section("tolerances", "1 sigma of a built machine about this description",
-               [&](YamlMap& map) { read_tolerances(map, chain, m.tolerances); });
+               [&](YamlMap& map) { read_tolerances(map, chain, m.tolerances, file.tolerances); });
   // A tool without a nozzle lays nothing that a gap would matter to.
   if (!root.has("tool.end_mill_diameter_mm") || root.has("gap"))
     root.section("gap", "between tip and surface", [&](YamlMap& map) { read_gap(map, m.gap); });
@@ -117,29 +127,36 @@ void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& pa
   if (m.has_microscope) check_optics(root, m);
 }
 
-}  // namespace
-
-MachineDescription load_machine(const std::string& name_or_path) {
-  CalibratedParameters unused;
-  return load_machine(name_or_path, unused);
-}
-
-MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters) {
-  MachineDescription machine;
-  parameters = {};
+MachineFile read_file_of(const std::string& name_or_path) {
+  MachineFile file;
+  MachineDescription& machine = file.description;
   machine.file = find_model(name_or_path);
   const std::string bytes = read_file(machine.file);
   machine.sha256 = sha256_hex(bytes);
-  YamlMap::read_text(bytes, machine.file.string(),
-                     [&](YamlMap& root) { read_machine(root, machine, parameters); });
-  return machine;
+  YamlMap::read_text(bytes, machine.file.string(), [&](YamlMap& root) { read_machine(root, file); });
+  return file;
+}
+
+}  // namespace
+
+MachineDescription load_machine(const std::string& name_or_path) {
+  return read_file_of(name_or_path).description;
+}
+
+MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters) {
+  MachineFile file = read_file_of(name_or_path);
+  parameters = std::move(file.calibrated);
+  return std::move(file.description);
+}
+
+BuiltTolerances load_built_tolerances(const std::string& name_or_path) {
+  return read_file_of(name_or_path).tolerances;
 }
 
 MapSchema machine_schema() {
   return YamlMap::schema([](YamlMap& root) {
-    MachineDescription machine;
-    CalibratedParameters parameters;
-    read_machine(root, machine, parameters);
+    MachineFile file;
+    read_machine(root, file);
   });
 }
 

@@ -24,6 +24,7 @@
 #include "rehearsal/run_twin.h"
 #include "rehearsal/surface.h"
 #include "sim/as_built/as_built_file.h"
+#include "sim/as_built/truth.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
@@ -82,6 +83,8 @@ TwinSetup prepare(const RehearsalRequest& request) {
   setup.as_built = sim::make_as_built(
       setup.machine, request.as_built.empty() ? sim::default_as_built(setup.machine) : request.as_built,
       request.seed);
+  setup.truth = sim::true_description(setup.machine, setup.as_built);
+  setup.built_part = sim::true_part(setup.part, setup.as_built.part);
   setup.engine = request.engine;
   setup.seed = request.seed;
   setup.faults = resolve_faults(request.faults, setup.machine);
@@ -225,7 +228,7 @@ Scene scene_of(const TwinSetup& setup, const std::vector<TracePoint>& trace,
                               point ? sim::Configuration{point->X_WT, point->axes} : home_of(setup.machine));
   scene.simulated = point != nullptr;
   scene.time = point ? point->time : 0;
-  scene.part = setup.part;
+  scene.part = setup.built_part;
   scene.path = printed_path(setup.program);
   scene.printed = std::move(printed);
   return scene;

@@ -12,6 +12,7 @@
 #include "core/units.h"
 #include "rehearsal/trace_observer.h"
 #include "sim/deposition/bead_temperature.h"
+#include "sim/plant/drive_errors.h"
 #include "sim/plant/plant.h"
 #include "sim/sensors/microscope.h"
 #include "sim/surface/beads_near.h"
@@ -67,12 +68,16 @@ std::vector<FrameRecord> pair_with_truth(const control::PrintResult& result,
   return frames;
 }
 
-std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup) {
-  if (setup.engine == "mujoco") return sim::make_mujoco_plant(setup.machine, setup.as_built);
-  if (setup.engine == "bullet") return sim::make_bullet_plant(setup.machine, setup.as_built);
-  if (setup.engine == "quasistatic") return sim::make_quasistatic_plant(setup.machine, setup.as_built);
+std::unique_ptr<sim::Plant> make_engine(const TwinSetup& setup) {
+  if (setup.engine == "mujoco") return sim::make_mujoco_plant(setup.truth, setup.as_built);
+  if (setup.engine == "bullet") return sim::make_bullet_plant(setup.truth, setup.as_built);
+  if (setup.engine == "quasistatic") return sim::make_quasistatic_plant(setup.truth, setup.as_built);
   throw InputError(
       fmt::format("unknown engine {}: one of {}", setup.engine, fmt::join(engine_names(), ", ")));
+}
+
+std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup) {
+  return sim::with_drive_errors(make_engine(setup), setup.truth, setup.as_built);
 }
 
 /// What the printed material knows of its own temperature.
@@ -83,7 +88,7 @@ sim::DepositionOptions deposition_options(const TwinSetup& setup, FlowWatch& flo
   if (!setup.machine.tool.prints()) return options;
   options.on_unsupported = [&strands](const sim::UnsupportedStretch& stretch) { strands.add(stretch); };
   options.glass_transition = setup.material.glass_transition;
-  options.substrate_temperature = sim::BeadTemperature(setup.machine, setup.material);
+  options.substrate_temperature = sim::BeadTemperature(setup.truth, setup.material);
   return options;
 }
 
@@ -92,12 +97,12 @@ constexpr double kLaserSees = 6e-3;  // [m], around the tip
 /// Everything that watches a run, and what it watches.
 struct Watch {
   explicit Watch(const TwinSetup& setup, const RunOptions& options)
-      : workpiece(std::make_shared<sim::Workpiece>(setup.part)),
-        flow(setup.program, setup.machine),
-        strands(setup.machine, setup.material),
-        deposition(setup.machine, workpiece, deposition_options(setup, flow, strands)),
+      : workpiece(std::make_shared<sim::Workpiece>(setup.built_part)),
+        flow(setup.program, setup.truth),
+        strands(setup.truth, setup.material),
+        deposition(setup.truth, workpiece, deposition_options(setup, flow, strands)),
         trace(deposition),
-        collision(setup.machine, setup.as_built, setup.part, collision_options()),
+        collision(setup.truth, setup.as_built, setup.built_part, collision_options()),
         thread(options.watch_collisions ? std::vector<sim::Observer*>{&deposition, &trace, &collision}
                                         : std::vector<sim::Observer*>{&deposition, &trace}) {}
 
@@ -148,7 +153,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   const auto plant = make_plant(setup);
   Watch watch(setup, options);
   std::optional<sim::Microscope> microscope;
-  if (setup.machine.has_microscope) microscope.emplace(setup.machine, setup.part, setup.seed);
+  if (setup.truth.has_microscope) microscope.emplace(setup.truth, setup.built_part, setup.seed);
   std::map<std::uint64_t, ExposureTruth> truth;
   const auto expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
     watch.thread.drain();  // the laser sees what has been printed by now
@@ -158,6 +163,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   };
   sim::TwinOptions twin;
   twin.faults = setup.faults;
+  twin.nozzle_offset = setup.as_built.nozzle_offset;
   sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
                           {&watch.thread}, twin);
 

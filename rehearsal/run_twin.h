@@ -22,10 +22,13 @@ namespace understudy::rehearsal {
 
 /// What a run reads; immutable, shared by runs in several threads.
 struct TwinSetup {
-  machine::MachineDescription machine;
-  machine::Material material;  ///< of a tool that prints
+  machine::MachineDescription machine;  ///< what the controller holds
+  machine::MachineDescription truth;    ///< sim::true_description(machine, as_built): what the twin holds
+  machine::Material material;           ///< of a tool that prints
   toolpath::Program program;
-  std::shared_ptr<const geometry::Mesh> part;  ///< may be null
+  std::shared_ptr<const geometry::Mesh> part;  ///< as drawn: what the controller holds; may be null
+  std::shared_ptr<const geometry::Mesh>
+      built_part;  ///< as clamped: what the twin holds; null where `part` is
   sim::AsBuilt as_built;
   std::string engine;
   std::uint64_t seed = 0;

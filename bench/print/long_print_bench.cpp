@@ -10,6 +10,7 @@
 
 #include "core/units.h"
 #include "rehearsal/run_twin.h"
+#include "sim/as_built/truth.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy {
@@ -64,6 +65,7 @@ void run(std::size_t moves) {
   options.X_WT_home = setup.machine.X_WB * setup.machine.X_BT_home;
   setup.program = toolpath::parse_gcode(program_of(moves), "generated", options);
   setup.as_built = sim::make_as_built(setup.machine, "nominal", 0);
+  setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.engine = "quasistatic";
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();

@@ -6,6 +6,7 @@
 #include "core/random.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/as_built/calibrated_draw.h"
+#include "sim/as_built/world_draw.h"
 
 namespace understudy::sim {
 namespace {
@@ -61,6 +62,10 @@ AsBuilt without_errors(const machine::MachineDescription& machine, Geometry geom
         built.chain = before_calibration ? chain.kinematics.design : chain.kinematics.chain;
         for (std::size_t i = 0; i < built.chain.axes.size(); ++i) built.axis_play[i] = chain.play[i];
       });
+  built.laser = machine.laser;
+  built.microscope = machine.microscope;
+  built.filament_diameter = machine.tool.filament_diameter;
+  built.extruder_lag = machine.process.extruder_lag;
   return built;
 }
 
@@ -80,6 +85,8 @@ AsBuilt make_as_built(const machine::MachineDescription& machine, const std::str
     add_errors(machine.tolerances.after_calibration, built);
   } else if (set == "manufactured") {
     add_errors(machine.tolerances.manufactured, built);
+    // A description that was made in memory has no file, and no tolerances but its own.
+    if (!machine.file.empty()) draw_world(machine::load_built_tolerances(machine.file.string()), built);
   } else if (set != "nominal") {
     read_as_built(set, built);
   }

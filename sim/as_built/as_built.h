@@ -9,6 +9,22 @@
 
 namespace understudy::sim {
 
+/// How a drive's axis moves where its motor turns: by (1 + scale) travel + periodic sin(2 pi travel / lead +
+/// phase), less what that is at travel 0.
+struct DriveError {
+  double scale = 0;
+  double periodic = 0;  ///< [m] or [rad]
+  double phase = 0;     ///< [rad]
+};
+
+/// The part as it is clamped, F, about the part as it was drawn, both in W.
+struct BuiltPart {
+  Pose X_WF = Pose::Identity();
+  double size = 1;    ///< of the drawn part, about the origin of F
+  double ripple = 0;  ///< [m], amplitude of waves of the surface along its normal
+  double phase = 0;   ///< [rad], of the waves
+};
+
 struct AsBuilt {
   /// "nominal", "sampled", "manufactured", "calibrated", the file it was read from, or empty: as described.
   std::string source;
@@ -21,6 +37,14 @@ struct AsBuilt {
   kinematics::Chain chain;             ///< true screws and mounts; empty for a hexapod
   kinematics::AxisVector axis_play{};  ///< [m] or [rad], total free travel
   kinematics::AxisVector axis_zero{};  ///< [m] or [rad], true position where a drive reads 0
+  // Every machine.
+  kinematics::PerAxis<DriveError> drives{};
+  machine::Laser laser;            ///< where has_microscope
+  machine::Microscope microscope;  ///< likewise
+  double filament_diameter = 0;    ///< [m]
+  double extruder_lag = 0;         ///< [s]
+  double nozzle_offset = 0;        ///< [K], the nozzle beyond what its sensor reads
+  BuiltPart part;
 };
 
 /// A machine that is exactly what its description says, calibrated geometry included: no truth about a

@@ -9,6 +9,7 @@
 #include "core/assert.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "sim/as_built/world_draw.h"
 
 namespace understudy::sim {
 namespace {
@@ -101,13 +102,17 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine, std::uint64_
                                  kOthers));
   machine::CalibratedParameters parameters;
   (void)machine::load_machine(machine.file.string(), parameters);
+  machine::BuiltTolerances others = machine::load_built_tolerances(machine.file.string());
+  if (parameters.play) others.play = 0;
   if (parameters.covariance.size() == 0)
     throw InputError(
         file,
         fmt::format("as-built calibrated: the calibration, by {}, has no covariance; calibrate again with "
                     "an estimator that gives one, or ask for {}",
                     machine.calibration->estimator, kOthers));
-  return draw_calibrated(machine, parameters, seed);
+  AsBuilt built = draw_calibrated(machine, parameters, seed);
+  draw_world(others, built);
+  return built;
 }
 
 }  // namespace understudy::sim

@@ -14,8 +14,9 @@ namespace understudy::sim {
 AsBuilt draw_calibrated(const machine::MachineDescription& machine,
                         const machine::CalibratedParameters& parameters, std::uint64_t seed);
 
-/// The same for the file that `machine` was read from. Throws InputError, with what to do, where it has no
-/// calibration or its calibration no covariance.
+/// The same for the file that `machine` was read from, with what the calibration does not tell drawn within
+/// the file's tolerances: drives, sensors, part and filament, and play unless it was found. Throws
+/// InputError, with what to do, where it has no calibration or its calibration no covariance.
 AsBuilt draw_calibrated(const machine::MachineDescription& machine, std::uint64_t seed);
 
 }  // namespace understudy::sim

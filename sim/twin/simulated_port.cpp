@@ -146,6 +146,7 @@ void SimulatedPort::observe(const Target& target) {
   s.filament = target.filament;
   s.fan = outputs_.fan;
   s.nozzle_temperature = outputs_.nozzle_temperature;
+  if (s.nozzle_temperature > 0) s.nozzle_temperature += options_.nozzle_offset;
   s.line = target.line;
   s.closure_error = plant_.closure_error();
   for (Observer* observer : observers_) observer->observe(s);

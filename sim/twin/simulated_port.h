@@ -21,6 +21,7 @@ struct TwinOptions {
   double observation_period = 2e-3;  ///< [s], between snapshots
   bool quantise_steps = true;        ///< drives move in whole microsteps
   std::size_t queue_capacity = 4096;
+  double nozzle_offset = 0;  ///< [K], of a heated nozzle beyond what was asked for
   std::vector<FaultEvent> faults;
 };
 

@@ -13,8 +13,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// Ten digits of each number.
-constexpr double kDigits = 1e-10;
+// Half of the last of ten digits.
+constexpr double kDigits = 5e-10;
 
 MachineDescription calibrated(const char* name) {
   MachineDescription m = load_machine(name);

@@ -117,7 +117,8 @@ std::string numbers(AsBuilt built) {
 
 template <typename Geometry>
 void expect_apart(const MachineDescription& machine, const std::vector<Move<Geometry>>& moves) {
-  const std::string file = testing::TempDir() + "/truth_and_belief.yaml";
+  const std::string file =
+      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml";
   write_file(file, write_as_built(make_as_built(machine, "manufactured", 3)));
   const std::array<std::string, 4> sets{"nominal", "sampled", "manufactured", file};
   const AsBuilt truth = make_as_built(machine, "manufactured", 3);

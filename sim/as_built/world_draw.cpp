@@ -1,0 +1,101 @@
+#include "sim/as_built/world_draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/random.h"
+
+namespace understudy::sim {
+namespace {
+
+using machine::BuiltTolerances;
+
+class Draws {
+ public:
+  explicit Draws(const AsBuilt& built) : seed_(built.seed), set_(built.source) {}
+  Random stream(const std::string& truth) const {
+    return Random(seed_, fmt::format("as-built/{}/{}", set_, truth));
+  }
+  double normal(const std::string& truth, double sigma) const { return sigma * stream(truth).normal(); }
+  double phase(const std::string& truth) const { return stream(truth).uniform(0, 2 * std::numbers::pi); }
+  Vec3 vector(const std::string& truth, double sigma) const {
+    Random random = stream(truth);
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    return sigma * Vec3(x, y, z);
+  }
+  /// `value` times what may not turn it round.
+  void scale(const std::string& truth, double share, double& value) const {
+    value *= std::max(0.0, 1 + normal(truth, share));
+  }
+  /// In the frame of the mount, as the bracket that holds it is bent.
+  void mount(const std::string& truth, const BuiltTolerances& t, Pose& X) const {
+    X = X * make_pose(exp_rotation(vector(truth + " rotation", t.mount_rotation)),
+                      vector(truth + " position", t.mount_position));
+  }
+
+ private:
+  std::uint64_t seed_;
+  std::string set_;
+};
+
+void draw_drives(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
+  const auto& axes = built.chain.axes;
+  const std::size_t count = axes.empty() ? kinematics::kStruts : axes.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!axes.empty() && axes[i].angle) continue;  // a gear has no lead
+    DriveError& drive = built.drives[i];
+    const std::string of = fmt::format("drive {}", i + 1);
+    drive.scale += draws.normal(of + " lead", t.lead);
+    drive.periodic += std::abs(draws.normal(of + " periodic", t.periodic));
+    drive.phase = draws.phase(of + " phase");
+  }
+}
+
+void draw_play(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
+  for (std::size_t i = 0; i < built.nut_play.size(); ++i) {
+    draws.scale(fmt::format("nut play {}", i + 1), t.play, built.nut_play[i]);
+    draws.scale(fmt::format("ball play {}", i + 1), t.play, built.ball_play[i]);
+  }
+  for (std::size_t i = 0; i < built.chain.axes.size(); ++i)
+    draws.scale(fmt::format("axis play {}", i + 1), t.play, built.axis_play[i]);
+}
+
+void draw_optics(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
+  draws.mount("laser", t, built.laser.X_TL);
+  draws.scale("laser power", t.laser_power, built.laser.peak_level);
+  draws.scale("laser waist", t.waist, built.laser.waist_diameter);
+  machine::Microscope& microscope = built.microscope;
+  draws.mount("camera", t, microscope.X_TC);
+  draws.scale("camera scale", t.camera_scale, microscope.camera.focal_px);
+  microscope.camera.centre_px += draws.vector("camera centre", t.camera_centre).head<2>();
+  draws.scale("camera blur", t.blur, microscope.blur_px);
+  draws.scale("ambient light", t.ambient_light, microscope.ambient_level);
+}
+
+void draw_part(const Draws& draws, const BuiltTolerances& t, BuiltPart& part) {
+  part.X_WF = make_pose(exp_rotation(draws.vector("part rotation", t.part_rotation)),
+                        draws.vector("part position", t.part_position)) *
+              part.X_WF;
+  draws.scale("part size", t.part_size, part.size);
+  part.ripple += std::abs(draws.normal("part ripple", t.part_ripple));
+  part.phase = draws.phase("part phase");
+}
+
+}  // namespace
+
+void draw_world(const BuiltTolerances& tolerances, AsBuilt& built) {
+  const Draws draws(built);
+  draw_drives(draws, tolerances, built);
+  draw_play(draws, tolerances, built);
+  draw_optics(draws, tolerances, built);
+  draw_part(draws, tolerances, built.part);
+  built.filament_diameter += draws.normal("filament diameter", tolerances.filament_diameter);
+  draws.scale("extruder lag", tolerances.extruder_lag, built.extruder_lag);
+  built.nozzle_offset += draws.normal("nozzle temperature", tolerances.nozzle_temperature);
+}
+
+}  // namespace understudy::sim

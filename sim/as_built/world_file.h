@@ -1,0 +1,17 @@
+// The part of an as-built file that is no geometry: drives, sensors, the clamped part, the filament.
+#pragma once
+
+#include <string>
+
+#include "core/yaml_map.h"
+#include "sim/as_built/as_built.h"
+
+namespace understudy::sim {
+
+/// Keys that the file does not have leave `built` as it is; errors are those of read_as_built().
+void read_world(YamlMap& root, AsBuilt& built);
+
+/// Each map of which a value differs from `described`; empty where none does.
+std::string write_world(const AsBuilt& built);
+
+}  // namespace understudy::sim

@@ -1,0 +1,157 @@
+// Built machines differ from their description as the tolerances say, each truth by a stream of its own.
+#include "sim/as_built/world_draw.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim/as_built/as_built_file.h"
+
+namespace understudy::sim {
+namespace {
+
+using machine::BuiltTolerances;
+
+constexpr int kMachines = 2000;
+constexpr double kSigma = 1e-3;  // of whatever unit: small, so that shares and rotations are linear
+
+AsBuilt described() {
+  static const machine::MachineDescription hexapod = machine::load_machine("hexapod");
+  return as_described(hexapod);
+}
+
+AsBuilt drawn(const BuiltTolerances& tolerances, std::uint64_t seed) {
+  AsBuilt built = described();
+  built.source = "manufactured";
+  built.seed = seed;
+  draw_world(tolerances, built);
+  return built;
+}
+
+/// A truth, the tolerance that is said to spread it, and how many numbers it is.
+struct Truth {
+  std::string name;
+  double BuiltTolerances::*tolerance;
+  std::function<std::vector<double>(const AsBuilt&)> errors;
+};
+
+std::vector<double> numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+std::vector<Truth> truths() {
+  using T = BuiltTolerances;
+  static const AsBuilt is = described();
+  const auto mount = [](const Pose& described_pose, const Pose& X) -> Pose {
+    return described_pose.inverse() * X;
+  };
+  const auto share = [](double value, double was) { return std::vector<double>{value / was - 1}; };
+  return {
+      {"lead", &T::lead, [](const AsBuilt& b) { return std::vector<double>{b.drives[2].scale}; }},
+      {"play", &T::play, [=](const AsBuilt& b) { return share(b.nut_play[4], is.nut_play[4]); }},
+      {"laser position", &T::mount_position,
+       [=](const AsBuilt& b) { return numbers(mount(is.laser.X_TL, b.laser.X_TL).translation()); }},
+      {"laser rotation", &T::mount_rotation,
+       [=](const AsBuilt& b) { return numbers(log_rotation(mount(is.laser.X_TL, b.laser.X_TL).linear())); }},
+      {"camera position", &T::mount_position,
+       [=](const AsBuilt& b) { return numbers(mount(is.microscope.X_TC, b.microscope.X_TC).translation()); }},
+      {"camera rotation", &T::mount_rotation,
+       [=](const AsBuilt& b) {
+         return numbers(log_rotation(mount(is.microscope.X_TC, b.microscope.X_TC).linear()));
+       }},
+      {"camera scale", &T::camera_scale,
+       [=](const AsBuilt& b) { return share(b.microscope.camera.focal_px, is.microscope.camera.focal_px); }},
+      {"camera centre", &T::camera_centre,
+       [=](const AsBuilt& b) {
+         const Vec2 by = b.microscope.camera.centre_px - is.microscope.camera.centre_px;
+         return std::vector<double>{by.x(), by.y()};
+       }},
+      {"laser power", &T::laser_power,
+       [=](const AsBuilt& b) { return share(b.laser.peak_level, is.laser.peak_level); }},
+      {"waist", &T::waist,
+       [=](const AsBuilt& b) { return share(b.laser.waist_diameter, is.laser.waist_diameter); }},
+      {"blur", &T::blur,
+       [=](const AsBuilt& b) { return share(b.microscope.blur_px, is.microscope.blur_px); }},
+      {"ambient light", &T::ambient_light,
+       [=](const AsBuilt& b) { return share(b.microscope.ambient_level, is.microscope.ambient_level); }},
+      {"part position", &T::part_position,
+       [](const AsBuilt& b) { return numbers(b.part.X_WF.translation()); }},
+      {"part rotation", &T::part_rotation,
+       [](const AsBuilt& b) { return numbers(log_rotation(b.part.X_WF.linear())); }},
+      {"part size", &T::part_size, [](const AsBuilt& b) { return std::vector<double>{b.part.size - 1}; }},
+      {"filament diameter", &T::filament_diameter,
+       [=](const AsBuilt& b) { return std::vector<double>{b.filament_diameter - is.filament_diameter}; }},
+      {"extruder lag", &T::extruder_lag,
+       [=](const AsBuilt& b) { return share(b.extruder_lag, is.extruder_lag); }},
+      {"nozzle temperature", &T::nozzle_temperature,
+       [](const AsBuilt& b) { return std::vector<double>{b.nozzle_offset}; }},
+  };
+}
+
+TEST(WorldDraw, EachTruthSpreadsAsItsToleranceStates) {
+  for (const Truth& truth : truths()) {
+    SCOPED_TRACE(truth.name);
+    BuiltTolerances tolerances;
+    tolerances.*truth.tolerance = kSigma;
+    std::vector<double> sums(truth.errors(described()).size()), squares(sums.size());
+    for (std::uint64_t seed = 1; seed <= kMachines; ++seed) {
+      const auto errors = truth.errors(drawn(tolerances, seed));
+      for (std::size_t k = 0; k < errors.size(); ++k)
+        sums[k] += errors[k], squares[k] += errors[k] * errors[k];
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      // Four standard errors of a mean and of a variance over n draws.
+      EXPECT_NEAR(sums[k] / kMachines / kSigma, 0, 4 / std::sqrt(1.0 * kMachines)) << "number " << k;
+      EXPECT_NEAR(squares[k] / kMachines / (kSigma * kSigma), 1, 4 * std::sqrt(2.0 / kMachines))
+          << "number " << k;
+    }
+  }
+}
+
+TEST(WorldDraw, ATruthMoreChangesNoDrawOfAnother) {
+  BuiltTolerances all;
+  for (const Truth& truth : truths()) all.*truth.tolerance = kSigma;
+  const AsBuilt complete = drawn(all, 5);
+  for (const Truth& left_out : truths()) {
+    BuiltTolerances without = all;
+    without.*left_out.tolerance = 0;
+    const AsBuilt built = drawn(without, 5);
+    for (const Truth& truth : truths()) {
+      if (truth.tolerance == left_out.tolerance)
+        EXPECT_NE(truth.errors(built), truth.errors(complete)) << truth.name;
+      else
+        EXPECT_EQ(truth.errors(built), truth.errors(complete)) << truth.name << " without " << left_out.name;
+    }
+  }
+}
+
+TEST(WorldDraw, NoTruthsShareAStream) {
+  BuiltTolerances all;
+  for (const Truth& truth : truths()) all.*truth.tolerance = kSigma;
+  const AsBuilt built = drawn(all, 9);
+  std::vector<double> errors;
+  for (const Truth& truth : truths())
+    for (const double error : truth.errors(built)) errors.push_back(error);
+  std::sort(errors.begin(), errors.end());
+  // Differences of shares are rounded; equal draws differ by less than this, others hardly ever.
+  for (std::size_t k = 1; k < errors.size(); ++k) EXPECT_GT(errors[k] - errors[k - 1], 1e-12) << errors[k];
+}
+
+TEST(WorldDraw, WithoutTolerancesItIsAsDescribed) {
+  AsBuilt built = drawn({}, 3);
+  EXPECT_EQ(built.laser.X_TL.matrix(), described().laser.X_TL.matrix());
+  EXPECT_EQ(built.part.ripple, 0);
+  EXPECT_EQ(built.drives[0].periodic, 0);
+}
+
+TEST(WorldDraw, OnlyMachinesAsManufacturedAreDrawn) {
+  const auto hexapod = machine::load_machine("hexapod");
+  const Pose& laser = described().laser.X_TL;
+  EXPECT_EQ(make_as_built(hexapod, "sampled", 3).laser.X_TL.matrix(), laser.matrix());
+  EXPECT_EQ(make_as_built(hexapod, "nominal", 3).laser.X_TL.matrix(), laser.matrix());
+  EXPECT_NE(make_as_built(hexapod, "manufactured", 3).laser.X_TL.matrix(), laser.matrix());
+}
+
+}  // namespace
+}  // namespace understudy::sim
