@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Lets clang parse sources as a build folder's compile_commands.json compiles them, warnings as errors.
 
-    scripts/clang_syntax.py BUILD [--but-for OTHER-BUILD...] < names-of-sources
+    scripts/clang_syntax.py BUILD < names-of-sources
 
 Prints each source's first error and exits 1 if there is any. Passes over names, one a line, that the build does not
-compile, and what the other builds have compiled.
+compile.
 """
 import concurrent.futures
 import json
@@ -40,20 +40,9 @@ def entries(build):
     return {os.path.relpath(entry["file"]): entry for entry in json.loads(path.read_text())}
 
 
-def object_of(entry):
-    words = shlex.split(entry["command"])
-    return words[words.index("-o") + 1]
-
-
-def compiled(build):
-    return {name for name, entry in entries(build).items()
-            if (pathlib.Path(entry["directory"]) / object_of(entry)).exists()}
-
-
 def main():
     known = entries(sys.argv[1])
-    seen = set().union(*(compiled(build) for build in sys.argv[3:]))
-    names = [name for name in sys.stdin.read().split() if name in known and name not in seen]
+    names = [name for name in sys.stdin.read().split() if name in known]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         errors = [error for error in pool.map(first_error, (known[name] for name in names)) if error]
     for error in errors:

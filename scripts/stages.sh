@@ -1,5 +1,5 @@
 # The stages of ./check. Sourced by it: uses $all, $base and $stages, and say, configure and build of prepare.sh.
-known_stages="format rooms warnings controller doxygen sanitize threads clang tidy"
+known_stages="format rooms warnings controller doxygen clang tidy threads sanitize"
 
 # Tests that share data between threads: work pool, strands, ports, the observers' thread.
 thread_programs=(core_test machine_test strand_test deposition_test twin_test)
@@ -84,12 +84,9 @@ clang_commands() {
   sed -E 's| -Winvalid-pch -include [^ ]+||' build/release/compile_commands.json >build/clang/compile_commands.json
 }
 
-# What the sanitizer stages of the same run have compiled needs no second look.
 stage_clang() {
   clang_commands
-  local seen=()
-  [[ " ${stages[*]} " != *" sanitize "*" threads "* ]] || seen=(--but-for build/asan-controller build/tsan)
-  changed_sources | scripts/affected_sources.py | scripts/clang_syntax.py build/clang "${seen[@]}"
+  changed_sources | scripts/affected_sources.py | scripts/clang_syntax.py build/clang
 }
 
 stage_tidy() {
