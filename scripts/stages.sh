@@ -73,7 +73,7 @@ stage_sanitize() {
 
 stage_threads() {
   build tsan "${thread_programs[@]}"
-  run_tests tsan -R "$thread_tests"
+  TSAN_OPTIONS="suppressions=$PWD/cmake/tsan.supp print_suppressions=0" run_tests tsan -R "$thread_tests"
 }
 
 # The compile commands of release for clang, in build/clang: without GCC's precompiled header, which clang cannot read
