@@ -52,10 +52,8 @@ int run_calibrate(const CalibrateCall& call) {
 void add_calibrate(CLI::App& app, Action& action) {
   auto call = std::make_shared<CalibrateCall>();
   auto* command = app.add_subcommand("calibrate", "Find a machine's parameters from measured poses");
-  command
-      ->add_option("measurements", call->request.measurements,
-                   "CSV of measured poses (docs/calibration-data.md)")
-      ->required();
+  auto* measurements = command->add_option("measurements", call->request.measurements,
+                                           "CSV of measured poses, required (docs/calibration-data.md)");
   add_machine_option(*command, call->request.machine);
   command->add_option(
       "--estimator", call->request.estimator,
@@ -72,9 +70,17 @@ void add_calibrate(CLI::App& app, Action& action) {
                    "um,mrad: 1 sigma of a measured pose on each axis, where the file has no columns for it")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("-o,--output", call->output, "calibrated machine file, a .yaml")->required();
+  auto* output = command->add_option("-o,--output", call->output, "calibrated machine file, a .yaml");
+  output->required();
   command->add_option("--report", call->report, "folder for report.html and summary.json");
-  command->callback([=, &action] { action = [=] { return run_calibrate(*call); }; });
+  auto* gap_sensor = add_calibrate_gap_sensor(*command, action);
+  gap_sensor->preparse_callback([=](std::size_t) { output->required(false); });  // it has its own
+  command->callback([=, &action] {
+    if (gap_sensor->parsed()) return;
+    // Not by required(): CLI11 would take the sub-command's name for the file.
+    if (measurements->count() == 0) throw CLI::RequiredError(measurements->get_name());
+    action = [=] { return run_calibrate(*call); };
+  });
 }
 
 }  // namespace understudy::cli

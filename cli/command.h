@@ -20,8 +20,10 @@ void add_sweep(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_kinematics(CLI::App& app, Action& action);  ///< axes, poses
 void add_calibrate(CLI::App& app, Action& action);
+CLI::App* add_calibrate_gap_sensor(CLI::App& calibrate, Action& action);
 void add_measure(CLI::App& app, Action& action);  ///< board, targets, pose
 void add_sample_poses(CLI::App& app, Action& action);
+void add_sample_gaps(CLI::App& app, Action& action);
 void add_render(CLI::App& app, Action& action);
 void add_workspace(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);

@@ -46,6 +46,7 @@ void add_twin_commands(CLI::App& app, Action& action) {
   add_scenario(app, action);
   add_sweep(app, action);
   add_sample_poses(app, action);
+  add_sample_gaps(app, action);
   add_render(app, action);
   add_workspace(app, action);
   add_benchmark(app, action);

@@ -1,10 +1,7 @@
 #include "core/number_table.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-
-#include "core/error.h"
 
 namespace understudy {
 namespace {
@@ -15,10 +12,7 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-struct Cell {
-  std::string text;
-  int column;  ///< where the cell begins in its line, from 1
-};
+using Cell = TextRow::Cell;
 
 std::vector<Cell> cells_of(const std::string& line) {
   std::vector<Cell> cells;
@@ -32,18 +26,15 @@ std::vector<Cell> cells_of(const std::string& line) {
   }
 }
 
-bool is_header(const std::vector<Cell>& cells, const std::vector<std::string>& header) {
-  return std::equal(cells.begin(), cells.end(), header.begin(), header.end(),
-                    [](const Cell& cell, const std::string& word) { return cell.text == word; });
-}
-
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : ",") + word;
   return text;
 }
 
-double number(const Cell& cell, const std::string& name, const Place& place) {
+}  // namespace
+
+double table_number(const Cell& cell, const std::string& name, const Place& place) {
   const char* const begin = cell.text.data() + (cell.text.starts_with('+') ? 1 : 0);
   const char* const end = cell.text.data() + cell.text.size();
   double value = 0;
@@ -53,32 +44,39 @@ double number(const Cell& cell, const std::string& name, const Place& place) {
   return value;
 }
 
-}  // namespace
+bool read_text_row(std::istream& in, TextRow& row) {
+  std::string line;
+  while (std::getline(in, line)) {
+    ++row.line;
+    const std::string text = trimmed(line);
+    if (text.empty() || text[0] == '#') continue;
+    row.cells = cells_of(line);
+    return true;
+  }
+  return false;
+}
 
 std::vector<NumberRow> read_number_table(std::istream& in, const std::string& name,
                                          const std::vector<std::string>& header) {
+  TextRow line;
+  if (!read_text_row(in, line))
+    throw InputError({name, 0, 0}, "is empty; the header is '" + joined(header) + "'");
+  std::vector<std::string> words;
+  for (const Cell& cell : line.cells) words.push_back(cell.text);
+  if (words != header)
+    throw InputError({name, line.line, 0},
+                     "the header is '" + joined(words) + "', not '" + joined(header) + "'");
   std::vector<NumberRow> rows;
-  bool headed = false;
-  std::string line;
-  for (int count = 1; std::getline(in, line); ++count) {
-    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
-    const auto cells = cells_of(line);
-    if (!headed) {
-      if (!is_header(cells, header))
-        throw InputError({name, count, 0},
-                         "the header is '" + trimmed(line) + "', not '" + joined(header) + "'");
-      headed = true;
-      continue;
-    }
+  while (read_text_row(in, line)) {
+    const auto& cells = line.cells;
     if (cells.size() != header.size())
-      throw InputError({name, count, 0},
+      throw InputError({name, line.line, 0},
                        std::to_string(cells.size()) + " cells, not " + std::to_string(header.size()));
-    NumberRow row{count, {}};
+    NumberRow row{line.line, {}};
     for (std::size_t i = 0; i < cells.size(); ++i)
-      row.values.push_back(number(cells[i], header[i], {name, count, cells[i].column}));
+      row.values.push_back(table_number(cells[i], header[i], {name, line.line, cells[i].column}));
     rows.push_back(std::move(row));
   }
-  if (!headed) throw InputError({name, 0, 0}, "is empty; the header is '" + joined(header) + "'");
   return rows;
 }
 

@@ -5,7 +5,26 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
+
 namespace understudy {
+
+/// A line of a table in CSV that is neither empty nor a comment.
+struct TextRow {
+  struct Cell {
+    std::string text;  ///< without spaces around it
+    int column = 0;    ///< where it begins in its line, from 1
+  };
+  int line = 0;
+  std::vector<Cell> cells;
+};
+
+/// The next row, whatever its cells are; `row` holds the one before, or none yet. False: the table ends.
+/// Empty lines and lines that begin with # are passed over.
+bool read_text_row(std::istream& in, TextRow& row);
+
+/// Throws InputError at `place`, calling it `name`, unless the cell is a finite number.
+double table_number(const TextRow::Cell& cell, const std::string& name, const Place& place);
 
 struct NumberRow {
   int line = 0;

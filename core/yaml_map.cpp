@@ -39,6 +39,7 @@ constexpr std::array kUnits{
     Unit{"_nm", " nm", 1e-9},
     Unit{"_mrad", " mrad", 1e-3},
     Unit{"_permille", " permille", 1e-3},
+    Unit{"_percent", " percent", 1e-2},
     Unit{"_arcmin", " arcmin", kDegree / 60},
     Unit{"_deg", " deg", kDegree},
     Unit{"_hz", " Hz", 1},

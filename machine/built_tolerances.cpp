@@ -20,9 +20,6 @@ void read_drives(Keys keys, BuiltTolerances& t) {
 }
 
 void read_optics(Keys keys, BuiltTolerances& t) {
-  keys.read("mount_position_mm", {0, 5}, "each coordinate of laser and camera", t.mount_position);
-  keys.read("mount_rotation_mrad", {0, 100}, "laser and camera, about each of their axes", t.mount_rotation);
-  keys.read("camera_scale_permille", kShare, "of the camera's scale", t.camera_scale);
   keys.read("camera_centre_px", {0, 1000}, "each coordinate of the principal point", t.camera_centre);
   keys.read("laser_power_permille", kShare, "of the laser's grey levels", t.laser_power);
   keys.read("waist_permille", kShare, "of the beam's waist", t.waist);

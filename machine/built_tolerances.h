@@ -14,16 +14,12 @@ struct BuiltTolerances {
   double lead = 0;      ///< share: a lead that is long or short
   double periodic = 0;  ///< [m], amplitude of an error with the period of one motor turn
   double play = 0;      ///< share, of each play
-  // Laser and camera, besides their mounts.
+  // Laser and camera, besides their mounting, which a controller uses too (MountingTolerances).
   double laser_power = 0;    ///< share
   double waist = 0;          ///< share
   double blur = 0;           ///< share
   double ambient_light = 0;  ///< share
-  // Their mounts.
-  double mount_position = 0;  ///< [m], each coordinate of the laser's front and of the camera's lens
-  double mount_rotation = 0;  ///< [rad], about each of their axes
-  double camera_scale = 0;    ///< share
-  double camera_centre = 0;   ///< [px], each coordinate of the principal point
+  double camera_centre = 0;  ///< [px], each coordinate of the principal point
   // The clamped part.
   double part_position = 0;  ///< [m], each coordinate
   double part_rotation = 0;  ///< [rad], about each axis of W

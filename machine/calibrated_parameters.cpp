@@ -1,62 +1,24 @@
 #include "machine/calibrated_parameters.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
 #include "machine/calibration_section.h"
+#include "machine/covariance_key.h"
 
 namespace understudy::machine {
 namespace {
 
 constexpr const char* kCovariance = "covariance_mm_rad";
-// The file has ten digits of each number; what they leave of a zero eigenvalue of the correlations is below.
-constexpr double kRounding = 1e-7;
 constexpr Eigen::Index kMountRows = 6;  // position and rotation vector
 
-[[noreturn]] void refuse(const YamlMap& map, const std::string& why) {
-  throw InputError(map.place(kCovariance), fmt::format("{} is not positive semi-definite: {}; write it with "
-                                                       "understudy calibrate",
-                                                       map.path(kCovariance), why));
-}
-
-/// Judged by correlations, for which units do not matter.
-void check_semidefinite(const YamlMap& map, const Eigen::MatrixXd& covariance) {
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(covariance.rows());
-  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
-    const double variance = covariance(k, k);
-    if (variance < 0) refuse(map, fmt::format("the variance of number {} is {:g}", k + 1, variance));
-    if (variance > 0) weight[k] = 1 / std::sqrt(variance);
-    if (variance == 0 && covariance.row(k).cwiseAbs().maxCoeff() > 0)
-      refuse(map, fmt::format("the variance of number {} is 0, its covariances are not", k + 1));
-  }
-  const Eigen::MatrixXd correlation = weight.asDiagonal() * covariance * weight.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation, Eigen::EigenvaluesOnly);
-  const double least = eigen.eigenvalues()[0];
-  if (least < -kRounding * static_cast<double>(covariance.rows()))
-    refuse(map, fmt::format("an eigenvalue of its correlations is {:.3g}", least));
-}
-
-Eigen::MatrixXd symmetric(const std::vector<double>& triangle, const Eigen::VectorXd& units) {
-  Eigen::MatrixXd full(units.size(), units.size());
-  std::size_t at = 0;
-  for (Eigen::Index i = 0; i < units.size(); ++i)
-    for (Eigen::Index j = 0; j <= i; ++j) full(i, j) = full(j, i) = units[i] * units[j] * triangle[at++];
-  return full;
-}
-
-/// The rows of this machine; 0 where a schema is recorded and each file has a number of its own.
-std::size_t triangle_size(const YamlMap& map, const MachineDescription& machine,
-                          const Eigen::VectorXd& units) {
-  const bool listed =
-      machine.visit([](const HexapodModel&) { return false; },
-                    [](const ChainModel& chain) { return chain.kinematics.parameters.empty(); });
-  const auto rows = static_cast<std::size_t>(units.size());
-  return map.recording() && listed ? 0 : rows * (rows + 1) / 2;
+/// Each file has a number of rows of its own.
+bool rows_are_listed(const MachineDescription& machine) {
+  return machine.visit([](const HexapodModel&) { return false; },
+                       [](const ChainModel& chain) { return chain.kinematics.parameters.empty(); });
 }
 
 }  // namespace
@@ -93,13 +55,9 @@ CalibratedParameters read_calibrated_parameters(YamlMap& map, const MachineDescr
     std::copy_n(play.begin(), kinematics::kStruts, parameters.play.emplace().begin());
   }
   if (!map.has(kCovariance)) return parameters;
-  const Eigen::VectorXd units = calibrated_units(machine, parameters.play.has_value());
-  const auto triangle =
-      map.numbers(kCovariance, triangle_size(map, machine, units), {-1e6, 1e6},
-                  "of the numbers of this section: the lower triangle, row by row, in mm and rad");
-  if (!map.complete()) return parameters;
-  parameters.covariance = symmetric(triangle, units);
-  check_semidefinite(map, parameters.covariance);
+  parameters.covariance =
+      read_covariance(map, kCovariance, calibrated_units(machine, parameters.play.has_value()),
+                      "understudy calibrate", rows_are_listed(machine));
   return parameters;
 }
 
@@ -113,18 +71,9 @@ std::string calibrated_parameters_text(const MachineDescription& machine,
     out += "]\n";
   }
   if (parameters.covariance.size() == 0) return out;
-  const Eigen::VectorXd units = calibrated_units(machine, parameters.play.has_value());
-  out += fmt::format("  {}: [   # lower triangle; docs/machine-description.md#covariance has the order\n",
-                     kCovariance);
-  for (Eigen::Index i = 0; i < units.size(); ++i) {
-    out += "    ";
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      if (j > 0) out += ", ";
-      out += fmt::format("{:.10g}", parameters.covariance(i, j) / (units[i] * units[j]));
-    }
-    out += i + 1 < units.size() ? ",\n" : "]\n";
-  }
-  return out;
+  return out + covariance_text(kCovariance, parameters.covariance,
+                               calibrated_units(machine, parameters.play.has_value()),
+                               "docs/machine-description.md#covariance");
 }
 
 }  // namespace understudy::machine

@@ -7,12 +7,13 @@
 
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
+#include "machine/mount_key.h"
 
 namespace understudy::machine {
 namespace {
 
 constexpr Bounds kPlace{-5000, 5000};
-constexpr double kUnitTolerance = 1e-6;  // of a direction or quaternion, as the file's digits leave it
+constexpr double kUnitTolerance = 1e-6;  // of a direction, as the file's digits leave it
 
 void read_record(YamlMap& map, CalibrationRecord& record) {
   record.estimator = map.text("estimator", "the one that found it");
@@ -59,17 +60,11 @@ void read_struts(YamlMap& map, HexapodModel& hexapod) {
         place, fmt::format("{} lists {} struts, not {}", map.path("struts"), count, kinematics::kStruts));
 }
 
-Pose read_mount(YamlMap& map, const std::string& body, const Pose& drawn) {
-  const std::string quaternion = body + "_quaternion", place = body + "_mm";
-  const auto q = map.quantities(quaternion, 4, {-1, 1}, "its rotation in O: w, x, y, z, of unit length");
-  const Vec3 p = map.vector(place, kPlace, "its origin in O with all axes at 0");
+Pose read_mount_near(YamlMap& map, const std::string& body, const Pose& drawn) {
+  const Pose X = read_mount(map, body, "O with all axes at 0");
   if (!map.complete()) return drawn;
-  const Quat turn(q[0], q[1], q[2], q[3]);
-  if (std::abs(turn.norm() - 1) > kUnitTolerance)
-    throw InputError(map.place(quaternion),
-                     fmt::format("{} has length {:.7f}, not 1", map.path(quaternion), turn.norm()));
-  check_near(map, place, body + " at zero", (p - drawn.translation()).norm());
-  return make_pose(turn.normalized(), p);
+  check_near(map, body + "_mm", body + " at zero", (X.translation() - drawn.translation()).norm());
+  return X;
 }
 
 void read_axis(YamlMap& map, const kinematics::ChainAxis& drawn, kinematics::ChainAxis& axis) {
@@ -98,8 +93,8 @@ void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
   ChainModel& model = machine.chain();
   kinematics::Chain& chain = model.kinematics.chain;
   const kinematics::Chain drawn = chain;
-  chain.X_OT_zero = read_mount(map, "tool", drawn.X_OT_zero);
-  chain.X_OS_zero = read_mount(map, "work", drawn.X_OS_zero);
+  chain.X_OT_zero = read_mount_near(map, "tool", drawn.X_OT_zero);
+  chain.X_OS_zero = read_mount_near(map, "work", drawn.X_OS_zero);
   const Place place = map.place("axes");
   std::size_t count = 0;
   const bool named = !model.kinematics.parameters.empty();

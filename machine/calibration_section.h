@@ -7,6 +7,7 @@
 #include "core/yaml_map.h"
 #include "machine/calibrated_parameters.h"
 #include "machine/description.h"
+#include "machine/section_text.h"
 
 namespace understudy::machine {
 
@@ -30,13 +31,7 @@ std::string calibrated_parameters_text(const MachineDescription& machine,
 std::string calibration_section(const MachineDescription& machine,
                                 const CalibratedParameters& parameters = {});
 
-/// The text of a machine file with its section `calibration` replaced, or added at its end. All else,
-/// comments too, stays as it is.
-std::string with_section(const std::string& text, const std::string& section);
-
-/// Writes the machine file at `path`: that of `machine` with the section above. It appears under its name
-/// only when it can be read back. Throws InputError where it cannot be written, or breaks a limit of the
-/// machine.
+/// Writes the machine file at `path`: that of `machine` with the section above, as write_with_section() does.
 void write_calibrated(const MachineDescription& machine, const std::filesystem::path& path,
                       const CalibratedParameters& parameters = {});
 

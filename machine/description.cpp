@@ -11,6 +11,7 @@
 #include "machine/calibrated_parameters.h"
 #include "machine/calibration_section.h"
 #include "machine/chain_section.h"
+#include "machine/gap_sensor_section.h"
 #include "machine/hexapod_section.h"
 #include "machine/model_files.h"
 #include "machine/optics_section.h"
@@ -41,6 +42,13 @@ void read_tolerances(YamlMap& map, bool chain, Tolerances& tolerances, BuiltTole
   map.section("after_calibration", "left after a calibration",
               [&](YamlMap& set) { tolerances.after_calibration = read_tolerance_set(set, chain); });
   read_built_tolerances(map, built);
+  if (!map.has("mounting")) return;
+  map.section("mounting", "of laser and microscope about their drawing", [&](YamlMap& set) {
+    MountingTolerances& mounting = tolerances.mounting.emplace();
+    mounting.position = set.quantity("position_mm", {0, 5}, "each coordinate of each device");
+    mounting.angle = set.quantity("angle_mrad", {0, 100}, "of each device about each of its own axes");
+    mounting.scale = set.quantity("scale_percent", {0, 20}, "of the picture");
+  });
 }
 
 void read_gap(YamlMap& map, GapLimits& gap) {
@@ -115,6 +123,7 @@ void read_machine(YamlMap& root, MachineFile& file) {
     root.section("microscope", "the camera that sees the dot",
                  [&](YamlMap& map) { read_microscope(map, m.microscope); });
   }
+  read_gap_sensor(root, m);
   root.section("tolerances", "1 sigma of a built machine about this description",
                [&](YamlMap& map) { read_tolerances(map, chain, m.tolerances, file.tolerances); });
   // A tool without a nozzle lays nothing that a gap would matter to.

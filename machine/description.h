@@ -140,9 +140,18 @@ struct ToleranceSet {
   double zero_length = 0;     ///< [m], zero of a sliding axis
   double zero_angle = 0;      ///< [rad], zero of a turning axis
 };
+
+/// 1 sigma of how laser and microscope sit on a built machine about their drawing.
+struct MountingTolerances {
+  double position = 0;  ///< [m], each coordinate of each device
+  double angle = 0;     ///< [rad], of each device about each of its own axes
+  double scale = 0;     ///< of the picture, a share of it
+};
+
 struct Tolerances {
-  ToleranceSet manufactured;       ///< before any calibration
-  ToleranceSet after_calibration;  ///< left after the paper's calibration
+  ToleranceSet manufactured;                   ///< before any calibration
+  ToleranceSet after_calibration;              ///< left after the paper's calibration
+  std::optional<MountingTolerances> mounting;  ///< nothing: not stated
 };
 
 /// What a machine file says of the calibration that its geometry comes from.
@@ -153,6 +162,32 @@ struct CalibrationRecord {
   int poses = 0;
   /// [m], RMS over the work space of the tip's 3D uncertainty; NaN: not known, of a plug-in's calibration.
   double tip_sigma = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Where laser and microscope sit, and how large the picture is.
+struct OpticsMounting {
+  Pose X_TL = Pose::Identity();
+  Pose X_TC = Pose::Identity();
+  double focal_px = 0;  ///< [px]
+};
+
+/// The freedoms of an OpticsMounting that its errors are told in, and the order of vectors and matrices of
+/// them: offset of the laser along its own x and y [m], its turn about both [rad]; offset of the camera along
+/// its own x, y and z [m], its turn about the three [rad]; scale of the picture, a share of it. Along its
+/// beam and about it the laser may sit anyhow, and the principal point cannot be told from a turn of the
+/// camera.
+constexpr int kMountingFreedoms = 11;
+using MountingVector = Eigen::Matrix<double, kMountingFreedoms, 1>;
+using MountingMatrix = Eigen::Matrix<double, kMountingFreedoms, kMountingFreedoms>;
+
+/// What a machine file says of the calibration that `laser` and `microscope` come from.
+struct GapSensorCalibration {
+  OpticsMounting drawn;             ///< as the file's sections `laser` and `microscope` have them
+  std::string measurements;         ///< name of the table of pictures
+  std::string measurements_sha256;  ///< hexadecimal
+  int pictures = 0;
+  /// Of the errors of the calibrated mounting; symmetric, positive semi-definite.
+  MountingMatrix covariance = MountingMatrix::Zero();
 };
 
 /// The gap between tip and surface (Song 2015, 3.3).
@@ -202,8 +237,9 @@ struct MachineDescription {
   Tool tool;
   Process process;             ///< of a tool that prints
   bool has_microscope = true;  ///< with its laser; without, there is no gap control
-  Laser laser;
-  Microscope microscope;
+  Laser laser;                 ///< what the controller reckons with: calibrated where it was
+  Microscope microscope;       ///< likewise
+  std::optional<GapSensorCalibration> gap_sensor;  ///< empty: laser and microscope are the drawn ones
   Tolerances tolerances;
   GapLimits gap;
   geometry::Shape table;            ///< pose in W; its top is z = 0

@@ -121,6 +121,12 @@ Status ContinuousGapController::take_frame(const Commanded& expected) {
 
 GapStop ContinuousGapController::sense(const Commanded& expected) {
   GapSample& sample = reading_.sample;
+  safe_ = safe_aim(machine_, surface_, options_.following.aim);
+  follower_.aim_at(safe_.gap, safe_.sigma);
+  if (!safe_.fits) {
+    follower_.give_up();
+    return GapStop::uncertain;
+  }
   const double gap = follower_.known() ? follower_.predicted_gap(expected.path, expected.correction)
                                        : 0.5 * (machine_.gap.accepted_min + machine_.gap.accepted_max);
   const double bound = follower_.known() ? kExpected : 2 * kExpected;
@@ -253,6 +259,7 @@ std::string ContinuousGapController::why_unused() const {
 std::string ContinuousGapController::why_follower_stopped() const {
   const GapFollowerOptions& limits = options_.following;
   const GapSample& sample = reading_.sample;
+  if (stop_ == GapStop::uncertain) return too_uncertain(machine_.gap, safe_.sigma);
   if (stop_ == GapStop::too_close && sample.used)
     return fmt::format("the gap is {:.3f} mm, 1 sigma {:.3f} mm: less than {:.3f} mm may be left",
                        to_mm(follower_.gap(stopped_.correction)), to_mm(follower_.sigma()),

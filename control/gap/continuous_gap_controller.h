@@ -16,6 +16,7 @@
 #include "control/gap/gap_follower.h"
 #include "control/gap/gap_sensor.h"
 #include "control/gap/offset_change.h"
+#include "control/gap/sensor_uncertainty.h"
 #include "control/gap/setpoint_filter.h"
 #include "geometry/mesh.h"
 
@@ -113,6 +114,7 @@ class ContinuousGapController {
   machine::MachinePort& port_;
   Report report_;
   LocalSurface surface_;
+  SafeAim safe_;  // of the last frame
   GapSensor sensor_;
   GapFollower follower_;
   GapFollowing following_;

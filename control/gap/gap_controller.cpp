@@ -10,6 +10,7 @@
 #include "control/gap/confidence.h"
 #include "control/gap/gap_response.h"
 #include "control/gap/gap_sensor.h"
+#include "control/gap/sensor_uncertainty.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/units.h"
@@ -70,6 +71,16 @@ class GapEstimate {
   double offset_ = 0, sigma_ = 0;
 };
 
+double asked_aim(const machine::MachineDescription& machine, const GapControllerOptions& options) {
+  const double aim = options.aim > 0 ? options.aim : machine.gap.aim;
+  const machine::GapLimits& limits = machine.gap;
+  if (aim <= limits.accepted_min || aim >= limits.accepted_max)
+    throw InputError(
+        fmt::format("the gap aimed at is {:.3f} mm, not between {:.3f} and {:.3f} mm, the accepted gaps",
+                    to_mm(aim), to_mm(limits.accepted_min), to_mm(limits.accepted_max)));
+  return aim;
+}
+
 class Approach {
  public:
   Approach(const machine::MachineDescription& machine, const LocalSurface& surface, const Pose& X_WT_start,
@@ -79,19 +90,17 @@ class Approach {
         standoff_(standoff),
         motion_(motion),
         options_(options),
-        aim_(options.aim > 0 ? options.aim : machine.gap.aim),
+        safe_(safe_aim(machine, surface, asked_aim(machine, options))),
+        aim_(safe_.gap),
         play_(machine.tip_play()),
-        response_(limits_.accepted_min / 2, kBlind),
+        floor_(limits_.accepted_min / 2 + kSafeSigmas * safe_.sigma),
+        response_(floor_, kBlind),
         sensor_(machine, surface, options, motion.port()),
-        height_(standoff) {
-    if (aim_ <= limits_.accepted_min || aim_ >= limits_.accepted_max)
-      throw InputError(
-          fmt::format("the gap aimed at is {:.3f} mm, not between {:.3f} and {:.3f} mm, the accepted gaps",
-                      to_mm(aim_), to_mm(limits_.accepted_min), to_mm(limits_.accepted_max)));
-  }
+        height_(standoff) {}
 
   GapOutcome run() {
-    GapStop stop = descend();
+    outcome_.calibration_sigma = safe_.sigma;
+    GapStop stop = safe_.fits ? descend() : stop_for(GapStop::uncertain, too_uncertain(limits_, safe_.sigma));
     if (stop == GapStop::too_close) stop = try_again_from_above();
     outcome_.stop = stop;
     if (stop != GapStop::none) retreat();
@@ -118,8 +127,10 @@ class Approach {
   const double standoff_;
   GapMotion& motion_;
   const GapControllerOptions& options_;
+  const SafeAim safe_;
   const double aim_;
   const double play_;
+  const double floor_;  // [m], of the gap that is proved
   ApproachResponseTest response_;
   GapSensor sensor_;
   double height_;  ///< [m], commanded tip above S along the tool axis
@@ -192,13 +203,14 @@ GapStop Approach::judge(const GapEstimate& estimate) {
         GapStop::no_progress,
         fmt::format("the gap reads {:.3f} mm, but by the steps since a reading last followed one {:.3f} mm "
                     "are sure: what shines may not be the dot",
-                    to_mm(gap), to_mm(response_.room(height_) + limits_.accepted_min / 2)));
-  if (reached(estimate) && kSafeSigmas * sigma > aim_ - limits_.accepted_min)
+                    to_mm(gap), to_mm(response_.room(height_) + floor_)));
+  const double total = std::hypot(sigma, safe_.sigma);
+  if (reached(estimate) && kSafeSigmas * total > aim_ - limits_.accepted_min)
     return stop_for(
         GapStop::implausible,
         fmt::format("the gap of {:.3f} mm is known to {:.3f} mm only (1 sigma), too little to stay above "
                     "{:.3f} mm",
-                    to_mm(gap), to_mm(sigma), to_mm(limits_.accepted_min)));
+                    to_mm(gap), to_mm(total), to_mm(limits_.accepted_min)));
   return GapStop::none;
 }
 

@@ -40,7 +40,8 @@ struct GapOutcome {
   GapStop stop = GapStop::none;  ///< none: the aim was reached
   std::string why;               ///< one line for the operator
   double gap = 0;                ///< [m], last accepted reading
-  double sigma = 0;              ///< [m]
+  double sigma = 0;              ///< [m], of its noise
+  double calibration_sigma = 0;  ///< [m], that all readings share: what the sensor's calibration leaves
   Vec3 offset_W{0, 0, 0};        ///< [m], to be carried: commanded tip minus programmed S
   std::vector<GapSample> samples;
 };

@@ -22,6 +22,11 @@ GapFollowerOptions gap_follower_options(const machine::MachineDescription& machi
   return options;
 }
 
+void GapFollower::aim_at(double aim, double calibration_sigma) {
+  options_.aim = aim;
+  calibration_sigma_ = calibration_sigma;
+}
+
 double GapFollower::sigma() const { return std::sqrt(std::max(0.0, p_ee_)); }
 
 void GapFollower::start(double time, double path, double gap, double sigma) {
@@ -180,7 +185,8 @@ void GapFollower::miss(double time, double path, GapStop why) {
 
 void GapFollower::judge(const GapObservation& o) {
   if (!known_) return;
-  if (gap(o.correction) - kSafeSigmas * sigma() < options_.floor) raise(GapStop::too_close);
+  if (gap(o.correction) - kSafeSigmas * std::hypot(sigma(), calibration_sigma_) < options_.floor)
+    raise(GapStop::too_close);
   if (std::abs(wanted()) > options_.travel_max + kSafeSigmas * sigma()) raise(GapStop::too_far);
   judge_proof(o);
 }

@@ -75,6 +75,12 @@ class GapFollower {
   /// Readings begin again after a part of the path where there could be none.
   void resume(double time, double path);
 
+  /// Where the next reading lies: what to aim at, and what the sensor's calibration leaves of it [m], 1
+  /// sigma, alike in all readings.
+  void aim_at(double aim, double calibration_sigma);
+  /// The sensor's calibration leaves too much for any aim.
+  void give_up() { raise(GapStop::uncertain); }
+
   /// Time and path in which nothing was to be seen: the clock of stops stands still.
   void pass(double dt, double way);
 
@@ -109,6 +115,7 @@ class GapFollower {
   void raise(GapStop reason) { stop_ = stop_ == GapStop::none ? reason : stop_; }
 
   GapFollowerOptions options_;
+  double calibration_sigma_ = 0;  // [m]
   bool known_ = false;
   double time_ = 0, path_ = 0;             // of the estimate
   double error_ = 0, slope_ = 0;           // [m], [m/m]: gap without correction, and over the path

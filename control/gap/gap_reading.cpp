@@ -102,6 +102,15 @@ bool nearest_on_grid(const machine::MachineDescription& machine, const LocalSurf
 
 }  // namespace
 
+bool dot_pixel(const machine::Laser& laser, const machine::Microscope& microscope,
+               const LocalSurface& surface, double gap, Vec2& pixel) {
+  Hit hit;
+  if (!beam_hit(laser, surface, gap, hit)) return false;
+  const auto seen = microscope.camera.project(microscope.X_TC.inverse() * hit.p_T);
+  if (seen) pixel = *seen;
+  return seen.has_value();
+}
+
 bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                  Vec2& pixel) {
   Track track;

@@ -20,6 +20,11 @@ struct GapReading {
 bool predict_dot(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                  Vec2& pixel);
 
+/// The same for a laser and a microscope, within the picture or beyond its edge. False when the beam misses
+/// the modelled surface, or the dot is behind the camera. Does not allocate.
+bool dot_pixel(const machine::Laser& laser, const machine::Microscope& microscope,
+               const LocalSurface& surface, double gap, Vec2& pixel);
+
 /// Where the beam meets the surface for a gap, in T. False when it misses the modelled surface.
 bool dot_place(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                Vec3& p_T);

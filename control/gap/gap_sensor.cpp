@@ -6,6 +6,7 @@
 
 #include "control/gap/confidence.h"
 #include "core/units.h"
+#include "machine/optics_mounting.h"
 
 namespace understudy::control {
 
@@ -21,18 +22,9 @@ constexpr int kMarginRadii = 5;    // of the spot, kept free around the predicte
 }  // namespace
 
 vision::DotOptions dot_options(const machine::MachineDescription& machine) {
-  const machine::Microscope& microscope = machine.microscope;
-  const machine::Laser& laser = machine.laser;
-  // Scale where the beam crosses the tip plane: within a few per cent of that at any gap.
-  const Vec3 b = laser.X_TL.linear().col(2), o = laser.X_TL.translation();
-  const Vec3 crossing_C = microscope.X_TC.inverse() * Vec3(o - o.z() / b.z() * b);
-  const double scale = microscope.camera.focal_px / crossing_C.z();  // [px/m]
-  vision::DotOptions options;
-  options.expected_radius_px = std::hypot(laser.waist_diameter / 2 * scale, 2 * microscope.blur_px);
-  options.grey_per_electron = 255 / microscope.full_well;
-  const double speckle_px = scale * laser.wavelength / microscope.aperture_sine;
-  options.speckle_area_px2 = speckle_px * speckle_px / std::numbers::pi;
-  return options;
+  const machine::Microscope& m = machine.microscope;
+  return vision::dot_options({machine::picture_scale(machine), machine.laser.waist_diameter,
+                              machine.laser.wavelength, m.aperture_sine, m.blur_px, m.full_well});
 }
 
 GapSensor::GapSensor(const machine::MachineDescription& machine, const LocalSurface& surface,

@@ -22,6 +22,8 @@ const char* to_string(GapStop s) {
       return "too far";
     case GapStop::no_progress:
       return "no progress";
+    case GapStop::uncertain:
+      return "sensor too uncertain";
     case GapStop::unreachable:
       return "out of reach";
     case GapStop::port_failed:

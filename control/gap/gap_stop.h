@@ -13,6 +13,7 @@ enum class GapStop {
   too_close,
   too_far,
   no_progress,
+  uncertain,
   unreachable,
   port_failed
 };

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "machine/optics_mounting.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/as_built/calibrated_draw.h"
 #include "sim/as_built/world_draw.h"
@@ -64,6 +65,8 @@ AsBuilt without_errors(const machine::MachineDescription& machine, Geometry geom
       });
   built.laser = machine.laser;
   built.microscope = machine.microscope;
+  if (geometry == Geometry::drawn)
+    machine::set_mounting(machine::drawn_mounting(machine), built.laser, built.microscope);
   built.filament_diameter = machine.tool.filament_diameter;
   built.extruder_lag = machine.process.extruder_lag;
   return built;
@@ -85,6 +88,7 @@ AsBuilt make_as_built(const machine::MachineDescription& machine, const std::str
     add_errors(machine.tolerances.after_calibration, built);
   } else if (set == "manufactured") {
     add_errors(machine.tolerances.manufactured, built);
+    if (machine.tolerances.mounting) draw_mounting(*machine.tolerances.mounting, built);
     // A description that was made in memory has no file, and no tolerances but its own.
     if (!machine.file.empty()) draw_world(machine::load_built_tolerances(machine.file.string()), built);
   } else if (set != "nominal") {

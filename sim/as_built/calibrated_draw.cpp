@@ -17,14 +17,14 @@ namespace {
 constexpr const char* kCalibrated = "calibrated";
 
 /// The symmetric square root times unit normals; what rounding left below 0 counts as 0.
-Eigen::VectorXd draw(const Eigen::MatrixXd& covariance, std::uint64_t seed) {
+Eigen::VectorXd draw(const Eigen::MatrixXd& covariance, std::uint64_t seed, const char* truth) {
   // By correlations: variances of metres and radians differ by orders of magnitude.
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd weight = sigma.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(weight.asDiagonal() * covariance *
                                                              weight.asDiagonal());
   const Eigen::VectorXd spread = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
-  Random random(seed, fmt::format("as-built/{}", kCalibrated));
+  Random random(seed, fmt::format("as-built/{}/{}", kCalibrated, truth));
   Eigen::VectorXd unit(covariance.rows());
   for (double& u : unit) u = random.normal();
   return sigma.asDiagonal() *
@@ -86,7 +86,7 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine,
   AsBuilt built = as_described(machine);
   built.source = kCalibrated;
   built.seed = seed;
-  Errors errors(draw(parameters.covariance, seed));
+  Errors errors(draw(parameters.covariance, seed, "geometry"));
   machine.visit([&](const machine::HexapodModel& hexapod) { add_errors(hexapod, parameters, errors, built); },
                 [&](const machine::ChainModel&) { add_errors(errors, built.chain); });
   return built;
@@ -112,6 +112,11 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine, std::uint64_
                     machine.calibration->estimator, kOthers));
   AsBuilt built = draw_calibrated(machine, parameters, seed);
   draw_world(others, built);
+  if (machine.gap_sensor) {
+    move_mounting(draw(machine.gap_sensor->covariance, seed, "mounting"), built);
+  } else if (machine.tolerances.mounting) {
+    draw_mounting(*machine.tolerances.mounting, built);
+  }
   return built;
 }
 

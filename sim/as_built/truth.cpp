@@ -10,6 +10,7 @@ machine::MachineDescription true_description(const machine::MachineDescription& 
   machine::MachineDescription truth = described;
   truth.laser = built.laser;
   truth.microscope = built.microscope;
+  truth.gap_sensor.reset();
   truth.tool.filament_diameter = built.filament_diameter;
   truth.process.extruder_lag = built.extruder_lag;
   return truth;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/random.h"
+#include "machine/optics_mounting.h"
 
 namespace understudy::sim {
 namespace {
@@ -30,11 +31,6 @@ class Draws {
   /// `value` times what may not turn it round.
   void scale(const std::string& truth, double share, double& value) const {
     value *= std::max(0.0, 1 + normal(truth, share));
-  }
-  /// In the frame of the mount, as the bracket that holds it is bent.
-  void mount(const std::string& truth, const BuiltTolerances& t, Pose& X) const {
-    X = X * make_pose(exp_rotation(vector(truth + " rotation", t.mount_rotation)),
-                      vector(truth + " position", t.mount_position));
   }
 
  private:
@@ -65,12 +61,9 @@ void draw_play(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
 }
 
 void draw_optics(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
-  draws.mount("laser", t, built.laser.X_TL);
   draws.scale("laser power", t.laser_power, built.laser.peak_level);
   draws.scale("laser waist", t.waist, built.laser.waist_diameter);
   machine::Microscope& microscope = built.microscope;
-  draws.mount("camera", t, microscope.X_TC);
-  draws.scale("camera scale", t.camera_scale, microscope.camera.focal_px);
   microscope.camera.centre_px += draws.vector("camera centre", t.camera_centre).head<2>();
   draws.scale("camera blur", t.blur, microscope.blur_px);
   draws.scale("ambient light", t.ambient_light, microscope.ambient_level);
@@ -86,6 +79,20 @@ void draw_part(const Draws& draws, const BuiltTolerances& t, BuiltPart& part) {
 }
 
 }  // namespace
+
+void draw_mounting(const machine::MountingTolerances& tolerances, AsBuilt& built) {
+  const Draws draws(built);
+  machine::MountingVector error = machine::mounting_sigmas(tolerances);
+  for (int i = 0; i < machine::kMountingFreedoms; ++i)
+    error[i] = draws.normal(machine::mounting_freedom(i), error[i]);
+  move_mounting(error, built);
+}
+
+void move_mounting(const machine::MountingVector& error, AsBuilt& built) {
+  const machine::OpticsMounting mounting{built.laser.X_TL, built.microscope.X_TC,
+                                         built.microscope.camera.focal_px};
+  machine::set_mounting(machine::moved(mounting, error), built.laser, built.microscope);
+}
 
 void draw_world(const BuiltTolerances& tolerances, AsBuilt& built) {
   const Draws draws(built);

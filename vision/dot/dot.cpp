@@ -70,6 +70,15 @@ const char* to_string(DotStatus s) {
   return "unknown";
 }
 
+DotOptions dot_options(const DotOptics& optics) {
+  DotOptions options;
+  options.expected_radius_px =
+      std::hypot(optics.waist_diameter / 2 * optics.px_per_metre, 2 * optics.blur_px);
+  options.grey_per_electron = 255 / optics.full_well;
+  options.speckle_area_px2 = speckle_area_px2(optics.wavelength, optics.aperture_sine, optics.px_per_metre);
+  return options;
+}
+
 DotMeasurement measure_dot(const Image& image, const DotOptions& options) {
   DotMeasurement m;
   if (!usable(image, options)) return m;

@@ -19,6 +19,19 @@ struct DotOptions {
   double speckle_area_px2 = -1;
 };
 
+/// Laser and microscope, as far as they shape the dot.
+struct DotOptics {
+  double px_per_metre = 0;    ///< at the dot
+  double waist_diameter = 0;  ///< [m], 1/e^2
+  double wavelength = 0;      ///< [m]
+  double aperture_sine = 0;   ///< sin u on the object side
+  double blur_px = 0;         ///< 1 sigma
+  double full_well = 0;       ///< [electrons] at 255 grey levels
+};
+
+/// What to look for in their pictures.
+DotOptions dot_options(const DotOptics& optics);
+
 struct DotMeasurement {
   DotStatus status = DotStatus::no_dot;
   Vec2 position_px{0, 0};  ///< on the sensor (the image's region is added)

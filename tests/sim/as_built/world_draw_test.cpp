@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "machine/optics_mounting.h"
 #include "sim/as_built/as_built_file.h"
 
 namespace understudy::sim {
@@ -43,25 +44,10 @@ std::vector<double> numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 std::vector<Truth> truths() {
   using T = BuiltTolerances;
   static const AsBuilt is = described();
-  const auto mount = [](const Pose& described_pose, const Pose& X) -> Pose {
-    return described_pose.inverse() * X;
-  };
   const auto share = [](double value, double was) { return std::vector<double>{value / was - 1}; };
   return {
       {"lead", &T::lead, [](const AsBuilt& b) { return std::vector<double>{b.drives[2].scale}; }},
       {"play", &T::play, [=](const AsBuilt& b) { return share(b.nut_play[4], is.nut_play[4]); }},
-      {"laser position", &T::mount_position,
-       [=](const AsBuilt& b) { return numbers(mount(is.laser.X_TL, b.laser.X_TL).translation()); }},
-      {"laser rotation", &T::mount_rotation,
-       [=](const AsBuilt& b) { return numbers(log_rotation(mount(is.laser.X_TL, b.laser.X_TL).linear())); }},
-      {"camera position", &T::mount_position,
-       [=](const AsBuilt& b) { return numbers(mount(is.microscope.X_TC, b.microscope.X_TC).translation()); }},
-      {"camera rotation", &T::mount_rotation,
-       [=](const AsBuilt& b) {
-         return numbers(log_rotation(mount(is.microscope.X_TC, b.microscope.X_TC).linear()));
-       }},
-      {"camera scale", &T::camera_scale,
-       [=](const AsBuilt& b) { return share(b.microscope.camera.focal_px, is.microscope.camera.focal_px); }},
       {"camera centre", &T::camera_centre,
        [=](const AsBuilt& b) {
          const Vec2 by = b.microscope.camera.centre_px - is.microscope.camera.centre_px;
@@ -136,6 +122,53 @@ TEST(WorldDraw, NoTruthsShareAStream) {
   std::sort(errors.begin(), errors.end());
   // Differences of shares are rounded; equal draws differ by less than this, others hardly ever.
   for (std::size_t k = 1; k < errors.size(); ++k) EXPECT_GT(errors[k] - errors[k - 1], 1e-12) << errors[k];
+}
+
+/// Errors of the mounting, in units of their tolerances.
+std::vector<double> mounting_errors(const AsBuilt& built, const machine::MountingTolerances& t) {
+  const AsBuilt is = described();
+  const Pose laser = is.laser.X_TL.inverse() * built.laser.X_TL,
+             camera = is.microscope.X_TC.inverse() * built.microscope.X_TC;
+  const Vec3 laser_turn = log_rotation(laser.linear()) / t.angle,
+             camera_turn = log_rotation(camera.linear()) / t.angle,
+             offset = camera.translation() / t.position;
+  return {laser.translation().x() / t.position,
+          laser.translation().y() / t.position,
+          laser_turn.x(),
+          laser_turn.y(),
+          offset.x(),
+          offset.y(),
+          offset.z(),
+          camera_turn.x(),
+          camera_turn.y(),
+          camera_turn.z(),
+          (built.microscope.camera.focal_px / is.microscope.camera.focal_px - 1) / t.scale};
+}
+
+TEST(MountingDraw, SpreadsAsItsTolerancesState) {
+  const machine::MountingTolerances t{kSigma, kSigma, kSigma};
+  std::vector<double> squares(machine::kMountingFreedoms);
+  for (std::uint64_t seed = 1; seed <= kMachines; ++seed) {
+    AsBuilt built = described();
+    built.source = "manufactured";
+    built.seed = seed;
+    draw_mounting(t, built);
+    const auto errors = mounting_errors(built, t);
+    for (std::size_t k = 0; k < errors.size(); ++k) squares[k] += errors[k] * errors[k];
+  }
+  for (std::size_t k = 0; k < squares.size(); ++k)
+    EXPECT_NEAR(squares[k] / kMachines, 1, 4 * std::sqrt(2.0 / kMachines)) << "freedom " << k;
+}
+
+TEST(MountingDraw, StaysWhereItIsWhenTheControllerIsCalibrated) {
+  const auto hexapod = machine::load_machine("hexapod");
+  machine::MachineDescription calibrated = hexapod;
+  calibrated.gap_sensor = {machine::mounting_of(hexapod), "", "", 1, machine::MountingMatrix::Zero()};
+  calibrated.laser.X_TL.translation().x() += 0.2e-3;
+  for (const char* set : {"nominal", "manufactured"})
+    EXPECT_EQ(make_as_built(calibrated, set, 4).laser.X_TL.matrix(),
+              make_as_built(hexapod, set, 4).laser.X_TL.matrix())
+        << set;
 }
 
 TEST(WorldDraw, WithoutTolerancesItIsAsDescribed) {

@@ -1,0 +1,69 @@
+#include "machine/section_text.h"
+
+#include <cctype>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/output_file.h"
+#include "machine/description.h"
+
+namespace understudy::machine {
+namespace {
+
+bool begins_top_level(const std::string& line) {
+  return !line.empty() && !std::isspace(static_cast<unsigned char>(line[0]));
+}
+
+}  // namespace
+
+std::string quoted_text(const std::string& word) {
+  std::string out = "\"";
+  for (const char c : word) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += std::iscntrl(static_cast<unsigned char>(c)) ? '?' : c;
+  }
+  return out + "\"";
+}
+
+std::string with_section(const std::string& text, const std::string& section) {
+  const std::string key = section.substr(0, section.find('\n'));
+  std::istringstream in(text);
+  std::string out, line;
+  bool inside = false;
+  while (std::getline(in, line)) {
+    if (line.starts_with(key)) {
+      inside = true;
+      continue;
+    }
+    if (inside && begins_top_level(line)) inside = false;
+    if (!inside) out += line + "\n";
+  }
+  while (out.ends_with("\n\n")) out.pop_back();
+  return out + "\n" + section;
+}
+
+void write_with_section(const std::filesystem::path& original, const std::string& section,
+                        const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  if (path.extension() != ".yaml")
+    throw InputError(fmt::format("{}: a machine file ends in .yaml", path.string()));
+  const fs::path trial = path.parent_path() / ("." + path.stem().string() + ".part.yaml");
+  write_file(trial, with_section(read_file(original), section));
+  try {
+    load_machine(fs::absolute(trial).string());
+    fs::rename(trial, path);
+  } catch (const InputError& error) {
+    std::error_code ignored;
+    fs::remove(trial, ignored);
+    throw InputError(
+        fmt::format("{}: the calibrated machine would be refused: {}", path.string(), error.what()));
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(trial, ignored);
+    throw;
+  }
+}
+
+}  // namespace understudy::machine
