@@ -12,6 +12,9 @@ OpticsMounting mounting_of(const MachineDescription& machine);
 /// What the file's sections `laser` and `microscope` say, whatever a calibration has found since.
 OpticsMounting drawn_mounting(const MachineDescription& machine);
 
+/// The machine before any calibration of its gap sensor: what a twin is built from.
+MachineDescription with_drawn_optics(MachineDescription machine);
+
 /// `from` with each device moved in its own frame: turned about its origin, and offset.
 OpticsMounting moved(const OpticsMounting& from, const MountingVector& error);
 

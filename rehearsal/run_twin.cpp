@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "machine/optics_mounting.h"
 #include "rehearsal/trace_observer.h"
 #include "sim/deposition/bead_temperature.h"
 #include "sim/plant/plant.h"
@@ -148,7 +149,9 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   const auto plant = make_plant(setup);
   Watch watch(setup, options);
   std::optional<sim::Microscope> microscope;
-  if (setup.machine.has_microscope) microscope.emplace(setup.machine, setup.part, setup.seed);
+  // What the controller has found of laser and microscope moves neither.
+  if (setup.machine.has_microscope)
+    microscope.emplace(machine::with_drawn_optics(setup.machine), setup.part, setup.seed);
   std::map<std::uint64_t, ExposureTruth> truth;
   const auto expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
     watch.thread.drain();  // the laser sees what has been printed by now

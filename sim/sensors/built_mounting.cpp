@@ -14,13 +14,4 @@ machine::MountingVector draw_mounting(const machine::MachineDescription& machine
   return error;
 }
 
-void build_mounting(const machine::MountingVector& error, MicroscopeOptions& options) {
-  machine::OpticsMounting unit;
-  unit.focal_px = 1;
-  const machine::OpticsMounting built = machine::moved(unit, error);
-  options.X_LL_built = built.X_TL;
-  options.X_CC_built = built.X_TC;
-  options.scale_built = built.focal_px;
-}
-
 }  // namespace understudy::sim

@@ -3,15 +3,12 @@
 
 #include <cstdint>
 
-#include "sim/sensors/microscope.h"
+#include "machine/description.h"
 
 namespace understudy::sim {
 
-/// Of the drawing, drawn from the machine's tolerances of mounting; 0 where it states none. Equal seeds give
-/// equal errors, whatever a calibration of the machine has found.
+/// Error of the drawing, drawn from the machine's tolerances of mounting; 0 where it states none. Equal seeds
+/// give equal errors, whatever a calibration of the machine has found.
 machine::MountingVector draw_mounting(const machine::MachineDescription& machine, std::uint64_t seed);
-
-/// Puts such an error into what is built.
-void build_mounting(const machine::MountingVector& error, MicroscopeOptions& options);
 
 }  // namespace understudy::sim

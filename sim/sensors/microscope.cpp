@@ -1,6 +1,5 @@
 #include "sim/sensors/microscope.h"
 
-#include "machine/optics_mounting.h"
 #include "renderer/laser_view.h"
 
 namespace understudy::sim {
@@ -12,11 +11,9 @@ renderer::LaserScene scene_of(const machine::MachineDescription& machine,
   renderer::LaserScene scene;
   scene.part = std::move(part);
   scene.tool_bodies = machine.tool.bodies;
-  const machine::OpticsMounting drawn = machine::drawn_mounting(machine);
-  scene.X_TC = drawn.X_TC * options.X_CC_built;
-  scene.X_TL = drawn.X_TL * options.X_LL_built;
+  scene.X_TC = machine.microscope.X_TC * options.X_CC_built;
+  scene.X_TL = machine.laser.X_TL * options.X_LL_built;
   scene.camera = machine.microscope.camera;
-  scene.camera.focal_px = drawn.focal_px * options.scale_built;
   scene.waist_diameter = machine.laser.waist_diameter;
   scene.wavelength = machine.laser.wavelength;
   scene.peak_level = machine.laser.peak_level;

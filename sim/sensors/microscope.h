@@ -14,16 +14,14 @@ namespace understudy::sim {
 struct MicroscopeOptions {
   bool speckle = true;
   bool noise = true;
-  /// Where laser and camera really sit in the frames of their drawn mounts; the controller does not know.
+  /// Where laser and camera really sit in the frames of their nominal mounts; the controller does not know.
   Pose X_LL_built = Pose::Identity();
   Pose X_CC_built = Pose::Identity();
-  double scale_built = 1;  ///< of the picture, over the drawn one
 };
 
 /// Owns an OSMesa context; use from the thread that made it. Several may live in several threads.
 class Microscope {
  public:
-  /// The optics are those of the drawing, whatever a calibration of `machine` has found, moved by `options`.
   /// `part` may be null: nothing but the table. The seed is that of the surface's roughness and of the noise.
   Microscope(const machine::MachineDescription& machine, std::shared_ptr<const geometry::Mesh> part,
              std::uint64_t seed, const MicroscopeOptions& options = {});

@@ -8,7 +8,9 @@
 #include "core/interrupt.h"
 #include "core/random.h"
 #include "core/units.h"
+#include "machine/optics_mounting.h"
 #include "sim/sensors/built_mounting.h"
+#include "sim/sensors/microscope.h"
 
 namespace understudy::studies {
 namespace {
@@ -52,10 +54,12 @@ SampledGaps sample_gaps(const SampleGapsRequest& request, const machine::Machine
   check(request, machine);
   SampledGaps sample;
   sample.error = sim::draw_mounting(machine, request.seed);
+  machine::MachineDescription built = machine::with_drawn_optics(machine);
+  machine::set_mounting(machine::moved(machine::mounting_of(built), sample.error), built.laser,
+                        built.microscope);
   sim::MicroscopeOptions options;
   options.speckle = request.speckle;
-  sim::build_mounting(sample.error, options);
-  sim::Microscope microscope(machine, nullptr, request.seed, options);
+  sim::Microscope microscope(built, nullptr, request.seed, options);
   const Camera& camera = machine.microscope.camera;
   const Region sensor{0, 0, camera.width, camera.height};
   Random random(request.seed, "heights over flats");
