@@ -28,6 +28,17 @@ void print_calibration(const rehearsal::CalibrationFigures& figures) {
   fmt::print("\n");
 }
 
+void print_clearance(const rehearsal::CollisionFigures& figures) {
+  const auto distance = [](double mm) {
+    return mm < 0 ? fmt::format("{:.3f} mm deep", -mm) : fmt::format("{:.3f} mm", mm);
+  };
+  if (figures.nozzle_clearance_mm)
+    fmt::print("  nozzle to what it prints on: least {}\n", distance(*figures.nozzle_clearance_mm));
+  if (figures.min_clearance_mm)
+    fmt::print("  all else: least clearance {} ({}), {} checks\n", distance(*figures.min_clearance_mm),
+               figures.closest, figures.checks);
+}
+
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, record.go ? "GO" : "NO-GO");
   std::size_t shown = 0;
@@ -52,9 +63,7 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
     fmt::print("  tip error {:.0f} um RMS, {:.0f} um at most\n", record.accuracy->tip_rms_um,
                record.accuracy->tip_max_um);
   if (record.calibration) print_calibration(*record.calibration);
-  if (record.collision)
-    fmt::print("  smallest clearance {:.2f} mm over {} checks\n", record.collision->min_clearance_mm,
-               record.collision->checks);
+  if (record.collision) print_clearance(*record.collision);
   if (record.sag && record.sag->strands > 0)
     fmt::print("  {} strands in air, {:.1f} mm in all, sag {:.0f} um at most\n", record.sag->strands,
                record.sag->unsupported_mm, record.sag->max_um);

@@ -74,7 +74,9 @@ void add(const SagFigures& sag, Figures& to) {
 
 void add(const CollisionFigures& collision, Figures& to) {
   to.section("collision");
-  to.put("min_clearance_mm", collision.min_clearance_mm);
+  if (collision.min_clearance_mm) to.put("min_clearance_mm", *collision.min_clearance_mm);
+  if (!collision.closest.empty()) to.text("closest", collision.closest);
+  if (collision.nozzle_clearance_mm) to.put("nozzle_clearance_mm", *collision.nozzle_clearance_mm);
   to.count("checks", collision.checks);
   to.count("pairs", collision.pairs);
 }

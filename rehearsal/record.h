@@ -50,8 +50,13 @@ struct CalibrationFigures {
   std::optional<AccuracyFigures> before;
   AccuracyFigures after;
 };
+/// Signed: negative is the depth of a contact. Nothing where no such pair was looked at.
 struct CollisionFigures {
-  double min_clearance_mm = 0;
+  std::optional<double> min_clearance_mm;  ///< of all bodies but the nozzle over its work
+  std::string closest;                     ///< these two: "strut 3 and table"
+  /// The nozzle to the part, or to the table where there is no part, and to printed beads where it ploughs
+  /// them.
+  std::optional<double> nozzle_clearance_mm;
   std::uint64_t checks = 0;
   int pairs = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -136,6 +137,20 @@ EngineFigures engine_of(const sim::Plant& plant, const sim::SimulatedPort& port,
   return figures;
 }
 
+CollisionFigures collision_figures(const sim::CollisionObserver& collision) {
+  const auto in_mm = [](double clearance) {
+    return std::isfinite(clearance) ? std::optional(to_mm(clearance)) : std::nullopt;
+  };
+  CollisionFigures figures;
+  figures.min_clearance_mm = in_mm(collision.min_clearance());
+  if (figures.min_clearance_mm)
+    figures.closest = collision.closest().body + " and " + collision.closest().obstacle;
+  figures.nozzle_clearance_mm = in_mm(collision.min_nozzle_clearance());
+  figures.checks = collision.checks();
+  figures.pairs = collision.pairs();
+  return figures;
+}
+
 }  // namespace
 
 const std::vector<std::string>& engine_names() {
@@ -183,8 +198,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   if (options.watch_collisions) {
     run.collisions = watch.collision.collisions();
     run.near_collisions = watch.collision.near_collisions();
-    run.collision = {to_mm(watch.collision.min_clearance()), watch.collision.checks(),
-                     watch.collision.pairs()};
+    run.collision = collision_figures(watch.collision);
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
   run.engine = engine_of(*plant, port, wall.count());

@@ -37,8 +37,9 @@ std::string go_sentence(const Record& record) {
   if (record.gap)
     clauses.push_back(fmt::format("the gap starts at {:.3f} mm and is in the band over {:.1f} % of the path",
                                   record.gap->start_mm, percent_rounded_down(record.gap->in_band_fraction)));
-  if (record.collision)
-    clauses.push_back(fmt::format("nothing comes nearer than {:.2f} mm", record.collision->min_clearance_mm));
+  if (record.collision && record.collision->min_clearance_mm)
+    clauses.push_back(fmt::format("nothing but the nozzle comes nearer than {:.2f} mm to anything",
+                                  *record.collision->min_clearance_mm));
   if (record.accuracy)
     clauses.push_back(fmt::format("the tip errs by at most {:.0f} um", record.accuracy->tip_max_um));
   if (clauses.empty()) return "No limit is broken.";

@@ -38,7 +38,8 @@ TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
             (Keys{"tip_rms_um", "tip_p95_um", "tip_max_um", "orientation_max_mrad", "open_loop_tip_max_um"}));
   EXPECT_EQ(keys(summary["gap"]), (Keys{"commanded_mm", "open_loop_start_mm", "start_mm", "path_min_mm",
                                         "path_mean_mm", "path_max_mm", "in_band_fraction", "frames"}));
-  EXPECT_EQ(keys(summary["collision"]), (Keys{"min_clearance_mm", "checks", "pairs"}));
+  EXPECT_EQ(keys(summary["collision"]),
+            (Keys{"min_clearance_mm", "closest", "nozzle_clearance_mm", "checks", "pairs"}));
   EXPECT_EQ(keys(summary["engine"]),
             (Keys{"name", "version", "timestep_s", "steps", "real_time_factor", "closure_max_um"}));
   EXPECT_EQ(keys(summary["provenance"]),

@@ -55,7 +55,8 @@ const kFigureLabels = {
   in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',
   max_um: 'Sag, largest', strands: 'Strands in air', unsupported_mm: 'Length in air',
   ra_um: 'Roughness Ra', rz_um: 'Roughness Rz', deviation_p95_um: 'Deviation from the intended part, 95th percentile',
-  min_clearance_mm: 'Least clearance', checks: 'Checks', pairs: 'Pairs of bodies',
+  min_clearance_mm: 'Least clearance, but for the nozzle over its work', closest: 'These two',
+  nozzle_clearance_mm: 'Nozzle to what it prints on, least', checks: 'Checks', pairs: 'Pairs of bodies',
   name: 'Name', version: 'Version', timestep_s: 'Time step', steps: 'Steps',
   real_time_factor: 'Simulated time / wall time', closure_max_um: 'Loop closure error, largest',
 };

@@ -33,14 +33,19 @@ function drawKeyFigures(report) {
     tile('Largest tip error', format.quantity(accuracy.tip_max_um, 'um'),
       report.names.gap_control === 'off' ? '' : 'without gap control ' + format.quantity(accuracy.open_loop_tip_max_um, 'um'));
   }
-  if (collision) {
-    tile('Least clearance', format.quantity(collision.min_clearance_mm, 'mm'),
-      format.count(collision.checks) + ' checks');
-  }
+  if (collision && collision.nozzle_clearance_mm !== undefined)
+    tile('Nozzle to part, least', distance(collision.nozzle_clearance_mm), 'or to table or beads it ploughs');
+  if (collision && collision.min_clearance_mm !== undefined)
+    tile('Least clearance elsewhere', distance(collision.min_clearance_mm), collision.closest);
   if (print) {
     tile('Duration', formatDuration(print.duration_s), format.quantity(print.extruded_mm, 'mm') + ' of filament');
   }
   return tiles.length ? element('dl', { class: 'key-figures' }, ...tiles) : null;
+}
+
+// Below zero a clearance is the depth of a contact.
+function distance(clearance_mm) {
+  return clearance_mm < 0 ? format.quantity(-clearance_mm, 'mm') + ' deep' : format.quantity(clearance_mm, 'mm');
 }
 
 function formatDuration(seconds) {
