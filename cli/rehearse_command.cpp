@@ -9,13 +9,14 @@
 #include "cli/progress.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "rehearsal/finding_groups.h"
 #include "rehearsal/rehearse.h"
 #include "report/page/write_results.h"
 
 namespace understudy::cli {
 namespace {
 
-constexpr std::size_t kFindingsShown = 10;
+constexpr std::size_t kGroupsShown = 10;
 
 void print_calibration(const rehearsal::CalibrationFigures& figures) {
   fmt::print("  tip error without gap control {:.0f} um RMS, {:.0f} um at most", figures.after.tip_rms_um,
@@ -39,18 +40,23 @@ void print_clearance(const rehearsal::CollisionFigures& figures) {
                figures.closest, figures.checks);
 }
 
+void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
+  std::size_t shown = 0;
+  for (const auto& group : groups) {
+    if (shown++ == kGroupsShown) {
+      fmt::print("  ... and {} more kinds of finding in the report\n", groups.size() - kGroupsShown);
+      return;
+    }
+    const std::string extent = extent_of(group);
+    fmt::print("  {} {}{}: {}\n", group.worst.severity == rehearsal::Severity::error ? "error  " : "warning",
+               group.worst.kind, extent.empty() ? "" : " (" + extent + ")", group.worst.message);
+    if (!group.advice.empty()) fmt::print("          what to do: {}\n", group.advice);
+  }
+}
+
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, record.go ? "GO" : "NO-GO");
-  std::size_t shown = 0;
-  for (const auto& finding : record.findings) {
-    if (shown++ == kFindingsShown) {
-      fmt::print("  ... and {} more in the report\n", record.findings.size() - kFindingsShown);
-      break;
-    }
-    fmt::print("  {} {}{}: {}\n", finding.severity == rehearsal::Severity::error ? "error  " : "warning",
-               finding.kind, finding.gcode_line > 0 ? fmt::format(" (line {})", finding.gcode_line) : "",
-               finding.message);
-  }
+  print_findings(rehearsal::group_findings(record));
   if (record.gap) {
     const auto& gap = *record.gap;
     fmt::print("  gap at the start {:.3f} mm", gap.start_mm);

@@ -11,23 +11,10 @@
 #include "control/gap/gap_controller.h"
 #include "core/frames.h"
 #include "machine/port.h"
+#include "rehearsal/finding.h"
 #include "rehearsal/scene.h"
 
 namespace understudy::rehearsal {
-
-enum class Severity { error, warning };
-
-/// kind is one of the contract's words. value and limit in `unit`, the unit of reports (mm, deg, um, mm/s).
-struct Finding {
-  std::string kind;
-  Severity severity = Severity::error;
-  int gcode_line = 0;
-  double time_s = 0;
-  double value = 0;
-  double limit = 0;
-  std::string unit;
-  std::string message;
-};
 
 struct PrintFigures {
   double duration_s = 0;
@@ -125,6 +112,9 @@ struct Record {
   std::vector<Finding> findings;  ///< errors first, then by line
   std::string title;              ///< "curved-line.gcode on hexapod"
   std::string program_name, machine_name, fixture_name, gap_control;
+  std::string machine_word;                 ///< as `--machine` took it
+  std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
+  bool measures_gap = false;                ///< the machine has laser and microscope
 
   std::optional<PrintFigures> print;
   std::optional<AccuracyFigures> accuracy;

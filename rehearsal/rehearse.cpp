@@ -97,6 +97,9 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
                        : mode == control::GapControl::start ? "start"
                                                             : "continuous";
   record.as_built = sim::write_as_built(setup.as_built);
+  record.machine_word = request.machine;
+  record.place_mm = request.dialect.place_mm;
+  record.measures_gap = setup.machine.has_microscope;
   record.title = record.program_name + " on " + record.machine_name;
   record.gap_accepted_min_mm = to_mm(setup.machine.gap.accepted_min);
   record.gap_accepted_max_mm = to_mm(setup.machine.gap.accepted_max);

@@ -26,8 +26,8 @@ using Keys = std::vector<std::string>;
 
 TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
   const Json summary = Json::parse(summary_json(sample_go()));
-  EXPECT_EQ(keys(summary), (Keys{"schema", "verdict", "findings", "print", "accuracy", "gap", "collision",
-                                 "engine", "provenance"}));
+  EXPECT_EQ(keys(summary), (Keys{"schema", "verdict", "findings", "finding_groups", "print", "accuracy",
+                                 "gap", "collision", "engine", "provenance"}));
   EXPECT_EQ(summary["schema"], "understudy.rehearsal/1");
   EXPECT_EQ(summary["verdict"], "go");
   EXPECT_EQ(keys(summary["findings"][0]),
@@ -48,7 +48,7 @@ TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
 
 TEST(SummaryJson, LeavesOutWhatIsAbsent) {
   const Json stopped = Json::parse(summary_json(sample_stopped_by_constraints()));
-  EXPECT_EQ(keys(stopped), (Keys{"schema", "verdict", "findings", "provenance"}));
+  EXPECT_EQ(keys(stopped), (Keys{"schema", "verdict", "findings", "finding_groups", "provenance"}));
   EXPECT_EQ(stopped["verdict"], "no-go");
   EXPECT_FALSE(Json::parse(summary_json(sample_without_gap_control()))["gap"].contains("open_loop_start_mm"));
   Record record = sample_go();

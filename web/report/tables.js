@@ -1,18 +1,43 @@
 'use strict';
 // What was found, every figure of the summary, and where it comes from.
-const kFindingsShown = 20;
-
 function drawFindings(report) {
-  const findings = report.summary.findings;
+  const { findings, finding_groups: groups } = report.summary;
   const title = 'What was found, and where';
-  if (findings.length === 0) return section(title, null, element('p', {}, 'Nothing. No limit was broken or neared.'));
-  const sorted = findings.map((finding, order) => ({ finding, order })).sort((a, b) =>
-    (a.finding.severity === 'error' ? 0 : 1) - (b.finding.severity === 'error' ? 0 : 1) || a.order - b.order);
-  const rows = sorted.map(({ finding }) => findingRow(finding));
-  const rest = rows.slice(kFindingsShown);
-  return section(title, null, findingsTable(rows.slice(0, kFindingsShown)),
-    rest.length ? element('details', {}, element('summary', {}, format.plural(rest.length, 'more finding')),
-      findingsTable(rest)) : null);
+  if (findings.length === 0) return section(title, null, element('p', {}, 'Nothing: no limit was broken.'));
+  const note = 'Alike findings are one row, with their worst; what causes others stands before them.';
+  return section(title, note, groupsTable(groups),
+    groups.length < findings.length ? element('details', {},
+      element('summary', {}, 'Each of the ' + format.plural(findings.length, 'finding')),
+      findingsTable(findings.map(findingRow))) : null);
+}
+
+function groupsTable(groups) {
+  const head = ['', 'Kind', 'Lines', 'Times', 'Worst', 'Limit', 'Message'];
+  const numeric = new Set(['Lines', 'Times', 'Worst', 'Limit']);
+  return element('table', { class: 'findings' },
+    element('thead', {}, element('tr', {}, ...head.map((h) => element('th', { class: numeric.has(h) ? 'number' : null }, h)))),
+    element('tbody', {}, ...groups.map(groupRow)));
+}
+
+function groupRow(group) {
+  const { worst } = group;
+  const cell = (label, text, kind) => element('td', { 'data-label': label, class: kind }, text);
+  const lines = group.first_line === undefined ? '\u2013'
+    : group.first_line === group.last_line ? String(group.first_line) : group.first_line + '\u2013' + group.last_line;
+  return element('tr', {},
+    element('td', { class: 'mark' }, element('span', { class: 'severity ' + group.severity }, group.severity)),
+    cell('Kind', format.kind(group.kind)),
+    cell('Lines', lines, 'number'),
+    cell('Times', format.count(group.count), 'number'),
+    cell('Worst', format.quantity(worst.value, worst.unit), 'number'),
+    cell('Limit', format.quantity(worst.limit, worst.unit), 'number'),
+    element('td', { 'data-label': 'Message', class: 'message' }, format.message(worst.message),
+      group.advice ? element('p', { class: 'advice' }, ...withCode(group.advice)) : null));
+}
+
+// What stands between backquotes is to be typed.
+function withCode(text) {
+  return text.split('`').map((part, i) => (i % 2 ? element('code', {}, part) : part));
 }
 
 function findingsTable(rows) {
