@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "core/yaml_map.h"
 #include "kinematics/chain/chain_kind.h"
+#include "machine/accepted_errors.h"
 #include "machine/calibrated_parameters.h"
 #include "machine/calibration_section.h"
 #include "machine/chain_section.h"
@@ -84,7 +85,15 @@ std::vector<std::string> mechanism_words() {
   return words;
 }
 
-void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& parameters) {
+/// All that a file says.
+struct MachineFile {
+  MachineDescription machine;
+  CalibratedParameters parameters;
+  std::optional<AcceptedErrors> accepted;
+};
+
+void read_machine(YamlMap& root, MachineFile& file) {
+  MachineDescription& m = file.machine;
   m.name = root.text("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
@@ -93,7 +102,7 @@ void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& pa
     read_chain(root, m);
   else
     read_hexapod(root, m);
-  read_calibration(root, m, parameters);
+  read_calibration(root, m, file.parameters);
   root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool); });
   if (root.has("process"))
     root.section("process", "the filament between drive and part",
@@ -110,6 +119,9 @@ void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& pa
   // A tool without a nozzle lays nothing that a gap would matter to.
   if (!root.has("tool.end_mill_diameter_mm") || root.has("gap"))
     root.section("gap", "between tip and surface", [&](YamlMap& map) { read_gap(map, m.gap); });
+  if (root.has("accuracy"))
+    root.section("accuracy", "how far off a print may be",
+                 [&](YamlMap& map) { read_accepted_errors(map, file.accepted.emplace()); });
   root.section("table", "what the work stands on", [&](YamlMap& map) { read_table(map, m.table); });
   root.section("motion", "speeds of the tip, and the cycle", [&](YamlMap& map) { read_motion(map, m); });
   if (!root.complete()) return;
@@ -117,29 +129,36 @@ void read_machine(YamlMap& root, MachineDescription& m, CalibratedParameters& pa
   if (m.has_microscope) check_optics(root, m);
 }
 
+MachineFile read_machine_file(const std::string& name_or_path) {
+  MachineFile file;
+  file.machine.file = find_model(name_or_path);
+  const std::string bytes = read_file(file.machine.file);
+  file.machine.sha256 = sha256_hex(bytes);
+  YamlMap::read_text(bytes, file.machine.file.string(), [&](YamlMap& root) { read_machine(root, file); });
+  return file;
+}
+
 }  // namespace
 
 MachineDescription load_machine(const std::string& name_or_path) {
-  CalibratedParameters unused;
-  return load_machine(name_or_path, unused);
+  return read_machine_file(name_or_path).machine;
 }
 
 MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters) {
-  MachineDescription machine;
-  parameters = {};
-  machine.file = find_model(name_or_path);
-  const std::string bytes = read_file(machine.file);
-  machine.sha256 = sha256_hex(bytes);
-  YamlMap::read_text(bytes, machine.file.string(),
-                     [&](YamlMap& root) { read_machine(root, machine, parameters); });
-  return machine;
+  MachineFile file = read_machine_file(name_or_path);
+  parameters = std::move(file.parameters);
+  return std::move(file.machine);
+}
+
+AcceptedErrors load_accepted_errors(const std::string& name_or_path) {
+  const MachineFile file = read_machine_file(name_or_path);
+  return file.accepted.value_or(default_accepted_errors(file.machine.tool));
 }
 
 MapSchema machine_schema() {
   return YamlMap::schema([](YamlMap& root) {
-    MachineDescription machine;
-    CalibratedParameters parameters;
-    read_machine(root, machine, parameters);
+    MachineFile file;
+    read_machine(root, file);
   });
 }
 
