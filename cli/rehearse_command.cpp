@@ -1,5 +1,7 @@
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -11,6 +13,7 @@
 #include "core/output_file.h"
 #include "rehearsal/finding_groups.h"
 #include "rehearsal/rehearse.h"
+#include "rehearsal/verdict.h"
 #include "report/page/write_results.h"
 
 namespace understudy::cli {
@@ -29,6 +32,15 @@ void print_calibration(const rehearsal::CalibrationFigures& figures) {
   fmt::print("\n");
 }
 
+void print_print(const rehearsal::PrintFigures& print) {
+  fmt::print("  print time {:.1f} s\n", print.duration_s);
+  if (print.extruded_mm <= 0) return;
+  fmt::print("  filament fed {:.1f} mm: {:.1f} mm printed, {:.1f} mm purged, {:.1f} mm missing",
+             print.extruded_mm, print.printed_mm, print.purged_mm, print.missing_mm);
+  if (print.primed_mm > 0) fmt::print("; {:.1f} mm more pushed back after retractions", print.primed_mm);
+  fmt::print("\n");
+}
+
 void print_clearance(const rehearsal::CollisionFigures& figures) {
   const auto distance = [](double mm) {
     return mm < 0 ? fmt::format("{:.3f} mm deep", -mm) : fmt::format("{:.3f} mm", mm);
@@ -42,6 +54,7 @@ void print_clearance(const rehearsal::CollisionFigures& figures) {
 
 void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
   std::size_t shown = 0;
+  std::set<std::string> advised;  // six struts that are too short ask for one remedy
   for (const auto& group : groups) {
     if (shown++ == kGroupsShown) {
       fmt::print("  ... and {} more kinds of finding in the report\n", groups.size() - kGroupsShown);
@@ -50,12 +63,13 @@ void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
     const std::string extent = extent_of(group);
     fmt::print("  {} {}{}: {}\n", group.worst.severity == rehearsal::Severity::error ? "error  " : "warning",
                group.worst.kind, extent.empty() ? "" : " (" + extent + ")", group.worst.message);
-    if (!group.advice.empty()) fmt::print("          what to do: {}\n", group.advice);
+    if (!group.advice.empty() && advised.insert(group.advice).second)
+      fmt::print("          what to do: {}\n", group.advice);
   }
 }
 
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
-  fmt::print("{}: {}\n", record.title, record.go ? "GO" : "NO-GO");
+  fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
   print_findings(rehearsal::group_findings(record));
   if (record.gap) {
     const auto& gap = *record.gap;
@@ -66,8 +80,8 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
                record.gap_accepted_max_mm);
   }
   if (record.accuracy)
-    fmt::print("  tip error {:.0f} um RMS, {:.0f} um at most\n", record.accuracy->tip_rms_um,
-               record.accuracy->tip_max_um);
+    fmt::print("  tip error {:.0f} um RMS, {:.0f} um at most; {:g} um are accepted\n",
+               record.accuracy->tip_rms_um, record.accuracy->tip_max_um, 1e3 * record.tip_tolerance_mm);
   if (record.calibration) print_calibration(*record.calibration);
   if (record.collision) print_clearance(*record.collision);
   if (record.sag && record.sag->strands > 0)
@@ -75,7 +89,7 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
                record.sag->unsupported_mm, record.sag->max_um);
   if (record.surface && record.surface->ra_um)
     fmt::print("  surface Ra {:.1f} um, Rz {:.1f} um\n", *record.surface->ra_um, *record.surface->rz_um);
-  if (record.print) fmt::print("  print time {:.1f} s\n", record.print->duration_s);
+  if (record.print) print_print(*record.print);
   fmt::print("report: {}\n", (std::filesystem::path(folder) / "report.html").string());
 }
 
@@ -97,6 +111,18 @@ int rehearse(const rehearsal::RehearsalRequest& asked, const std::string& folder
   out.commit();
   print_answer(record, folder);
   return record.go ? kGood : kNo;
+}
+
+void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
+  command
+      .add_option("--tip-tolerance", request.tip_tolerance_mm,
+                  "mm: a print whose tip is off by more is a no-go; without it the machine file's")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option(
+          "--orientation-tolerance", request.orientation_tolerance_deg,
+          "degrees: a print whose tool is turned away by more is a no-go; without it the machine file's")
+      ->check(CLI::PositiveNumber);
 }
 
 void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
@@ -178,6 +204,7 @@ void add_rehearse(CLI::App& app, Action& action) {
       "--gap-control", request->gap_control,
       "off; start: close the gap before each print move by laser and camera; continuous: and follow "
       "it along the path; start where the machine has them");
+  add_tolerances(*command, *request);
   add_dialect(*command, request->dialect);
   add_surface(*command, request->surface);
   command->add_flag("!--no-pictures", request->keep_scene,

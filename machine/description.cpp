@@ -85,15 +85,15 @@ std::vector<std::string> mechanism_words() {
   return words;
 }
 
-/// All that a file says.
+/// A machine file: the description, and what only a twin needs.
 struct MachineFile {
-  MachineDescription machine;
-  CalibratedParameters parameters;
+  MachineDescription description;
+  CalibratedParameters calibrated;
   std::optional<AcceptedErrors> accepted;
 };
 
 void read_machine(YamlMap& root, MachineFile& file) {
-  MachineDescription& m = file.machine;
+  MachineDescription& m = file.description;
   m.name = root.text("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
@@ -102,7 +102,7 @@ void read_machine(YamlMap& root, MachineFile& file) {
     read_chain(root, m);
   else
     read_hexapod(root, m);
-  read_calibration(root, m, file.parameters);
+  read_calibration(root, m, file.calibrated);
   root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool); });
   if (root.has("process"))
     root.section("process", "the filament between drive and part",
@@ -129,30 +129,31 @@ void read_machine(YamlMap& root, MachineFile& file) {
   if (m.has_microscope) check_optics(root, m);
 }
 
-MachineFile read_machine_file(const std::string& name_or_path) {
+MachineFile read_file_of(const std::string& name_or_path) {
   MachineFile file;
-  file.machine.file = find_model(name_or_path);
-  const std::string bytes = read_file(file.machine.file);
-  file.machine.sha256 = sha256_hex(bytes);
-  YamlMap::read_text(bytes, file.machine.file.string(), [&](YamlMap& root) { read_machine(root, file); });
+  MachineDescription& machine = file.description;
+  machine.file = find_model(name_or_path);
+  const std::string bytes = read_file(machine.file);
+  machine.sha256 = sha256_hex(bytes);
+  YamlMap::read_text(bytes, machine.file.string(), [&](YamlMap& root) { read_machine(root, file); });
   return file;
 }
 
 }  // namespace
 
 MachineDescription load_machine(const std::string& name_or_path) {
-  return read_machine_file(name_or_path).machine;
+  return read_file_of(name_or_path).description;
 }
 
 MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters) {
-  MachineFile file = read_machine_file(name_or_path);
-  parameters = std::move(file.parameters);
-  return std::move(file.machine);
+  MachineFile file = read_file_of(name_or_path);
+  parameters = std::move(file.calibrated);
+  return std::move(file.description);
 }
 
 AcceptedErrors load_accepted_errors(const std::string& name_or_path) {
-  const MachineFile file = read_machine_file(name_or_path);
-  return file.accepted.value_or(default_accepted_errors(file.machine.tool));
+  const MachineFile file = read_file_of(name_or_path);
+  return file.accepted.value_or(default_accepted_errors(file.description.tool));
 }
 
 MapSchema machine_schema() {

@@ -91,9 +91,10 @@ std::string about_adhesion(const Finding& finding, const Record& record) {
 }
 
 std::string about_accuracy(const Finding& finding, const Record& record) {
-  const bool of_tip = finding.about == kTip;
+  constexpr double kTolerable = 2;  // times the limit: more is no question of tolerance
+  if (finding.value > kTolerable * finding.limit) return calibrate(record);
   return fmt::format("{}; or accept it with `{} {:g}`", calibrate(record),
-                     of_tip ? "--tip-tolerance" : "--orientation-tolerance",
+                     finding.about == kTip ? "--tip-tolerance" : "--orientation-tolerance",
                      std::ceil(10 * finding.value) / 10);
 }
 

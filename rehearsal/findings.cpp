@@ -259,6 +259,15 @@ std::vector<Finding> findings_of(const TwinRun& run, const TwinSetup& setup,
   return findings;
 }
 
+void tell_how_simulated(std::vector<Finding>& findings) {
+  for (Finding& finding : findings) {
+    if (finding.kind == "strut_length" || finding.kind == "joint_limit")
+      finding.message += "; simulated with the axis held at its limit";
+    if (finding.kind == "joint_angle" || finding.kind == "collision")
+      finding.message += "; simulated as if it went on";
+  }
+}
+
 void sort_findings(std::vector<Finding>& findings) {
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     if (a.severity != b.severity) return a.severity == Severity::error;

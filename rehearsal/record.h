@@ -19,7 +19,14 @@ namespace understudy::rehearsal {
 struct PrintFigures {
   double duration_s = 0;
   int moves = 0;
-  double extruded_mm = 0, deposited_mm = 0, travel_mm = 0;
+  double extruded_mm = 0;   ///< filament fed: printed, purged and missing
+  double printed_mm = 0;    ///< of that, laid along the path
+  double purged_mm = 0;     ///< of that, fed at a standstill and left behind
+  double missing_mm = 0;    ///< of that, not laid: the end of the print is in the nozzle
+  double primed_mm = 0;     ///< besides: pushed back to the nozzle after retractions
+  double deposited_mm = 0;  ///< of what was laid: lies on something and sticks
+  double spanning_mm = 0;   ///< of what was laid: hangs in air from something that holds it
+  double travel_mm = 0;     ///< of the tip, without extrusion
 };
 struct AccuracyFigures {
   double tip_rms_um = 0, tip_p95_um = 0, tip_max_um = 0, orientation_max_mrad = 0, open_loop_tip_max_um = 0;
@@ -126,7 +133,8 @@ struct Record {
   std::optional<EngineFigures> engine;
   Provenance provenance;
 
-  std::string as_built;          ///< every true parameter, as the file that --as-built reads
+  std::string as_built;  ///< every true parameter, as the file that --as-built reads
+  double tip_tolerance_mm = 0, orientation_tolerance_deg = 0;  ///< beyond, a print is a no-go
   std::vector<AxisColumn> axes;  ///< the first entries of TracePoint::axes, in order
   double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
   std::vector<TracePoint> trace;

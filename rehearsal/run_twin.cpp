@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/trace_observer.h"
 #include "sim/deposition/bead_temperature.h"
 #include "sim/plant/plant.h"
 #include "sim/sensors/microscope.h"
@@ -173,11 +172,13 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   };
   sim::TwinOptions twin;
   twin.faults = setup.faults;
+  twin.hold_at_limits = options.beyond_limits;
   sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
                           {&watch.thread}, twin);
 
   control::PrintOptions print_options;
   print_options.gap_control = options.gap_control;
+  if (options.beyond_limits) print_options.poses = control::PoseCheck::solvable;
   print_options.part = setup.part.get();
   Relay relay(progress, watch.thread, watch.trace);
   TwinRun run;
@@ -187,6 +188,8 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   watch.deposition.finish();
 
   run.accuracy = watch.trace.accuracy();
+  run.tip_peak = watch.trace.tip_peak();
+  run.orientation_peak = watch.trace.orientation_peak();
   run.trace_stride = watch.trace.stride();
   run.trace = watch.trace.take();
   run.frames = pair_with_truth(run.result, truth);

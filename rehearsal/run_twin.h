@@ -7,10 +7,12 @@
 #include "control/print.h"
 #include "core/progress.h"
 #include "geometry/mesh.h"
+#include "machine/accepted_errors.h"
 #include "machine/description.h"
 #include "machine/material.h"
 #include "rehearsal/flow_watch.h"
 #include "rehearsal/record.h"
+#include "rehearsal/trace_observer.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
 #include "sim/deposition/deposition.h"
@@ -23,6 +25,7 @@ namespace understudy::rehearsal {
 /// What a run reads; immutable, shared by runs in several threads.
 struct TwinSetup {
   machine::MachineDescription machine;
+  machine::AcceptedErrors accepted;
   machine::Material material;  ///< of a tool that prints
   toolpath::Program program;
   std::shared_ptr<const geometry::Mesh> part;  ///< may be null
@@ -37,6 +40,7 @@ struct TwinRun {
   std::vector<TracePoint> trace;
   int trace_stride = 1;  ///< snapshots a point of the trace
   std::optional<AccuracyFigures> accuracy;
+  ErrorPeak tip_peak, orientation_peak;
   std::vector<FrameRecord> frames;
   std::vector<sim::Contact> collisions, near_collisions;
   CollisionFigures collision;
@@ -51,6 +55,8 @@ struct TwinRun {
 struct RunOptions {
   control::GapControl gap_control = control::GapControl::start;
   bool watch_collisions = true;
+  /// The program breaks limits of axes or joints: an axis stays at the end of its range, a joint goes on.
+  bool beyond_limits = false;
 };
 
 /// Words of `--engine` and of scenarios.

@@ -84,6 +84,35 @@ std::string go_sentence(const Record& record) {
 
 }  // namespace
 
+Grade grade_of(const Record& record) {
+  if (!record.go) return Grade::no_go;
+  return record.findings.empty() ? Grade::go : Grade::go_with_warnings;
+}
+
+const char* word(Grade grade) {
+  switch (grade) {
+    case Grade::go:
+      return "go";
+    case Grade::go_with_warnings:
+      return "go-with-warnings";
+    case Grade::no_go:
+      break;
+  }
+  return "no-go";
+}
+
+const char* headline(Grade grade) {
+  switch (grade) {
+    case Grade::go:
+      return "GO";
+    case Grade::go_with_warnings:
+      return "GO with warnings";
+    case Grade::no_go:
+      break;
+  }
+  return "NO-GO";
+}
+
 std::string verdict_sentence(const Record& record) {
   return record.go ? go_sentence(record) : no_go_sentence(record);
 }

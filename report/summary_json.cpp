@@ -8,6 +8,7 @@
 #include "core/stable_number.h"
 #include "rehearsal/figures.h"
 #include "rehearsal/finding_groups.h"
+#include "rehearsal/verdict.h"
 #include "report/json_text.h"
 
 namespace understudy::report {
@@ -20,12 +21,12 @@ using Json = nlohmann::ordered_json;
 
 void put(Json& object, const char* key, double value) { object[key] = stable_number(value, key); }
 
-const char* word(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
+const char* severity_word(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
 
 Json finding_value(const Finding& finding) {
   Json object;
   object["kind"] = finding.kind;
-  object["severity"] = word(finding.severity);
+  object["severity"] = severity_word(finding.severity);
   if (finding.gcode_line > 0) object["gcode_line"] = finding.gcode_line;
   put(object, "time_s", finding.time_s);
   put(object, "value", finding.value);
@@ -39,7 +40,7 @@ Json finding_value(const Finding& finding) {
 Json group_value(const FindingGroup& group) {
   Json object;
   object["kind"] = group.worst.kind;
-  object["severity"] = word(group.worst.severity);
+  object["severity"] = severity_word(group.worst.severity);
   object["count"] = group.count;
   if (group.first_line > 0) {
     object["first_line"] = group.first_line;
@@ -67,6 +68,8 @@ Json summary_value(const rehearsal::Record& record) {
   Json summary;
   summary["schema"] = "understudy.rehearsal/1";
   summary["verdict"] = record.go ? "go" : "no-go";
+  summary["go"] = record.go;
+  summary["grade"] = word(rehearsal::grade_of(record));
   summary["findings"] = Json::array();
   for (const Finding& finding : record.findings) summary["findings"].push_back(finding_value(finding));
   summary["finding_groups"] = Json::array();

@@ -38,10 +38,10 @@ TEST(Advice, AMachineThatDoesNotSeeIsToldHowMuchHigher) {
 }
 
 TEST(Advice, CommandsNameTheMachineAsItWasAskedFor) {
-  const Finding error{"accuracy", Severity::error, 0, 0, 1.74, 0.5, "mm", "", 0, kTip};
+  const Finding error{"accuracy", Severity::error, 0, 0, 0.74, 0.5, "mm", "", 0, kTip};
   const std::string text = advice(error, on_a_machine(true, "start"));
   EXPECT_THAT(text, HasSubstr("calibrate measured.csv --machine models/mine/machine.yaml "));
-  EXPECT_THAT(text, HasSubstr("`--tip-tolerance 1.8`"));
+  EXPECT_THAT(text, HasSubstr("`--tip-tolerance 0.8`"));
 }
 
 TEST(Advice, ABeadOverNothingAsksForThePart) {

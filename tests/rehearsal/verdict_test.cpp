@@ -45,6 +45,16 @@ TEST(VerdictSentence, DoesNotSayThatNoLimitIsBrokenBesideWarnings) {
       testing::StartsWith("Nothing stands against the print, with 537 warnings of flow: the gap starts"));
 }
 
+TEST(Grade, IsOfThreeAndAGoWithWarningsIsAGo) {
+  Record record = printed(true);
+  EXPECT_STREQ(word(grade_of(record)), "go");
+  record.findings = {{"flow", Severity::warning, 1, 1, 0.5, 0.8, "1", "too little is laid"}};
+  EXPECT_STREQ(word(grade_of(record)), "go-with-warnings");
+  EXPECT_STREQ(headline(grade_of(record)), "GO with warnings");
+  EXPECT_TRUE(record.go);
+  EXPECT_STREQ(headline(grade_of(stopped_by_constraints())), "NO-GO");
+}
+
 TEST(VerdictSentence, AWarningIsNeverTheReasonOfANoGo) {
   Record record = stopped_by_constraints();
   record.findings.insert(record.findings.begin(),

@@ -66,7 +66,9 @@ const kGroupTitles = {
 };
 
 const kFigureLabels = {
-  duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', deposited_mm: 'Filament that sticks',
+  duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', printed_mm: 'Of that, printed', purged_mm: 'Of that, purged at a standstill',
+  missing_mm: 'Of that, missing on the part', primed_mm: 'Besides, pushed back after retractions',
+  deposited_mm: 'Laid on something, sticks', spanning_mm: 'Laid in air, held',
   travel_mm: 'Travel without extrusion',
   tip_rms_um: 'Tip error, RMS', tip_p95_um: 'Tip error, 95th percentile', tip_max_um: 'Tip error, largest',
   machine_before: 'Machine before', machine_after: 'Machine after', not_run_before: 'Not run before',
@@ -75,6 +77,7 @@ const kFigureLabels = {
   tip_max_before_um: 'Tip error before, largest', tip_max_after_um: 'Tip error after, largest',
   orientation_max_before_mrad: 'Orientation error before, largest', orientation_max_after_mrad: 'Orientation error after, largest',
   orientation_max_mrad: 'Orientation error, largest', open_loop_tip_max_um: 'Tip error without gap control, largest',
+  tip_tolerance_mm: 'Tip error accepted', orientation_tolerance_deg: 'Orientation error accepted',
   commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
   path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
   in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',

@@ -64,7 +64,7 @@ class SlowReportPage : public testing::Test {
 
 TEST_F(SlowReportPage, AGoShowsVerdictChartsFramesAndFigures) {
   const std::string page = drawn(sample_go());
-  EXPECT_EQ(count(page, "<strong>GO</strong>"), 1u);
+  EXPECT_EQ(count(page, "<strong>GO with warnings</strong>"), 1u);
   EXPECT_EQ(count(page, "class=\"chart\""), 3u);
   EXPECT_EQ(count(page, "<canvas"), 6u);                       // dygraphs stacks two on every chart
   EXPECT_EQ(count(page, "class=\"dot measured\""), 10u + 1u);  // the frames and the key
