@@ -106,7 +106,7 @@ TEST(Rehearse, ALimitBrokenOnTheLastLineLeavesTheRestSimulated) {
                    " --machine five-axis --as-built nominal --engine quasistatic --out " + (folder / name));
     return std::pair(outcome.status, nlohmann::json::parse(read_file(folder.path() / name / "summary.json")));
   };
-  const auto [status, whole] = run("whole", bead);
+  const auto [status, whole] = run("whole", bead + "G0 Z150\n");
   EXPECT_EQ(status, 0);
   const auto [parked_status, parked] = run("parked", bead + "G0 Z230\n");
   EXPECT_EQ(parked_status, 1);
