@@ -49,7 +49,7 @@ calibration::CameraPose measure_pair(const vision::RigDescription& rig, const vi
   const calibration::CameraPose pose = calibration::camera_pose(measured);
   if (!pose.ok())
     report_left_out(pair[static_cast<std::size_t>(std::max(measured.camera, 0))].file,
-                  fmt::format("pose {}, {}", pair[0].pose, pose.failure));
+                    fmt::format("pose {}, {}", pair[0].pose, pose.failure));
   return pose;
 }
 
