@@ -1,5 +1,7 @@
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -9,13 +11,15 @@
 #include "cli/progress.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "rehearsal/finding_groups.h"
 #include "rehearsal/rehearse.h"
+#include "rehearsal/verdict.h"
 #include "report/page/write_results.h"
 
 namespace understudy::cli {
 namespace {
 
-constexpr std::size_t kFindingsShown = 10;
+constexpr std::size_t kGroupsShown = 10;
 
 void print_calibration(const rehearsal::CalibrationFigures& figures) {
   fmt::print("  tip error without gap control {:.0f} um RMS, {:.0f} um at most", figures.after.tip_rms_um,
@@ -28,18 +32,45 @@ void print_calibration(const rehearsal::CalibrationFigures& figures) {
   fmt::print("\n");
 }
 
-void print_answer(const rehearsal::Record& record, const std::string& folder) {
-  fmt::print("{}: {}\n", record.title, record.go ? "GO" : "NO-GO");
+void print_print(const rehearsal::PrintFigures& print) {
+  fmt::print("  print time {:.1f} s\n", print.duration_s);
+  if (print.extruded_mm <= 0) return;
+  fmt::print("  filament fed {:.1f} mm: {:.1f} mm printed, {:.1f} mm purged, {:.1f} mm missing",
+             print.extruded_mm, print.printed_mm, print.purged_mm, print.missing_mm);
+  if (print.primed_mm > 0) fmt::print("; {:.1f} mm more pushed back after retractions", print.primed_mm);
+  fmt::print("\n");
+}
+
+void print_clearance(const rehearsal::CollisionFigures& figures) {
+  const auto distance = [](double mm) {
+    return mm < 0 ? fmt::format("{:.3f} mm deep", -mm) : fmt::format("{:.3f} mm", mm);
+  };
+  if (figures.nozzle_clearance_mm)
+    fmt::print("  nozzle to what it prints on: least {}\n", distance(*figures.nozzle_clearance_mm));
+  if (figures.min_clearance_mm)
+    fmt::print("  all else: least clearance {} ({}), {} checks\n", distance(*figures.min_clearance_mm),
+               figures.closest, figures.checks);
+}
+
+void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
   std::size_t shown = 0;
-  for (const auto& finding : record.findings) {
-    if (shown++ == kFindingsShown) {
-      fmt::print("  ... and {} more in the report\n", record.findings.size() - kFindingsShown);
-      break;
+  std::set<std::string> advised;  // six struts that are too short ask for one remedy
+  for (const auto& group : groups) {
+    if (shown++ == kGroupsShown) {
+      fmt::print("  ... and {} more kinds of finding in the report\n", groups.size() - kGroupsShown);
+      return;
     }
-    fmt::print("  {} {}{}: {}\n", finding.severity == rehearsal::Severity::error ? "error  " : "warning",
-               finding.kind, finding.gcode_line > 0 ? fmt::format(" (line {})", finding.gcode_line) : "",
-               finding.message);
+    const std::string extent = extent_of(group);
+    fmt::print("  {} {}{}: {}\n", group.worst.severity == rehearsal::Severity::error ? "error  " : "warning",
+               group.worst.kind, extent.empty() ? "" : " (" + extent + ")", group.worst.message);
+    if (!group.advice.empty() && advised.insert(group.advice).second)
+      fmt::print("          what to do: {}\n", group.advice);
   }
+}
+
+void print_answer(const rehearsal::Record& record, const std::string& folder) {
+  fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
+  print_findings(rehearsal::group_findings(record));
   if (record.gap) {
     const auto& gap = *record.gap;
     fmt::print("  gap at the start {:.3f} mm", gap.start_mm);
@@ -49,18 +80,16 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
                record.gap_accepted_max_mm);
   }
   if (record.accuracy)
-    fmt::print("  tip error {:.0f} um RMS, {:.0f} um at most\n", record.accuracy->tip_rms_um,
-               record.accuracy->tip_max_um);
+    fmt::print("  tip error {:.0f} um RMS, {:.0f} um at most; {:g} um are accepted\n",
+               record.accuracy->tip_rms_um, record.accuracy->tip_max_um, 1e3 * record.tip_tolerance_mm);
   if (record.calibration) print_calibration(*record.calibration);
-  if (record.collision)
-    fmt::print("  smallest clearance {:.2f} mm over {} checks\n", record.collision->min_clearance_mm,
-               record.collision->checks);
+  if (record.collision) print_clearance(*record.collision);
   if (record.sag && record.sag->strands > 0)
     fmt::print("  {} strands in air, {:.1f} mm in all, sag {:.0f} um at most\n", record.sag->strands,
                record.sag->unsupported_mm, record.sag->max_um);
   if (record.surface && record.surface->ra_um)
     fmt::print("  surface Ra {:.1f} um, Rz {:.1f} um\n", *record.surface->ra_um, *record.surface->rz_um);
-  if (record.print) fmt::print("  print time {:.1f} s\n", record.print->duration_s);
+  if (record.print) print_print(*record.print);
   fmt::print("report: {}\n", (std::filesystem::path(folder) / "report.html").string());
 }
 
@@ -82,6 +111,18 @@ int rehearse(const rehearsal::RehearsalRequest& asked, const std::string& folder
   out.commit();
   print_answer(record, folder);
   return record.go ? kGood : kNo;
+}
+
+void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
+  command
+      .add_option("--tip-tolerance", request.tip_tolerance_mm,
+                  "mm: a print whose tip is off by more is a no-go; without it the machine file's")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option(
+          "--orientation-tolerance", request.orientation_tolerance_deg,
+          "degrees: a print whose tool is turned away by more is a no-go; without it the machine file's")
+      ->check(CLI::PositiveNumber);
 }
 
 void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
@@ -163,6 +204,7 @@ void add_rehearse(CLI::App& app, Action& action) {
       "--gap-control", request->gap_control,
       "off; start: close the gap before each print move by laser and camera; continuous: and follow "
       "it along the path; start where the machine has them");
+  add_tolerances(*command, *request);
   add_dialect(*command, request->dialect);
   add_surface(*command, request->surface);
   command->add_flag("!--no-pictures", request->keep_scene,

@@ -22,12 +22,13 @@ MotionLimits limits_for(const machine::MachineDescription& machine, bool gap_con
 }  // namespace
 
 ControlCycle::ControlCycle(const machine::MachineDescription& machine, machine::MachinePort& port,
-                           const Pose& X_WT_start, ContinuousGapController* gap)
+                           const Pose& X_WT_start, const CycleOptions& options)
     : machine_(machine),
       mechanism_(machine.make_mechanism()),
-      limits_(limits_for(machine, gap != nullptr)),
+      limits_(limits_for(machine, options.gap != nullptr)),
       streamer_(port, limits_.cycle_time),
-      gap_(gap),
+      gap_(options.gap),
+      poses_(options.poses),
       X_WT_rest_(X_WT_start),
       axes_rest_(port.state().position) {}
 
@@ -100,8 +101,9 @@ Stop ControlCycle::gap_stop() const {
 
 Stop ControlCycle::push(const toolpath::Step& step) {
   if (!planner_) {
-    planner_ = std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_,
-                                               MotionStart{X_WT_rest_, port().now() + kLead, axes_rest_});
+    planner_ =
+        std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_,
+                                        MotionStart{X_WT_rest_, port().now() + kLead, axes_rest_}, poses_);
     filament_at_start_ = filament_;
   }
   planner_->push(step);

@@ -9,13 +9,17 @@
 
 namespace understudy::control {
 
+struct CycleOptions {
+  /// Outlives the cycle; the planner leaves a small share of the axes' limits to it.
+  ContinuousGapController* gap = nullptr;
+  PoseCheck poses = PoseCheck::limits;  ///< what a pose must satisfy
+};
+
 /// Owns the planner of the current stretch of motion; between stretches the tool rests at `resting_pose()`.
 class ControlCycle {
  public:
-  /// With a gap controller, which outlives the cycle, the planner leaves a small share of the axes' limits to
-  /// it.
   ControlCycle(const machine::MachineDescription& machine, machine::MachinePort& port, const Pose& X_WT_start,
-               ContinuousGapController* gap = nullptr);
+               const CycleOptions& options = {});
 
   /// Plans and queues as far as the lookahead allows. InputError from the planner passes through and leaves
   /// the motion as before the call.
@@ -48,6 +52,7 @@ class ControlCycle {
   const MotionLimits limits_;
   SetpointStreamer streamer_;
   ContinuousGapController* gap_;
+  PoseCheck poses_;
   std::unique_ptr<MotionPlanner> planner_;
   PlannedPoint point_;  ///< the next one, when `pending_`
   bool pending_ = false;

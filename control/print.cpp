@@ -1,5 +1,6 @@
 #include "control/print.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -72,7 +73,7 @@ class PrintLoop {
         part_{options.part, options.gap_control == GapControl::off ? DepositedBeadMap()
                                                                    : DepositedBeadMap(program, machine)},
         gap_(make_gap_controller()),
-        cycle_(machine, port, standing_pose(machine, port), gap_.get()),
+        cycle_(machine, port, standing_pose(machine, port), {gap_.get(), options.poses}),
         started_at_(port.now()) {}
 
   PrintResult run() {
@@ -211,7 +212,11 @@ class PrintLoop {
   void count(const Step& step, double travelled) {
     if (!toolpath::moves(step)) return;
     ++result_.moves;
-    if (step.filament > 0) result_.extruded += step.filament;
+    fed_ += step.filament;
+    const double fresh = std::max(0.0, fed_ - most_fed_);
+    most_fed_ = std::max(most_fed_, fed_);
+    result_.extruded += fresh;
+    result_.primed += std::max(0.0, step.filament - fresh);
     if (step.kind != StepKind::print) result_.travel += travelled;
   }
 
@@ -268,6 +273,7 @@ class PrintLoop {
   machine::Outputs outputs_;
   PrintResult result_;
   Vec3 offset_{0, 0, 0};
+  double fed_ = 0, most_fed_ = 0;  // [m]
   int last_line_ = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include "control/gap/continuous_gap_controller.h"
 #include "control/gap/gap_controller.h"
+#include "control/motion/motion_limits.h"
 #include "control/stop.h"
 #include "toolpath/program.h"
 
@@ -20,6 +21,8 @@ enum class GapControl {
 
 struct PrintOptions {
   GapControl gap_control = GapControl::start;
+  /// A port that holds its axes within their ranges may be given a program that breaks limits.
+  PoseCheck poses = PoseCheck::limits;
   GapControllerOptions gap;
   std::optional<GapFollowerOptions> following;  ///< nothing: gap_follower_options() of the machine
   /// The nominal part in the program's frame, for the dot's geometry; without it the surface is taken as
@@ -38,7 +41,8 @@ struct PrintResult {
   Stop stop;            ///< why it ended early
   double duration = 0;  ///< [s], port clock
   int moves = 0;
-  double extruded = 0;  ///< [m] of filament fed forward
+  double extruded = 0;  ///< [m] of filament fed; what a retraction took back is not counted twice
+  double primed = 0;    ///< [m], pushed back to the nozzle after retractions
   double travel = 0;    ///< [m] of tip path without extrusion
   std::vector<OffsetChange> offsets;
   std::vector<GapApproach> approaches;

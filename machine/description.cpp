@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "core/yaml_map.h"
 #include "kinematics/chain/chain_kind.h"
+#include "machine/accepted_errors.h"
 #include "machine/built_tolerances.h"
 #include "machine/calibrated_parameters.h"
 #include "machine/calibration_section.h"
@@ -99,6 +100,7 @@ struct MachineFile {
   MachineDescription description;
   CalibratedParameters calibrated;
   BuiltTolerances tolerances;
+  std::optional<AcceptedErrors> accepted;
 };
 
 void read_machine(YamlMap& root, MachineFile& file) {
@@ -129,6 +131,9 @@ void read_machine(YamlMap& root, MachineFile& file) {
   // A tool without a nozzle lays nothing that a gap would matter to.
   if (!root.has("tool.end_mill_diameter_mm") || root.has("gap"))
     root.section("gap", "between tip and surface", [&](YamlMap& map) { read_gap(map, m.gap); });
+  if (root.has("accuracy"))
+    root.section("accuracy", "how far off a print may be",
+                 [&](YamlMap& map) { read_accepted_errors(map, file.accepted.emplace()); });
   root.section("table", "what the work stands on", [&](YamlMap& map) { read_table(map, m.table); });
   root.section("motion", "speeds of the tip, and the cycle", [&](YamlMap& map) { read_motion(map, m); });
   if (!root.complete()) return;
@@ -160,6 +165,11 @@ MachineDescription load_machine(const std::string& name_or_path, CalibratedParam
 
 BuiltTolerances load_built_tolerances(const std::string& name_or_path) {
   return read_file_of(name_or_path).tolerances;
+}
+
+AcceptedErrors load_accepted_errors(const std::string& name_or_path) {
+  const MachineFile file = read_file_of(name_or_path);
+  return file.accepted.value_or(default_accepted_errors(file.description.tool));
 }
 
 MapSchema machine_schema() {

@@ -6,6 +6,7 @@
 
 #include "core/stable_number.h"
 #include "rehearsal/figures.h"
+#include "rehearsal/verdict.h"
 
 namespace understudy::regression {
 namespace {
@@ -20,19 +21,26 @@ constexpr Kind kKinds[] = {{"strut_length", ""},  {"joint_angle", ""},        {"
                            {"axis_velocity", ""}, {"axis_acceleration", ""},  {"singularity", ""},
                            {"unreachable", ""},   {"collision", "collision"}, {"near_collision", "collision"},
                            {"gap", "gap"},        {"adhesion", "gap"},        {"sag", "sag"},
-                           {"flow", "print"}};
+                           {"flow", "print"},     {"accuracy", "accuracy"}};
 
 // Figures of the contract, by section.
 constexpr const char* kFigures[] = {"print.duration_s",
                                     "print.moves",
                                     "print.extruded_mm",
+                                    "print.printed_mm",
+                                    "print.purged_mm",
+                                    "print.missing_mm",
+                                    "print.primed_mm",
                                     "print.deposited_mm",
+                                    "print.spanning_mm",
                                     "print.travel_mm",
                                     "accuracy.tip_rms_um",
                                     "accuracy.tip_p95_um",
                                     "accuracy.tip_max_um",
                                     "accuracy.orientation_max_mrad",
                                     "accuracy.open_loop_tip_max_um",
+                                    "accuracy.tip_tolerance_mm",
+                                    "accuracy.orientation_tolerance_deg",
                                     "gap.commanded_mm",
                                     "gap.open_loop_start_mm",
                                     "gap.start_mm",
@@ -45,6 +53,7 @@ constexpr const char* kFigures[] = {"print.duration_s",
                                     "sag.strands",
                                     "sag.unsupported_mm",
                                     "collision.min_clearance_mm",
+                                    "collision.nozzle_clearance_mm",
                                     "collision.checks",
                                     "collision.pairs",
                                     "surface.ra_um",
@@ -57,6 +66,8 @@ constexpr const char* kFigures[] = {"print.duration_s",
 // What a series of machines knows besides the summaries (run_scenario.h).
 constexpr const char* kSeriesFigures[] = {"approach.min_gap_mm"};
 constexpr const char* kTexts[] = {"verdict",
+                                  "grade",
+                                  "collision.closest",
                                   "engine.name",
                                   "engine.version",
                                   "provenance.as_built",
@@ -83,6 +94,7 @@ void count_findings(const rehearsal::Record& record, const std::set<std::string>
 Metrics metrics_of(const rehearsal::Record& record) {
   Metrics metrics;
   metrics["verdict"] = record.go ? "go" : "no-go";
+  metrics["grade"] = word(rehearsal::grade_of(record));
   metrics["exit_status"] = record.go ? 0.0 : 1.0;
   std::set<std::string> sections;
   for (const rehearsal::Figure& figure : rehearsal::figures(record)) {
@@ -123,7 +135,7 @@ bool metric_is_of_series(const std::string& metric) {
 
 std::string metric_unit(const std::string& metric) {
   if (metric_is_text(metric)) return "";
-  for (const std::string_view unit : {"mm", "um", "mrad", "s"})
+  for (const std::string_view unit : {"mm", "um", "mrad", "deg", "s"})
     if (metric.ends_with("_" + std::string(unit))) return std::string(unit);
   return "1";
 }

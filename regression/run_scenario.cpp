@@ -45,6 +45,8 @@ rehearsal::RehearsalRequest request_of(const Scenario& scenario) {
   request.as_built = scenario.as_built;
   request.seed = scenario.seed;
   request.gap_control = scenario.gap_control;
+  request.tip_tolerance_mm = scenario.tip_tolerance_mm;
+  request.orientation_tolerance_deg = scenario.orientation_tolerance_deg;
   request.material = scenario.material;
   request.dialect = scenario.dialect;
   request.surface = scenario.surface;

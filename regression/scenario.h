@@ -45,9 +45,10 @@ struct Scenario {
   std::string as_built;  ///< nominal, sampled, manufactured, calibrated or a path
   std::uint64_t seed = 0;
   std::string gap_control, engine;
-  std::string material;               ///< empty: the machine's
-  rehearsal::DialectRequest dialect;  ///< how the program is read
-  rehearsal::SurfaceRequest surface;  ///< what is asked about the surface
+  std::optional<double> tip_tolerance_mm, orientation_tolerance_deg;  ///< without one, the machine's
+  std::string material;                                               ///< empty: the machine's
+  rehearsal::DialectRequest dialect;                                  ///< how the program is read
+  rehearsal::SurfaceRequest surface;                                  ///< what is asked about the surface
   std::vector<rehearsal::FaultRequest> faults;
   std::vector<Expectation> expect;  ///< of the run with `seed`
   std::optional<MachineSeries> machines;

@@ -85,10 +85,10 @@ void read_unit(YamlMap& map, Expectation& expectation) {
 void read_text_bound(YamlMap& map, Expectation& expectation) {
   for (const char* key : {"min", "max", "tolerance", "unit"})
     map.refuse(key, fmt::format("{} is a word; it has no '{}'", expectation.metric, key));
-  const std::vector<std::string> verdicts{"go", "no-go"};
-  expectation.equals =
-      map.word("equals", expectation.metric == "verdict" ? verdicts : std::vector<std::string>(),
-               "the word that it must be");
+  std::vector<std::string> words;
+  if (expectation.metric == "verdict") words = {"go", "no-go"};
+  if (expectation.metric == "grade") words = {"go", "go-with-warnings", "no-go"};
+  expectation.equals = map.word("equals", words, "the word that it must be");
 }
 
 void read_number_bounds(YamlMap& map, Expectation& expectation) {
@@ -162,6 +162,16 @@ void read_seeds(YamlMap& map, MachineSeries& series) {
     map.fail("seeds", fmt::format("seeds {} are more than {} machines", text, kMachinesMax));
 }
 
+void read_tolerances(YamlMap& map, Scenario& scenario) {
+  if (map.has("tip_tolerance_mm"))
+    scenario.tip_tolerance_mm = map.number("tip_tolerance_mm", {0.001, 100},
+                                           "a tip that is off by more is a no-go; else the machine's");
+  if (map.has("orientation_tolerance_deg"))
+    scenario.orientation_tolerance_deg =
+        map.number("orientation_tolerance_deg", {0.001, 90},
+                   "a tool turned away by more is a no-go; else the machine's");
+}
+
 /// How lines of the program are read.
 void read_dialect(YamlMap& map, DialectRequest& dialect) {
   if (map.has("place_mm")) {
@@ -205,6 +215,7 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   if (map.has("material"))
     scenario.material =
         name_or_path(map, "material", folder, ".yaml", "a name or a path; else the machine's");
+  read_tolerances(map, scenario);
   read_dialect(map, scenario.dialect);
   read_surface(map, folder, scenario.surface);
   scenario.faults = read_faults(map);

@@ -25,17 +25,24 @@ void add(const PrintFigures& print, Figures& to) {
   to.put("duration_s", print.duration_s);
   to.count("moves", print.moves);
   to.put("extruded_mm", print.extruded_mm);
+  to.put("printed_mm", print.printed_mm);
+  to.put("purged_mm", print.purged_mm);
+  to.put("missing_mm", print.missing_mm);
+  to.put("primed_mm", print.primed_mm);
   to.put("deposited_mm", print.deposited_mm);
+  to.put("spanning_mm", print.spanning_mm);
   to.put("travel_mm", print.travel_mm);
 }
 
-void add(const AccuracyFigures& accuracy, Figures& to) {
+void add(const AccuracyFigures& accuracy, const Record& record, Figures& to) {
   to.section("accuracy");
   to.put("tip_rms_um", accuracy.tip_rms_um);
   to.put("tip_p95_um", accuracy.tip_p95_um);
   to.put("tip_max_um", accuracy.tip_max_um);
   to.put("orientation_max_mrad", accuracy.orientation_max_mrad);
   to.put("open_loop_tip_max_um", accuracy.open_loop_tip_max_um);
+  to.put("tip_tolerance_mm", record.tip_tolerance_mm);
+  to.put("orientation_tolerance_deg", record.orientation_tolerance_deg);
 }
 
 void add(const CalibrationFigures& calibration, Figures& to) {
@@ -74,7 +81,9 @@ void add(const SagFigures& sag, Figures& to) {
 
 void add(const CollisionFigures& collision, Figures& to) {
   to.section("collision");
-  to.put("min_clearance_mm", collision.min_clearance_mm);
+  if (collision.min_clearance_mm) to.put("min_clearance_mm", *collision.min_clearance_mm);
+  if (!collision.closest.empty()) to.text("closest", collision.closest);
+  if (collision.nozzle_clearance_mm) to.put("nozzle_clearance_mm", *collision.nozzle_clearance_mm);
   to.count("checks", collision.checks);
   to.count("pairs", collision.pairs);
 }
@@ -114,7 +123,7 @@ void add(const Provenance& provenance, Figures& to) {
 std::vector<Figure> figures(const Record& record) {
   Figures all;
   if (record.print) add(*record.print, all);
-  if (record.accuracy) add(*record.accuracy, all);
+  if (record.accuracy) add(*record.accuracy, record, all);
   if (record.calibration) add(*record.calibration, all);
   if (record.gap) add(*record.gap, all);
   if (record.sag) add(*record.sag, all);

@@ -30,6 +30,7 @@ std::string place_text(const Vec3& p_W) {
 /// Contacts of the same two bodies on lines that follow each other: the worst of them speaks for all.
 struct ContactStretch {
   sim::Contact worst;
+  std::string obstacle;
   double begin_time = 0;
   int first_line = 0, last_line = 0;
 };
@@ -52,7 +53,7 @@ std::vector<ContactStretch> stretches_of(const std::vector<sim::Contact>& contac
       }
       entry->second = stretches.size();
     }
-    stretches.push_back({contact, contact.time, contact.line, contact.line});
+    stretches.push_back({contact, obstacle, contact.time, contact.line, contact.line});
   }
   return stretches;
 }
@@ -60,9 +61,11 @@ std::vector<ContactStretch> stretches_of(const std::vector<sim::Contact>& contac
 Finding contact_finding(const ContactStretch& stretch, bool touches, double limit) {
   const sim::Contact& contact = stretch.worst;
   Finding f;
+  f.about = contact.body + " and " + stretch.obstacle;
   f.kind = touches ? "collision" : "near_collision";
   f.severity = touches ? Severity::error : Severity::warning;
   f.gcode_line = stretch.first_line;
+  f.last_line = stretch.last_line;
   f.time_s = stretch.begin_time;
   f.value = to_mm(contact.clearance);
   f.limit = to_mm(limit);
@@ -86,7 +89,9 @@ Finding loose_finding(const sim::UnsupportedStretch& loose, const TwinSetup& set
   f.unit = "mm";
   f.value = std::isfinite(loose.worst_gap) ? to_mm(loose.worst_gap) : to_mm(sim::kGapReach);
   std::string why;
+  f.about = kTooHigh;
   if (loose.adhesion == sim::Adhesion::cold) {
+    f.about = kCold;
     f.value = loose.interface_temperature - kCelsiusZero;
     f.limit = setup.material.glass_transition - kCelsiusZero;
     f.unit = "C";
@@ -94,9 +99,11 @@ Finding loose_finding(const sim::UnsupportedStretch& loose, const TwinSetup& set
         "its interface with the bead below is at {:.0f} C, below the glass transition at {:.0f} C", f.value,
         f.limit);
   } else if (loose.adhesion == sim::Adhesion::buried) {
+    f.about = kTooLow;
     f.limit = 0;
     why = fmt::format("the nozzle is {:.3f} mm below the surface", -f.value);
   } else if (!std::isfinite(loose.worst_gap)) {
+    f.about = kNothingBelow;
     why = fmt::format("nothing lies below the nozzle within {:.0f} mm", f.value);
   } else {
     why = fmt::format("gap up to {:.3f} mm, above {:.3f} mm", f.value, f.limit);
@@ -119,6 +126,7 @@ Finding sag_finding(const sim::AirStrand& strand) {
   const std::string what = fmt::format("strand of {:.1f} mm in air, {:.2f} mm thick,", to_mm(strand.length),
                                        to_mm(strand.diameter));
   if (!strand.solved) {
+    f.about = "not solved";
     f.message = fmt::format("{} from {}: too long and crooked for its sag to be known", what,
                             place_text(strand.from_W));
     return f;
@@ -138,9 +146,26 @@ Finding flow_finding(const FlowStretch& stretch) {
   f.value = stretch.ratio;
   f.limit = stretch.ratio > 1 ? 1 + kFlowTolerance : 1 - kFlowTolerance;
   f.unit = "1";
+  f.about = stretch.ratio > 1 ? "too much" : "too little";
   f.message = fmt::format("over {:.2f} mm {} is laid, {:.0f} % of what is programmed, from {}",
-                          to_mm(stretch.length), stretch.ratio > 1 ? "too much" : "too little",
-                          100 * stretch.ratio, place_text(stretch.place_W));
+                          to_mm(stretch.length), f.about, 100 * stretch.ratio, place_text(stretch.place_W));
+  return f;
+}
+
+/// Held by what follows, and so not lost; but no groove of the print is below.
+bool begins_too_high(const sim::UnsupportedStretch& loose) {
+  return sim::spans_a_groove(loose) && !loose.held_at_start && !loose.on_printed &&
+         std::isfinite(loose.worst_gap);
+}
+
+Finding high_start_finding(const sim::UnsupportedStretch& loose, double limit) {
+  Finding f{"adhesion", Severity::warning, loose.line, loose.time, to_mm(loose.worst_gap), to_mm(limit), "mm",
+            {}};
+  f.about = kTooHigh;
+  f.message = fmt::format(
+      "the first {:.2f} mm of a line lie up to {:.3f} mm over the surface, above {:.3f} mm: only "
+      "what follows holds them, from {}",
+      to_mm(loose.length), f.value, f.limit, place_text(loose.place_W));
   return f;
 }
 
@@ -148,50 +173,57 @@ void add_strand_findings(const TwinRun& run, const TwinSetup& setup, std::vector
   for (const auto& loose : run.loose)
     if (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose))
       findings.push_back(loose_finding(loose, setup));
+    else if (begins_too_high(loose))
+      findings.push_back(high_start_finding(loose, setup.machine.gap.accepted_max));
   for (const auto& stretch : run.flow) findings.push_back(flow_finding(stretch));
   for (const auto& strand : run.strands)
     if (!strand.solved || strand.sag > strand.diameter / 2) findings.push_back(sag_finding(strand));
 }
 
-Finding gap_finding(Severity severity, int line, double time, double gap, double limit, std::string message) {
-  return {"gap", severity, line, time, to_mm(gap), to_mm(limit), "mm", std::move(message)};
+Finding gap_finding(Severity severity, int line, double time, double gap, double limit) {
+  return {"gap", severity, line, time, to_mm(gap), to_mm(limit), "mm", {}};
 }
 
-void add_gap_findings(const TwinRun& run, const machine::MachineDescription& machine,
-                      control::GapControl mode, std::vector<Finding>& findings) {
-  const auto& limits = machine.gap;
+/// The gap controller gave up, or did less than it was asked for.
+void add_control_findings(const TwinRun& run, const machine::GapLimits& limits, control::GapControl mode,
+                          std::vector<Finding>& findings) {
+  const auto add = [&](Finding finding, const char* about, std::string message) {
+    finding.about = about;
+    finding.message = std::move(message);
+    findings.push_back(std::move(finding));
+  };
   for (const auto& approach : run.result.approaches) {
     const auto& outcome = approach.outcome;
     if (outcome.stop == control::GapStop::none) continue;
-    findings.push_back(
-        gap_finding(Severity::error, approach.line, approach.done_at, outcome.gap, limits.accepted_max,
-                    fmt::format("gap control stopped ({}): {}", to_string(outcome.stop), outcome.why)));
+    add(gap_finding(Severity::error, approach.line, approach.done_at, outcome.gap, limits.accepted_max),
+        kStopped, fmt::format("gap control stopped ({}): {}", to_string(outcome.stop), outcome.why));
   }
   const control::Stop& stop = run.result.stop;
   if (run.result.stopped_on_path())
-    findings.push_back(gap_finding(Severity::error, stop.line, stop.time, run.result.following->gap,
-                                   limits.accepted_max,
-                                   fmt::format("gap control stopped on the path: {}", stop.why)));
+    add(gap_finding(Severity::error, stop.line, stop.time, run.result.following->gap, limits.accepted_max),
+        kStopped, fmt::format("gap control stopped on the path: {}", stop.why));
   if (const auto& unmeasured = run.result.unmeasured_starts; !unmeasured.empty())
-    findings.push_back(gap_finding(
-        Severity::warning, unmeasured.front(), 0, limits.aim, limits.accepted_max,
+    add(gap_finding(Severity::warning, unmeasured.front(), 0, limits.aim, limits.accepted_max), kUnmeasured,
         fmt::format(
-            "the dot would not lie on what is printed on at the start of {} bead{}: the offset of the bead "
-            "before was carried on",
-            unmeasured.size(), unmeasured.size() == 1 ? "" : "s")));
+            "the dot would not lie on what is printed on at the start of {} bead{}: the offset of the "
+            "bead before was carried on",
+            unmeasured.size(), unmeasured.size() == 1 ? "" : "s"));
   if (mode != control::GapControl::off && run.result.completed && run.result.approaches.empty() &&
       run.deposition.length > 0)
-    findings.push_back(gap_finding(
-        Severity::warning, 0, 0, limits.aim, limits.accepted_max,
-        "the program has no approach along the tool axis before it prints: the gap was not controlled"));
-  const auto& laid = run.deposition;
-  if (laid.length == 0) return;
+    add(gap_finding(Severity::warning, 0, 0, limits.aim, limits.accepted_max), kUncontrolled,
+        "the program has no approach along the tool axis before it prints: the gap was not controlled");
+}
+
+void add_low_gap(const sim::DepositionSummary& laid, const machine::GapLimits& limits,
+                 std::vector<Finding>& findings) {
   constexpr double kRounding = 0.1e-6;  // [m]: printed surfaces are known to single precision
-  if (laid.gap_max > 0 && laid.gap_min < limits.accepted_min - kRounding)
-    findings.push_back(
-        gap_finding(Severity::error, laid.gap_min_line, laid.gap_min_time, laid.gap_min, limits.accepted_min,
-                    fmt::format("the nozzle runs as low as {:.3f} mm over the surface, below {:.3f} mm",
-                                to_mm(laid.gap_min), to_mm(limits.accepted_min))));
+  if (laid.length == 0 || laid.gap_max <= 0 || laid.gap_min >= limits.accepted_min - kRounding) return;
+  Finding f =
+      gap_finding(Severity::error, laid.gap_min_line, laid.gap_min_time, laid.gap_min, limits.accepted_min);
+  f.about = kTooLow;
+  f.message = fmt::format("the nozzle runs as low as {:.3f} mm over the surface, below {:.3f} mm",
+                          to_mm(laid.gap_min), to_mm(limits.accepted_min));
+  findings.push_back(std::move(f));
 }
 
 }  // namespace
@@ -213,6 +245,8 @@ std::vector<Finding> findings_of(const control::ConstraintReport& report) {
     f.limit = violation.limit * unit.factor;
     f.unit = unit.name;
     f.message = to_string(violation);
+    f.last_line = entry.last_line;
+    f.about = violation.part;
     findings.push_back(std::move(f));
   }
   return findings;
@@ -227,7 +261,8 @@ std::vector<Finding> findings_of(const TwinRun& run, const TwinSetup& setup,
   const sim::CollisionOptions options;
   for (const auto& stretch : stretches_of(run.near_collisions))
     findings.push_back(contact_finding(stretch, false, options.near));
-  add_gap_findings(run, machine, gap_control, findings);
+  add_control_findings(run, machine.gap, gap_control, findings);
+  add_low_gap(run.deposition, machine.gap, findings);
   add_strand_findings(run, setup, findings);
   const bool explained = run.result.stop.gap != control::GapStop::none;
   if (!run.result.completed && !explained) {
@@ -237,9 +272,19 @@ std::vector<Finding> findings_of(const TwinRun& run, const TwinSetup& setup,
     f.time_s = run.result.duration;
     f.unit = "1";
     f.message = "the print stopped: " + run.result.stop.why;
+    f.about = kStopped;
     findings.push_back(std::move(f));
   }
   return findings;
+}
+
+void tell_how_simulated(std::vector<Finding>& findings) {
+  for (Finding& finding : findings) {
+    if (finding.kind == "strut_length" || finding.kind == "joint_limit")
+      finding.message += "; simulated with the axis held at its limit";
+    if (finding.kind == "joint_angle" || finding.kind == "collision")
+      finding.message += "; simulated as if it went on";
+  }
 }
 
 void sort_findings(std::vector<Finding>& findings) {

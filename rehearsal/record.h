@@ -11,28 +11,22 @@
 #include "control/gap/gap_controller.h"
 #include "core/frames.h"
 #include "machine/port.h"
+#include "rehearsal/finding.h"
 #include "rehearsal/scene.h"
 
 namespace understudy::rehearsal {
 
-enum class Severity { error, warning };
-
-/// kind is one of the contract's words. value and limit in `unit`, the unit of reports (mm, deg, um, mm/s).
-struct Finding {
-  std::string kind;
-  Severity severity = Severity::error;
-  int gcode_line = 0;
-  double time_s = 0;
-  double value = 0;
-  double limit = 0;
-  std::string unit;
-  std::string message;
-};
-
 struct PrintFigures {
   double duration_s = 0;
   int moves = 0;
-  double extruded_mm = 0, deposited_mm = 0, travel_mm = 0;
+  double extruded_mm = 0;   ///< filament fed: printed, purged and missing
+  double printed_mm = 0;    ///< of that, laid along the path
+  double purged_mm = 0;     ///< of that, fed at a standstill and left behind
+  double missing_mm = 0;    ///< of that, not laid: the end of the print is in the nozzle
+  double primed_mm = 0;     ///< besides: pushed back to the nozzle after retractions
+  double deposited_mm = 0;  ///< of what was laid: lies on something and sticks
+  double spanning_mm = 0;   ///< of what was laid: hangs in air from something that holds it
+  double travel_mm = 0;     ///< of the tip, without extrusion
 };
 struct AccuracyFigures {
   double tip_rms_um = 0, tip_p95_um = 0, tip_max_um = 0, orientation_max_mrad = 0, open_loop_tip_max_um = 0;
@@ -50,8 +44,13 @@ struct CalibrationFigures {
   std::optional<AccuracyFigures> before;
   AccuracyFigures after;
 };
+/// Signed: negative is the depth of a contact. Nothing where no such pair was looked at.
 struct CollisionFigures {
-  double min_clearance_mm = 0;
+  std::optional<double> min_clearance_mm;  ///< of all bodies but the nozzle over its work
+  std::string closest;                     ///< these two: "strut 3 and table"
+  /// The nozzle to the part, or to the table where there is no part, and to printed beads where it ploughs
+  /// them.
+  std::optional<double> nozzle_clearance_mm;
   std::uint64_t checks = 0;
   int pairs = 0;
 };
@@ -120,6 +119,9 @@ struct Record {
   std::vector<Finding> findings;  ///< errors first, then by line
   std::string title;              ///< "curved-line.gcode on hexapod"
   std::string program_name, machine_name, fixture_name, gap_control;
+  std::string machine_word;                 ///< as `--machine` took it
+  std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
+  bool measures_gap = false;                ///< the machine has laser and microscope
 
   std::optional<PrintFigures> print;
   std::optional<AccuracyFigures> accuracy;
@@ -131,7 +133,8 @@ struct Record {
   std::optional<EngineFigures> engine;
   Provenance provenance;
 
-  std::string as_built;          ///< every true parameter, as the file that --as-built reads
+  std::string as_built;  ///< every true parameter, as the file that --as-built reads
+  double tip_tolerance_mm = 0, orientation_tolerance_deg = 0;  ///< beyond, a print is a no-go
   std::vector<AxisColumn> axes;  ///< the first entries of TracePoint::axes, in order
   double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
   std::vector<TracePoint> trace;

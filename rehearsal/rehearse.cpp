@@ -16,11 +16,13 @@
 #include "core/units.h"
 #include "core/version.h"
 #include "machine/fixture_file.h"
+#include "rehearsal/accuracy_findings.h"
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/process_check.h"
 #include "rehearsal/rotary_words.h"
+#include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/surface.h"
 #include "sim/as_built/as_built_file.h"
@@ -66,6 +68,13 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   return gcode;
 }
 
+machine::AcceptedErrors accepted_errors(const RehearsalRequest& request) {
+  machine::AcceptedErrors accepted = machine::load_accepted_errors(request.machine);
+  if (request.tip_tolerance_mm) accepted.tip = from_mm(*request.tip_tolerance_mm);
+  if (request.orientation_tolerance_deg) accepted.orientation = from_deg(*request.orientation_tolerance_deg);
+  return accepted;
+}
+
 TwinSetup prepare(const RehearsalRequest& request) {
   const auto& engines = engine_names();
   if (std::find(engines.begin(), engines.end(), request.engine) == engines.end())
@@ -85,6 +94,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
       request.seed);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
+  setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
   setup.seed = request.seed;
   setup.faults = resolve_faults(request.faults, setup.machine);
@@ -100,9 +110,14 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
                        : mode == control::GapControl::start ? "start"
                                                             : "continuous";
   record.as_built = sim::write_as_built(setup.as_built);
+  record.machine_word = request.machine;
+  record.place_mm = request.dialect.place_mm;
+  record.measures_gap = setup.machine.has_microscope;
   record.title = record.program_name + " on " + record.machine_name;
   record.gap_accepted_min_mm = to_mm(setup.machine.gap.accepted_min);
   record.gap_accepted_max_mm = to_mm(setup.machine.gap.accepted_max);
+  record.tip_tolerance_mm = to_mm(setup.accepted.tip);
+  record.orientation_tolerance_deg = to_deg(setup.accepted.orientation);
   record.gap_aim_mm = to_mm(setup.machine.gap.aim);
   const auto mechanism = setup.machine.make_mechanism();
   for (int i = 0; i < mechanism->axis_count(); ++i) {
@@ -122,61 +137,6 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
   return record;
 }
 
-/// Nothing where no gap exists: nothing was printed, or somewhere nothing lies below the nozzle.
-std::optional<GapFigures> gap_of(const TwinRun& run, const TwinRun* without,
-                                 const machine::MachineDescription& machine) {
-  const auto& laid = run.deposition;
-  if (!(laid.length > 0) || !std::isfinite(laid.gap_max) || !std::isfinite(laid.start_gap))
-    return std::nullopt;
-  GapFigures gap;
-  gap.commanded_mm = to_mm(machine.gap.aim);
-  if (without && without->deposition.length > 0 && std::isfinite(without->deposition.start_gap))
-    gap.open_loop_start_mm = to_mm(without->deposition.start_gap);
-  gap.start_mm = to_mm(laid.start_gap);
-  gap.path_min_mm = to_mm(laid.gap_min);
-  gap.path_mean_mm = to_mm(laid.gap_mean);
-  gap.path_max_mm = to_mm(laid.gap_max);
-  gap.in_band_fraction = laid.in_band_fraction;
-  gap.frames = static_cast<int>(run.frames.size());
-  return gap;
-}
-
-/// Volume of bead, told as length of the filament it came from.
-double as_filament_mm(double volume, const machine::MachineDescription& machine) {
-  if (!machine.tool.prints()) return 0;
-  const double d = machine.tool.filament_diameter;
-  return to_mm(volume / (0.25 * std::numbers::pi * d * d));
-}
-
-void fill_strands(const std::vector<sim::AirStrand>& strands, Record& record) {
-  SagFigures sag;
-  sag.strands = static_cast<int>(strands.size());
-  for (const sim::AirStrand& strand : strands) {
-    sag.max_um = std::max(sag.max_um, to_um(strand.sag));
-    sag.unsupported_mm += to_mm(strand.length);
-    record.strands.push_back({strand.line, strand.time, to_mm(strand.length), to_mm(strand.diameter),
-                              to_mm(strand.speed), to_um(strand.sag), strand.solid_after, strand.duration,
-                              strand.held_at_end, strand.solved, strand.small});
-  }
-  std::stable_sort(record.strands.begin(), record.strands.end(),
-                   [](const StrandRow& a, const StrandRow& b) { return a.sag_um > b.sag_um; });
-  record.sag = sag;
-}
-
-void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& machine,
-                  Record& record) {
-  const auto& r = run.result;
-  record.print = PrintFigures{r.duration, r.moves, to_mm(r.extruded),
-                              as_filament_mm(run.deposition.deposited_volume, machine), to_mm(r.travel)};
-  record.collision = run.collision;
-  record.engine = run.engine;
-  record.accuracy = run.accuracy;
-  const auto& open_loop = without ? without->accuracy : run.accuracy;
-  if (record.accuracy && open_loop) record.accuracy->open_loop_tip_max_um = open_loop->tip_max_um;
-  if (machine.tool.prints()) fill_strands(run.strands, record);
-  record.gap = gap_of(run, without, machine);
-}
-
 /// All at once: they share nothing that changes.
 struct Runs {
   TwinRun main;
@@ -185,12 +145,12 @@ struct Runs {
   const TwinRun* without() const { return open_loop ? &*open_loop : nullptr; }
 };
 
-Runs run_all(const TwinSetup& setup, control::GapControl mode, bool compare, const TwinSetup* before,
+Runs run_all(const TwinSetup& setup, const RunOptions& options, bool compare, const TwinSetup* before,
              const Progress& progress) {
   Runs runs;
-  const RunOptions open_loop{control::GapControl::off, false};
-  std::vector<std::function<void()>> jobs{[&] { runs.main = run_twin(setup, {mode, true}, progress); }};
-  if (compare && mode != control::GapControl::off)
+  const RunOptions open_loop{control::GapControl::off, false, options.beyond_limits};
+  std::vector<std::function<void()>> jobs{[&] { runs.main = run_twin(setup, options, progress); }};
+  if (compare && options.gap_control != control::GapControl::off)
     jobs.emplace_back([&] { runs.open_loop = run_twin(setup, open_loop, {}); });
   if (before) jobs.emplace_back([&] { runs.before = run_twin(*before, open_loop, {}); });
   in_parallel(jobs.size(), static_cast<int>(jobs.size()), [&](std::size_t n) { jobs[n](); });
@@ -239,10 +199,47 @@ bool any_error(const std::vector<Finding>& findings) {
                      [](const Finding& f) { return f.severity == Severity::error; });
 }
 
+/// Nothing where the program breaks limits so far that the engine fails: a finding says so.
+std::optional<Runs> run_or_find(const RehearsalRequest& request, const TwinSetup& setup,
+                                const std::optional<BeforeCalibration>& before, const RunOptions& options,
+                                const Progress& progress, Record& record) {
+  const bool runs_before = before && before->not_run.empty() && !options.beyond_limits;
+  try {
+    return run_all(setup, options, request.compare_without_gap_control || before,
+                   runs_before ? &before->setup : nullptr,
+                   [&](double share, const std::string& what) { progress(0.05 + 0.85 * share, what); });
+  } catch (const MachineError& error) {
+    if (!options.beyond_limits) throw;
+    Finding f;
+    f.kind = "unreachable";
+    f.unit = "1";
+    f.about = kStopped;
+    f.message = fmt::format("beyond these limits it cannot be simulated: {}", error.what());
+    record.findings.push_back(std::move(f));
+    return std::nullopt;
+  }
+}
+
+/// What the runs say, on top of what the limits said.
+void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before, const RunOptions& options,
+          const Runs& runs, Record& record) {
+  const TwinRun* without = runs.without();
+  fill_figures(runs.main, without, setup.machine, record);
+  if (before) fill_comparison(*before, runs, record);
+  for (const auto& findings :
+       {findings_of(runs.main, setup, options.gap_control),
+        accuracy_findings(runs.main.tip_peak, runs.main.orientation_peak, setup.accepted)})
+    record.findings.insert(record.findings.end(), findings.begin(), findings.end());
+  record.trace = runs.main.trace;
+  record.trace_stride = runs.main.trace_stride;
+  if (without) record.trace_without_gap_control = without->trace;
+  record.frames = runs.main.frames;
+}
+
 }  // namespace
 
 Record rehearse(const RehearsalRequest& request, const Progress& progress) {
-  const auto report = [&](double share, const std::string& what) {
+  const Progress report = [&](double share, const std::string& what) {
     if (progress) progress(share, what);
   };
   report(0, "reading");
@@ -253,26 +250,15 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   const control::GapControl mode = gap_control_of(request.gap_control, setup.machine);
   Record record = describe_run(request, setup, mode);
 
-  std::shared_ptr<const sim::Workpiece> printed;
   report(0.02, "checking limits");
-  const auto constraints = control::check_constraints(setup.program, setup.machine);
-  record.findings = findings_of(constraints);
-  if (!any_error(record.findings)) {
-    const Runs runs =
-        run_all(setup, mode, request.compare_without_gap_control || before,
-                before && before->not_run.empty() ? &before->setup : nullptr,
-                [&](double share, const std::string& what) { report(0.05 + 0.85 * share, what); });
-    const TwinRun* without = runs.without();
-    fill_figures(runs.main, without, setup.machine, record);
-    if (before) fill_comparison(*before, runs, record);
-    auto findings = findings_of(runs.main, setup, mode);
-    record.findings.insert(record.findings.end(), findings.begin(), findings.end());
-    record.trace = runs.main.trace;
-    record.trace_stride = runs.main.trace_stride;
-    if (without) record.trace_without_gap_control = without->trace;
-    record.frames = runs.main.frames;
+  record.findings = findings_of(control::check_constraints(setup.program, setup.machine));
+  const RunOptions options{mode, true, any_error(record.findings)};
+  if (options.beyond_limits) tell_how_simulated(record.findings);
+  std::shared_ptr<const sim::Workpiece> printed;
+  if (const auto runs = run_or_find(request, setup, before, options, report, record)) {
+    fill(setup, before, options, *runs, record);
     report(0.9, "measuring the surface");
-    printed = runs.main.workpiece;
+    printed = runs->main.workpiece;
     study_surface(surface, *printed, record);
   }
   sort_findings(record.findings);

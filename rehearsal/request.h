@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct RehearsalRequest {
   std::string as_built;  ///< of sim::make_as_built; empty: sim::default_as_built
   std::uint64_t seed = 1;
   std::string gap_control;  ///< off, start, continuous; empty: start on a machine that sees, else off
+  /// Largest true errors of a print that is good; without one, the machine file's.
+  std::optional<double> tip_tolerance_mm, orientation_tolerance_deg;
   std::vector<FaultRequest> faults;  ///< what goes wrong on the way
   DialectRequest dialect;
   SurfaceRequest surface;

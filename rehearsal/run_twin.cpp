@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -10,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "rehearsal/trace_observer.h"
 #include "sim/deposition/bead_temperature.h"
 #include "sim/plant/drive_errors.h"
 #include "sim/plant/plant.h"
@@ -141,6 +141,20 @@ EngineFigures engine_of(const sim::Plant& plant, const sim::SimulatedPort& port,
   return figures;
 }
 
+CollisionFigures collision_figures(const sim::CollisionObserver& collision) {
+  const auto in_mm = [](double clearance) {
+    return std::isfinite(clearance) ? std::optional(to_mm(clearance)) : std::nullopt;
+  };
+  CollisionFigures figures;
+  figures.min_clearance_mm = in_mm(collision.min_clearance());
+  if (figures.min_clearance_mm)
+    figures.closest = collision.closest().body + " and " + collision.closest().obstacle;
+  figures.nozzle_clearance_mm = in_mm(collision.min_nozzle_clearance());
+  figures.checks = collision.checks();
+  figures.pairs = collision.pairs();
+  return figures;
+}
+
 }  // namespace
 
 const std::vector<std::string>& engine_names() {
@@ -164,11 +178,13 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   sim::TwinOptions twin;
   twin.faults = setup.faults;
   twin.nozzle_offset = setup.as_built.nozzle_offset;
+  twin.hold_at_limits = options.beyond_limits;
   sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
                           {&watch.thread}, twin);
 
   control::PrintOptions print_options;
   print_options.gap_control = options.gap_control;
+  if (options.beyond_limits) print_options.poses = control::PoseCheck::solvable;
   print_options.part = setup.part.get();
   Relay relay(progress, watch.thread, watch.trace);
   TwinRun run;
@@ -178,6 +194,8 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   watch.deposition.finish();
 
   run.accuracy = watch.trace.accuracy();
+  run.tip_peak = watch.trace.tip_peak();
+  run.orientation_peak = watch.trace.orientation_peak();
   run.trace_stride = watch.trace.stride();
   run.trace = watch.trace.take();
   run.frames = pair_with_truth(run.result, truth);
@@ -189,8 +207,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   if (options.watch_collisions) {
     run.collisions = watch.collision.collisions();
     run.near_collisions = watch.collision.near_collisions();
-    run.collision = {to_mm(watch.collision.min_clearance()), watch.collision.checks(),
-                     watch.collision.pairs()};
+    run.collision = collision_figures(watch.collision);
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
   run.engine = engine_of(*plant, port, wall.count());

@@ -7,10 +7,12 @@
 #include "control/print.h"
 #include "core/progress.h"
 #include "geometry/mesh.h"
+#include "machine/accepted_errors.h"
 #include "machine/description.h"
 #include "machine/material.h"
 #include "rehearsal/flow_watch.h"
 #include "rehearsal/record.h"
+#include "rehearsal/trace_observer.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
 #include "sim/deposition/deposition.h"
@@ -25,6 +27,7 @@ struct TwinSetup {
   machine::MachineDescription machine;  ///< what the controller holds
   machine::MachineDescription truth;    ///< sim::true_description(machine, as_built): what the twin holds
   machine::Material material;           ///< of a tool that prints
+  machine::AcceptedErrors accepted;
   toolpath::Program program;
   std::shared_ptr<const geometry::Mesh> part;  ///< as drawn: what the controller holds; may be null
   std::shared_ptr<const geometry::Mesh>
@@ -40,6 +43,7 @@ struct TwinRun {
   std::vector<TracePoint> trace;
   int trace_stride = 1;  ///< snapshots a point of the trace
   std::optional<AccuracyFigures> accuracy;
+  ErrorPeak tip_peak, orientation_peak;
   std::vector<FrameRecord> frames;
   std::vector<sim::Contact> collisions, near_collisions;
   CollisionFigures collision;
@@ -54,6 +58,8 @@ struct TwinRun {
 struct RunOptions {
   control::GapControl gap_control = control::GapControl::start;
   bool watch_collisions = true;
+  /// The program breaks limits of axes or joints: an axis stays at the end of its range, a joint goes on.
+  bool beyond_limits = false;
 };
 
 /// Words of `--engine` and of scenarios.

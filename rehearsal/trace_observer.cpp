@@ -26,8 +26,9 @@ void TraceObserver::observe(const sim::Snapshot& s) {
     path_ += (s.X_WT.translation() - newest_.X_WT.translation()).norm();
     errors_.push_back(static_cast<float>(point.tip_error));
     square_sum_ += point.tip_error * point.tip_error;
-    tip_max_ = std::max(tip_max_, point.tip_error);
-    orientation_max_ = std::max(orientation_max_, point.orientation_error);
+    if (point.tip_error > tip_peak_.error) tip_peak_ = {point.tip_error, point.line, point.time};
+    if (point.orientation_error > orientation_peak_.error)
+      orientation_peak_ = {point.orientation_error, point.line, point.time};
   }
   point.path = path_;
   filament_ = std::max(filament_, s.filament);
@@ -68,8 +69,8 @@ std::optional<AccuracyFigures> TraceObserver::accuracy() const {
   AccuracyFigures figures;
   figures.tip_rms_um = to_um(std::sqrt(square_sum_ / static_cast<double>(n)));
   figures.tip_p95_um = to_um(static_cast<double>(*p95));
-  figures.tip_max_um = to_um(tip_max_);
-  figures.orientation_max_mrad = 1e3 * orientation_max_;
+  figures.tip_max_um = to_um(tip_peak_.error);
+  figures.orientation_max_mrad = 1e3 * orientation_peak_.error;
   return figures;
 }
 

@@ -11,6 +11,13 @@
 
 namespace understudy::rehearsal {
 
+/// The largest of its kind while extruding, and where.
+struct ErrorPeak {
+  double error = 0;  ///< [m] or [rad]
+  int line = 0;
+  double time = 0;  ///< [s]
+};
+
 class TraceObserver : public sim::Observer {
  public:
   /// Reads the gap from `deposition`, which must have seen each snapshot before. Of the snapshots, a trace of
@@ -24,6 +31,8 @@ class TraceObserver : public sim::Observer {
 
   /// Nothing while nothing was extruded.
   std::optional<AccuracyFigures> accuracy() const;
+  ErrorPeak tip_peak() const { return tip_peak_; }
+  ErrorPeak orientation_peak() const { return orientation_peak_; }
   std::vector<TracePoint> take();
   int stride() const { return stride_; }  ///< snapshots a point of the trace
 
@@ -42,7 +51,7 @@ class TraceObserver : public sim::Observer {
   double path_ = 0;
   std::vector<float> errors_;  // [m], of the tip while extruding
   double square_sum_ = 0;
-  double tip_max_ = 0, orientation_max_ = 0;
+  ErrorPeak tip_peak_, orientation_peak_;
 };
 
 }  // namespace understudy::rehearsal

@@ -7,27 +7,47 @@
 
 #include "core/stable_number.h"
 #include "rehearsal/figures.h"
+#include "rehearsal/finding_groups.h"
+#include "rehearsal/verdict.h"
 #include "report/json_text.h"
 
 namespace understudy::report {
 namespace {
 
 using rehearsal::Finding;
+using rehearsal::FindingGroup;
 using rehearsal::Severity;
 using Json = nlohmann::ordered_json;
 
 void put(Json& object, const char* key, double value) { object[key] = stable_number(value, key); }
 
+const char* severity_word(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
+
 Json finding_value(const Finding& finding) {
   Json object;
   object["kind"] = finding.kind;
-  object["severity"] = finding.severity == Severity::error ? "error" : "warning";
+  object["severity"] = severity_word(finding.severity);
   if (finding.gcode_line > 0) object["gcode_line"] = finding.gcode_line;
   put(object, "time_s", finding.time_s);
   put(object, "value", finding.value);
   put(object, "limit", finding.limit);
   object["unit"] = finding.unit;
   object["message"] = finding.message;
+  return object;
+}
+
+/// What findings that are alike have in common; each of them stands among the findings.
+Json group_value(const FindingGroup& group) {
+  Json object;
+  object["kind"] = group.worst.kind;
+  object["severity"] = severity_word(group.worst.severity);
+  object["count"] = group.count;
+  if (group.first_line > 0) {
+    object["first_line"] = group.first_line;
+    object["last_line"] = group.last_line;
+  }
+  object["worst"] = finding_value(group.worst);
+  if (!group.advice.empty()) object["advice"] = group.advice;
   return object;
 }
 
@@ -48,8 +68,13 @@ Json summary_value(const rehearsal::Record& record) {
   Json summary;
   summary["schema"] = "understudy.rehearsal/1";
   summary["verdict"] = record.go ? "go" : "no-go";
+  summary["go"] = record.go;
+  summary["grade"] = word(rehearsal::grade_of(record));
   summary["findings"] = Json::array();
   for (const Finding& finding : record.findings) summary["findings"].push_back(finding_value(finding));
+  summary["finding_groups"] = Json::array();
+  for (const FindingGroup& group : rehearsal::group_findings(record))
+    summary["finding_groups"].push_back(group_value(group));
   for (const rehearsal::Figure& figure : rehearsal::figures(record))
     summary[figure.section][figure.name] = figure_value(figure);
   return summary;

@@ -60,7 +60,7 @@ std::string drawing() {
 
 std::string report_html(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
   const nlohmann::ordered_json report = report_data(record, pictures);
-  const std::string verdict = record.go ? "GO" : "NO-GO";
+  const std::string verdict = rehearsal::headline(rehearsal::grade_of(record));
   return fill(kPageTemplate, {{"title", html_text(verdict + ": " + record.title)},
                               {"verdict", verdict},
                               {"reason", html_text(rehearsal::verdict_sentence(record))},

@@ -48,8 +48,7 @@ struct CollisionObserver::State {
   std::vector<Look> looks;  // one a pair
   std::optional<Snapshot> last;
   std::uint64_t checks = 0;
-  double least_nozzle = kInfinity;
-  Contact closest;
+  Contact closest, closest_nozzle;
   // By line and pair: the deepest.
   std::map<std::pair<int, std::size_t>, Contact> touching, near;
 
@@ -111,12 +110,11 @@ struct CollisionObserver::State {
 
   void record(std::size_t index, const Contact& contact) {
     const BodyPair& pair = bodies.pairs()[index];
-    if (pair.printed && pair.nozzle_at_work) {
-      // level with its own layer: no clearance to speak of
-    } else if (pair.nozzle_gap) {
-      least_nozzle = std::min(least_nozzle, contact.clearance);
-    } else if (contact.clearance < closest.clearance) {
-      closest = contact;
+    const bool over_beads = pair.printed && pair.nozzle_at_work;
+    // Level with its own layer the nozzle has no clearance to speak of.
+    if (!over_beads || contact.clearance <= contact_level(pair)) {
+      Contact& least = over_beads || pair.nozzle_gap ? closest_nozzle : closest;
+      if (contact.clearance < least.clearance) least = contact;
     }
     if (contact.clearance > near_level(pair)) return;
     auto& records = contact.clearance <= contact_level(pair) ? touching : near;
@@ -133,7 +131,7 @@ struct CollisionObserver::State {
       const auto entry = records->find({line, index});
       if (entry != records->end()) level.deepest = std::min(level.deepest, entry->second.clearance);
     }
-    level.least = pair.nozzle_gap ? least_nozzle : closest.clearance;
+    level.least = pair.nozzle_gap ? closest_nozzle.clearance : closest.clearance;
     level.resolution = pair.nozzle_gap ? options.margin / kNozzleFineness : options.margin;
     level.depth_accuracy = options.margin;
     level.accuracy = pair.nozzle_gap ? level.resolution / 2 : kLeastAccuracy;
@@ -164,19 +162,12 @@ struct CollisionObserver::State {
 CollisionObserver::CollisionObserver(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                      std::shared_ptr<const geometry::Mesh> part,
                                      const CollisionOptions& options)
-    : state_(new State{BodySet(machine, as_built, std::move(part), options.beads),
-                       options,
-                       {},
-                       {},
-                       0,
-                       kInfinity,
-                       {},
-                       {},
-                       {}}) {
+    : state_(new State{
+          BodySet(machine, as_built, std::move(part), options.beads), options, {}, {}, 0, {}, {}, {}, {}}) {
   if (!(options.margin > 0))
     throw InputError("collision margin is " + std::to_string(options.margin) + " m, must be above 0");
   state_->looks.resize(state_->bodies.pairs().size());
-  state_->closest.clearance = kInfinity;
+  state_->closest.clearance = state_->closest_nozzle.clearance = kInfinity;
 }
 
 CollisionObserver::~CollisionObserver() = default;
@@ -223,7 +214,7 @@ std::vector<Contact> CollisionObserver::near_collisions() const {
 
 double CollisionObserver::min_clearance() const { return state_->closest.clearance; }
 Contact CollisionObserver::closest() const { return state_->closest; }
-double CollisionObserver::min_nozzle_clearance() const { return state_->least_nozzle; }
+double CollisionObserver::min_nozzle_clearance() const { return state_->closest_nozzle.clearance; }
 std::uint64_t CollisionObserver::checks() const { return state_->checks; }
 int CollisionObserver::pairs() const { return static_cast<int>(state_->looks.size()); }
 

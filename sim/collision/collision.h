@@ -50,7 +50,7 @@ struct CollisionOptions {
 /// - the depth of a contact is within max(margin, 5 %) of the deepest of its line.
 /// Beads are obstacles from the moment they are in the index, for the nozzle once they are no longer fresh;
 /// they are not followed between two snapshots. A nozzle deeper in beads than bead_press is found within as
-/// much motion, its depth within bead_press; that pair counts in no least clearance.
+/// much motion, its depth within bead_press; that pair counts in min_nozzle_clearance() only there.
 /// A body named "nozzle..." is the nozzle; struts are not checked against the tool body that carries their
 /// ball joint ("platform", or any within a strut's radius of the joint). Distances to the part are exact to
 /// 2 nm, all others to 0.5 um or 0.01 % of a round body's radius (FCL). Depths need a closed part; without
@@ -73,7 +73,8 @@ class CollisionObserver : public Observer {
   /// that against the table is left out instead.
   double min_clearance() const;
   Contact closest() const;
-  /// Smallest clearance of the nozzle to the part, or to the table where there is no part.
+  /// Smallest clearance of the nozzle to the part, or to the table where there is no part, and to beads that
+  /// it is pressed into deeper than bead_press; infinity before the first snapshot.
   double min_nozzle_clearance() const;
   std::uint64_t checks() const;  ///< distances measured
   int pairs() const;

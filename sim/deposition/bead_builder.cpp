@@ -34,20 +34,21 @@ bool BeadBuilder::goes_on(const PathPoint& a, const PathPoint& b, Adhesion adhes
   if (!may_grow_ || bead.adhesion != adhesion) return false;
   if (bead.length > kLongest) return false;
   if (heading_.isZero()) return true;
-  const Vec3 reach = b.foot_W() - bead.from_W;
+  const Vec3 reach = b.laid_W(adhesion) - bead.from_W;
   if ((reach - reach.dot(heading_) * heading_).norm() > kStraight) return false;
-  const double piece = (b.foot_W() - a.foot_W()).norm();
+  const double piece = (b.laid_W(adhesion) - a.laid_W(adhesion)).norm();
   if (piece == 0) return true;
   const double area = bead.volume / bead.length;
   if (std::abs(volume / piece - area) > kSameSection * area) return false;
-  if (adhesion != Adhesion::fused && std::abs(b.gap - bead.gap) > kSameGap) return false;
+  const bool lies = adhesion != Adhesion::fused && adhesion != Adhesion::unsupported;
+  if (lies && std::abs(b.gap - bead.gap) > kSameGap) return false;
   return (b.axis_W - bead.normal_W).norm() < kSameAxis;
 }
 
 void BeadBuilder::begin(const PathPoint& at, Adhesion adhesion, int line) {
   close();
   Element e;
-  e.bead.from_W = e.bead.to_W = at.foot_W();
+  e.bead.from_W = e.bead.to_W = at.laid_W(adhesion);
   e.tip_from_W = e.tip_to_W = at.tip_W;
   e.bead.normal_W = at.axis_W;
   e.bead.adhesion = adhesion;
@@ -66,15 +67,16 @@ void BeadBuilder::extrude(const PathPoint& a, const PathPoint& b, Adhesion adhes
                           double height) {
   if (!element_ || !goes_on(a, b, adhesion, volume)) begin(a, adhesion, line);
   fused_height_ = height;
-  grow(a, b, (b.foot_W() - a.foot_W()).norm(), volume, line);
+  grow(a, b, volume, line);
   continuous_ = true;
   idle_path_ = 0;
 }
 
-void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double length, double volume, int line) {
+void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double volume, int line) {
   Element& e = *element_;
   LaidBead& bead = e.bead;
-  bead.to_W = b.foot_W();
+  const double length = (b.laid_W(bead.adhesion) - a.laid_W(bead.adhesion)).norm();
+  bead.to_W = b.laid_W(bead.adhesion);
   e.tip_to_W = b.tip_W;
   bead.normal_W = b.axis_W;
   bead.time = b.time;

@@ -12,8 +12,10 @@ namespace understudy::sim {
 struct PathPoint {
   double time = 0;  ///< [s]
   Vec3 tip_W{0, 0, 0}, axis_W{0, 0, 1};
-  double gap = 0;  ///< [m]; infinity: nothing below
-  Vec3 foot_W() const;
+  double gap = 0;       ///< [m]; infinity: nothing below
+  Vec3 foot_W() const;  ///< on what is below
+  /// Where material comes to lie: what is unsupported stays where it comes out.
+  Vec3 laid_W(Adhesion adhesion) const { return adhesion == Adhesion::unsupported ? tip_W : foot_W(); }
 };
 
 /// An element as it grows, with what its public face leaves out.
@@ -44,7 +46,7 @@ class BeadBuilder {
 
  private:
   void begin(const PathPoint& at, Adhesion adhesion, int line);
-  void grow(const PathPoint& a, const PathPoint& b, double length, double volume, int line);
+  void grow(const PathPoint& a, const PathPoint& b, double volume, int line);
   bool goes_on(const PathPoint& a, const PathPoint& b, Adhesion adhesion, double volume) const;
   void settle_section();
   void settle_blob(double height);

@@ -117,6 +117,7 @@ struct DepositionObserver::State {
   void keep(const Element& element) {
     const LaidBead& bead = element.bead;
     totals.laid_volume += bead.volume;
+    if (bead.length == 0) totals.standstill_volume += bead.volume;
     if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
       totals.deposited_volume += bead.volume;
     if (bead.adhesion == Adhesion::sticks) usual_height = bead.height;

@@ -28,10 +28,10 @@ constexpr double kSoftDepth = 0.1e-3;  // [m]
 /// where extrusion pauses or the adhesion changes. Filament fed at a standstill belongs to the element that
 /// goes on from there; where the tip leaves instead, it stays behind as an element without length.
 struct LaidBead {
-  Vec3 from_W{0, 0, 0};  ///< [m], on the surface below the tip; the tip itself where there is none
+  Vec3 from_W{0, 0, 0};  ///< [m], on the surface below the tip; the tip itself where it is unsupported
   Vec3 to_W{0, 0, 0};
   Vec3 normal_W{0, 0, 1};  ///< tool axis
-  double length = 0;       ///< [m] of path on the surface
+  double length = 0;       ///< [m] of path on the surface; of the strand, where it is unsupported
   double path = 0;         ///< [m] of the tip's path
   double gap = 0;          ///< [m], mean over the element
   double width = 0;        ///< [m], from conserved volume at this gap
@@ -69,13 +69,14 @@ struct DepositionSummary {
   double below_band_fraction = 0, above_band_fraction = 0;  ///< the rest
   double gap_min = 0, gap_mean = 0, gap_max = 0;  ///< [m], weighted by length, where a surface is below
   int gap_min_line = 0;
-  double gap_min_time = 0;      ///< [s]
-  double start_gap = 0;         ///< [m], true gap where extrusion began first
-  double fused_length = 0;      ///< [m], counted in no gap figure
-  double extruded_volume = 0;   ///< [m^3], net: what a retraction took back is not counted twice
-  double laid_volume = 0;       ///< [m^3], of all elements, sticking or not
-  double deposited_volume = 0;  ///< [m^3], of those that stick
-  double column_volume = 0;     ///< [m^3], not laid: what still presses to come out
+  double gap_min_time = 0;       ///< [s]
+  double start_gap = 0;          ///< [m], true gap where extrusion began first
+  double fused_length = 0;       ///< [m], counted in no gap figure
+  double extruded_volume = 0;    ///< [m^3], net: what a retraction took back is not counted twice
+  double laid_volume = 0;        ///< [m^3], of all elements, sticking or not
+  double deposited_volume = 0;   ///< [m^3], of those that stick
+  double standstill_volume = 0;  ///< [m^3], of those without length: fed at a standstill and left behind
+  double column_volume = 0;      ///< [m^3], not laid: what still presses to come out
   std::size_t beads = 0;
 };
 

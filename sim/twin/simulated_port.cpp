@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 
@@ -18,11 +19,14 @@ namespace {
 constexpr double kCoastTime = 0.5;  // [s]
 
 machine::SetpointQueueOptions queue_options(const machine::MachineDescription& machine,
-                                            const kinematics::Mechanism& mechanism, std::size_t capacity) {
+                                            const kinematics::Mechanism& mechanism,
+                                            const TwinOptions& options) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   machine::SetpointQueueOptions queue;
-  queue.capacity = capacity;
+  queue.capacity = options.queue_capacity;
   for (int i = 0; i < mechanism.axis_count(); ++i) {
-    queue.ranges.push_back(mechanism.axis_range(i));
+    queue.ranges.push_back(options.hold_at_limits ? kinematics::AxisRange{-kInfinity, kInfinity}
+                                                  : mechanism.axis_range(i));
     // Rest means slower than one microstep a second: what is left cannot be seen by the drives.
     const auto axis = static_cast<std::size_t>(i);
     queue.rest_velocity[axis] = machine.drives[axis].step();
@@ -51,8 +55,7 @@ SimulatedPort::SimulatedPort(const machine::MachineDescription& machine, Plant& 
       options_(options),
       drive_zero_(machine.drive_zero()),
       drives_(machine, options.faults),
-      queue_(queue_options(machine, *mechanism_, options.queue_capacity), axes_at_home(machine, *mechanism_),
-             plant.time()),
+      queue_(queue_options(machine, *mechanism_, options), axes_at_home(machine, *mechanism_), plant.time()),
       X_BT_commanded_(machine.X_BT_home) {
   AxisVector displacement = queue_.target().position;
   for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] -= drive_zero_[i];
@@ -93,20 +96,32 @@ void SimulatedPort::raise(Fault fault) {
   queue_.clear(plant_.time());
 }
 
-void SimulatedPort::advance() {
-  const Target target = queue_.advance_to(plant_.time());
-  if (queue_.ran_dry()) raise(Fault::underrun);
+DriveCommand SimulatedPort::command_for(const Target& target) {
   DriveCommand command;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axis_count()); ++i) {
-    double displacement = target.position[i] - drive_zero_[i];
+  for (int axis = 0; axis < axis_count(); ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    double position = target.position[i], velocity = target.velocity[i];
+    const kinematics::AxisRange range = mechanism_->axis_range(axis);
+    if (options_.hold_at_limits && (position < range.lower || position > range.upper)) {
+      position = std::clamp(position, range.lower, range.upper);
+      velocity = 0;
+    }
+    double displacement = position - drive_zero_[i];
     if (options_.quantise_steps) {
       const double step = machine_.drives[i].step();
       displacement = std::round(displacement / step) * step;
     }
     command.position[i] = displacement;
-    command.velocity[i] = target.velocity[i];
+    command.velocity[i] = velocity;
     asked_[i] = displacement + drive_zero_[i];
   }
+  return command;
+}
+
+void SimulatedPort::advance() {
+  const Target target = queue_.advance_to(plant_.time());
+  if (queue_.ran_dry()) raise(Fault::underrun);
+  DriveCommand command = command_for(target);
   drives_.apply(plant_.time(), command, plant_);
   if (steps_ % static_cast<std::uint64_t>(steps_per_observation_) == 0) observe(target);
   plant_.step(command);

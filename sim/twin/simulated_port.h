@@ -20,6 +20,8 @@ using Exposure = std::function<Image(const Pose& X_WT, const Region& region, std
 struct TwinOptions {
   double observation_period = 2e-3;  ///< [s], between snapshots
   bool quantise_steps = true;        ///< drives move in whole microsteps
+  /// Axes that are asked for more stay at the ends of their ranges; else the port rejects such setpoints.
+  bool hold_at_limits = false;
   std::size_t queue_capacity = 4096;
   double nozzle_offset = 0;  ///< [K], of a heated nozzle beyond what was asked for
   std::vector<FaultEvent> faults;
@@ -51,6 +53,7 @@ class SimulatedPort : public machine::MachinePort {
  private:
   using Target = machine::SetpointQueue::Target;  ///< by the controller's own geometry
   void advance();
+  DriveCommand command_for(const Target& target);
   void coast(const Target& target, DriveCommand command);
   void observe(const Target& target);
   void raise(machine::Fault fault);

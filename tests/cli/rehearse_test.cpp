@@ -91,7 +91,50 @@ TEST(Rehearse, APoseOutOfReachIsANoGoThatNamesTheStrutAndHowMuch) {
   EXPECT_EQ(finding["limit"], 170.0);
   EXPECT_LT(finding["value"], 170.0);
   EXPECT_THAT(finding["message"].get<std::string>(), HasSubstr("strut"));
-  EXPECT_FALSE(summary.contains("engine")) << "nothing was simulated";
+  EXPECT_THAT(finding["message"].get<std::string>(), HasSubstr("simulated with the axis held at its limit"));
+}
+
+// The five-axis printer's z ends at 200 mm: a last line that parks above it hides nothing of the bead before.
+TEST(Rehearse, ALimitBrokenOnTheLastLineLeavesTheRestSimulated) {
+  const Folder folder;
+  const std::string bead =
+      "G21\nG90\nM82\nM109 S210\nG0 X0 Y0 Z10\nG1 X0 Y0 Z0.16 F600\nG1 X0 Y20 E0.7 F300\n";
+  const auto run = [&](const std::string& name, const std::string& program) {
+    const auto file = folder.write(name + ".gcode", program);
+    const Outcome outcome =
+        understudy("rehearse " + file +
+                   " --machine five-axis --as-built nominal --engine quasistatic --out " + (folder / name));
+    return std::pair(outcome.status, nlohmann::json::parse(read_file(folder.path() / name / "summary.json")));
+  };
+  const auto [status, whole] = run("whole", bead + "G0 Z150\n");
+  EXPECT_EQ(status, 0);
+  const auto [parked_status, parked] = run("parked", bead + "G0 Z230\n");
+  EXPECT_EQ(parked_status, 1);
+  EXPECT_EQ(parked["findings"][0]["kind"], "joint_limit");
+  EXPECT_EQ(parked["findings"][0]["gcode_line"], 8);
+  EXPECT_EQ(parked["findings"][0]["limit"], 200);
+  EXPECT_EQ(parked["gap"], whole["gap"]);
+  EXPECT_EQ(parked["accuracy"], whole["accuracy"]);
+  EXPECT_EQ(parked["print"]["printed_mm"], whole["print"]["printed_mm"]);
+}
+
+TEST(Rehearse, ATipErrorBeyondTheToleranceIsANoGo) {
+  const Folder folder;
+  const std::string command =
+      "rehearse " + kSource +
+      "/scenarios/arm-square.gcode --machine arm --engine quasistatic --as-built nominal ";
+  ASSERT_EQ(understudy(command + "--out " + (folder / "loose")).status, 0);
+  const Outcome outcome = understudy(command + "--tip-tolerance 0.01 --out " + (folder / "tight"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("more than 0.01 mm"));
+  EXPECT_THAT(outcome.out, HasSubstr("understudy calibrate"));
+  const auto loose = nlohmann::json::parse(read_file(folder / "loose/summary.json"));
+  const auto tight = nlohmann::json::parse(read_file(folder / "tight/summary.json"));
+  EXPECT_EQ(loose["go"], true);
+  EXPECT_EQ(loose["accuracy"]["tip_tolerance_mm"], 0.2);
+  EXPECT_EQ(tight["grade"], "no-go");
+  EXPECT_EQ(tight["findings"][0]["kind"], "accuracy");
+  EXPECT_EQ(tight["findings"][0]["limit"], 0.01);
 }
 
 TEST(Rehearse, PrintingInTheAirIsANoGo) {

@@ -72,6 +72,18 @@ TEST(Print, CountsWhatItDid) {
   EXPECT_NEAR(rig.port().outputs().fan, 0.5, 1e-12);
 }
 
+// The bead program retracts 1 mm at its end. Pushed back afterwards, with 0.1 mm of new filament.
+TEST(Print, FilamentThatARetractionTookBackIsNotFedTwice) {
+  GapRig rig(hexapod(), low_by(0));
+  Program program = bead_program();
+  program.steps.insert(program.steps.end() - 1,
+                       step_to(StepKind::print, {11e-3, 0, kTable + 5.13e-3}, 5e-3, 9, 1.1e-3));
+  const PrintResult result = print(program, hexapod(), rig.port(), without_gap_control());
+  ASSERT_TRUE(result.completed) << result.stop.why;
+  EXPECT_NEAR(result.extruded, 3e-4, 1e-12);
+  EXPECT_NEAR(result.primed, 1e-3, 1e-12);
+}
+
 TEST(Print, FilamentCountsOnWhereTheMotionPauses) {
   Program program = bead_program();
   Step fan;

@@ -40,6 +40,7 @@ TEST(Metrics, AreTheFiguresOfARecordUnderDottedNames) {
   EXPECT_EQ(number(metrics, "print.moves"), 84);
   EXPECT_EQ(std::get<std::string>(metrics.at("engine.name")), "mujoco");
   EXPECT_EQ(std::get<std::string>(metrics.at("verdict")), "go");
+  EXPECT_EQ(std::get<std::string>(metrics.at("grade")), "go");
   EXPECT_EQ(number(metrics, "exit_status"), 0);
 }
 
@@ -83,6 +84,7 @@ TEST(Metrics, NamesSayTheirUnit) {
   EXPECT_EQ(metric_unit("gap.start_mm"), "mm");
   EXPECT_EQ(metric_unit("accuracy.tip_max_um"), "um");
   EXPECT_EQ(metric_unit("accuracy.orientation_max_mrad"), "mrad");
+  EXPECT_EQ(metric_unit("accuracy.orientation_tolerance_deg"), "deg");
   EXPECT_EQ(metric_unit("print.duration_s"), "s");
   EXPECT_EQ(metric_unit("gap.in_band_fraction"), "1");
   EXPECT_EQ(metric_unit("findings.count"), "1");

@@ -43,6 +43,20 @@ TEST(Figures, WhatIsAbsentIsLeftOut) {
   }));
 }
 
+// A program that moves nothing has no clearance; infinity is no figure.
+TEST(Figures, AClearanceThatNobodyLookedAtIsLeftOut) {
+  Record record;
+  record.collision.emplace();
+  for (const Figure& figure : figures(record))
+    EXPECT_THAT(figure.name, testing::Not(testing::HasSubstr("clearance")));
+  record.collision->nozzle_clearance_mm = -0.07;
+  const auto all = figures(record);
+  const auto nozzle =
+      std::find_if(all.begin(), all.end(), [](const Figure& f) { return f.name == "nozzle_clearance_mm"; });
+  ASSERT_NE(nozzle, all.end());
+  EXPECT_EQ(std::get<double>(nozzle->value), -0.07);
+}
+
 TEST(Figures, CountsKeepEveryDigit) {
   Record record;
   record.provenance.seed = 18446744073709551615u;

@@ -1,5 +1,6 @@
 #include "rehearsal/verdict.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace understudy::rehearsal {
@@ -22,15 +23,36 @@ Record printed(bool go) {
   return record;
 }
 
-TEST(VerdictSentence, NamesTheFirstErrorAndCountsTheRest) {
+TEST(VerdictSentence, NamesTheCauseAndCountsTheRest) {
   EXPECT_EQ(
       verdict_sentence(stopped_by_constraints()),
-      "Strut 3 is 241.7 mm, longer than 240.0 mm (line 1187), and 1 more error; the program was not run.");
+      "Strut 3 is 241.7 mm, longer than 240.0 mm (line 1187), and 1 other error; the program was not run.");
   Record loose = printed(false);
   loose.findings = {{"adhesion", Severity::error, 14, 6.0, 0.4123, 0.2, "mm",
                      "the bead is laid at a gap of 0.412 mm, above 0.200 mm: it does not stick"}};
   EXPECT_EQ(verdict_sentence(loose),
             "The bead is laid at a gap of 0.412 mm, above 0.200 mm: it does not stick (line 14).");
+}
+
+// 537 rows below their limit, though only warnings, are not "no limit is broken".
+TEST(VerdictSentence, DoesNotSayThatNoLimitIsBrokenBesideWarnings) {
+  Record record = printed(true);
+  EXPECT_THAT(verdict_sentence(record), testing::StartsWith("No limit is broken: the gap starts"));
+  for (int i = 0; i < 537; ++i)
+    record.findings.push_back({"flow", Severity::warning, i, 1, 0.5, 0.8, "1", "too little is laid"});
+  EXPECT_THAT(
+      verdict_sentence(record),
+      testing::StartsWith("Nothing stands against the print, with 537 warnings of flow: the gap starts"));
+}
+
+TEST(Grade, IsOfThreeAndAGoWithWarningsIsAGo) {
+  Record record = printed(true);
+  EXPECT_STREQ(word(grade_of(record)), "go");
+  record.findings = {{"flow", Severity::warning, 1, 1, 0.5, 0.8, "1", "too little is laid"}};
+  EXPECT_STREQ(word(grade_of(record)), "go-with-warnings");
+  EXPECT_STREQ(headline(grade_of(record)), "GO with warnings");
+  EXPECT_TRUE(record.go);
+  EXPECT_STREQ(headline(grade_of(stopped_by_constraints())), "NO-GO");
 }
 
 TEST(VerdictSentence, AWarningIsNeverTheReasonOfANoGo) {

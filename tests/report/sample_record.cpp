@@ -119,14 +119,16 @@ Record base_record() {
   record.gap_accepted_min_mm = 0.1;
   record.gap_accepted_max_mm = 0.2;
   record.gap_aim_mm = 0.13;
+  record.tip_tolerance_mm = 0.5;
+  record.orientation_tolerance_deg = 2;
   return record;
 }
 
 void add_run(Record& record) {
-  record.print = PrintFigures{18.0021, 84, 4.71234567, 60.0, 412.5};
+  record.print = PrintFigures{18.0021, 84, 4.71234567, 4.6, 0.1, 0.01234567, 2.0, 4.5, 0.1, 412.5};
   record.accuracy = AccuracyFigures{88.123456, 109.4, 121.987654, 1.6, 431.25};
   record.gap = GapFigures{0.13, 0.412345678, 0.1312345, 0.101, 0.1288, 0.1611, 0.9925, 10};
-  record.collision = CollisionFigures{1.8412, 184211, 31};
+  record.collision = CollisionFigures{1.8412, "heater block and part", 0.1011, 184211, 31};
   record.engine = EngineFigures{"mujoco", "2.2.2", 0.0005, 36004, 17.25, 0.071};
   record.frames = sample_frames();
 }

@@ -26,19 +26,24 @@ using Keys = std::vector<std::string>;
 
 TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
   const Json summary = Json::parse(summary_json(sample_go()));
-  EXPECT_EQ(keys(summary), (Keys{"schema", "verdict", "findings", "print", "accuracy", "gap", "collision",
-                                 "engine", "provenance"}));
+  EXPECT_EQ(keys(summary), (Keys{"schema", "verdict", "go", "grade", "findings", "finding_groups", "print",
+                                 "accuracy", "gap", "collision", "engine", "provenance"}));
   EXPECT_EQ(summary["schema"], "understudy.rehearsal/1");
   EXPECT_EQ(summary["verdict"], "go");
+  EXPECT_EQ(summary["go"], true);
+  EXPECT_EQ(summary["grade"], "go-with-warnings");
   EXPECT_EQ(keys(summary["findings"][0]),
             (Keys{"kind", "severity", "gcode_line", "time_s", "value", "limit", "unit", "message"}));
   EXPECT_EQ(keys(summary["print"]),
-            (Keys{"duration_s", "moves", "extruded_mm", "deposited_mm", "travel_mm"}));
+            (Keys{"duration_s", "moves", "extruded_mm", "printed_mm", "purged_mm", "missing_mm", "primed_mm",
+                  "deposited_mm", "spanning_mm", "travel_mm"}));
   EXPECT_EQ(keys(summary["accuracy"]),
-            (Keys{"tip_rms_um", "tip_p95_um", "tip_max_um", "orientation_max_mrad", "open_loop_tip_max_um"}));
+            (Keys{"tip_rms_um", "tip_p95_um", "tip_max_um", "orientation_max_mrad", "open_loop_tip_max_um",
+                  "tip_tolerance_mm", "orientation_tolerance_deg"}));
   EXPECT_EQ(keys(summary["gap"]), (Keys{"commanded_mm", "open_loop_start_mm", "start_mm", "path_min_mm",
                                         "path_mean_mm", "path_max_mm", "in_band_fraction", "frames"}));
-  EXPECT_EQ(keys(summary["collision"]), (Keys{"min_clearance_mm", "checks", "pairs"}));
+  EXPECT_EQ(keys(summary["collision"]),
+            (Keys{"min_clearance_mm", "closest", "nozzle_clearance_mm", "checks", "pairs"}));
   EXPECT_EQ(keys(summary["engine"]),
             (Keys{"name", "version", "timestep_s", "steps", "real_time_factor", "closure_max_um"}));
   EXPECT_EQ(keys(summary["provenance"]),
@@ -47,7 +52,8 @@ TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
 
 TEST(SummaryJson, LeavesOutWhatIsAbsent) {
   const Json stopped = Json::parse(summary_json(sample_stopped_by_constraints()));
-  EXPECT_EQ(keys(stopped), (Keys{"schema", "verdict", "findings", "provenance"}));
+  EXPECT_EQ(keys(stopped),
+            (Keys{"schema", "verdict", "go", "grade", "findings", "finding_groups", "provenance"}));
   EXPECT_EQ(stopped["verdict"], "no-go");
   EXPECT_FALSE(Json::parse(summary_json(sample_without_gap_control()))["gap"].contains("open_loop_start_mm"));
   Record record = sample_go();

@@ -1,18 +1,43 @@
 'use strict';
 // What was found, every figure of the summary, and where it comes from.
-const kFindingsShown = 20;
-
 function drawFindings(report) {
-  const findings = report.summary.findings;
+  const { findings, finding_groups: groups } = report.summary;
   const title = 'What was found, and where';
-  if (findings.length === 0) return section(title, null, element('p', {}, 'Nothing. No limit was broken or neared.'));
-  const sorted = findings.map((finding, order) => ({ finding, order })).sort((a, b) =>
-    (a.finding.severity === 'error' ? 0 : 1) - (b.finding.severity === 'error' ? 0 : 1) || a.order - b.order);
-  const rows = sorted.map(({ finding }) => findingRow(finding));
-  const rest = rows.slice(kFindingsShown);
-  return section(title, null, findingsTable(rows.slice(0, kFindingsShown)),
-    rest.length ? element('details', {}, element('summary', {}, format.plural(rest.length, 'more finding')),
-      findingsTable(rest)) : null);
+  if (findings.length === 0) return section(title, null, element('p', {}, 'Nothing: no limit was broken.'));
+  const note = 'Alike findings are one row, with their worst; what causes others stands before them.';
+  return section(title, note, groupsTable(groups),
+    groups.length < findings.length ? element('details', {},
+      element('summary', {}, 'Each of the ' + format.plural(findings.length, 'finding')),
+      findingsTable(findings.map(findingRow))) : null);
+}
+
+function groupsTable(groups) {
+  const head = ['', 'Kind', 'Lines', 'Times', 'Worst', 'Limit', 'Message'];
+  const numeric = new Set(['Lines', 'Times', 'Worst', 'Limit']);
+  return element('table', { class: 'findings' },
+    element('thead', {}, element('tr', {}, ...head.map((h) => element('th', { class: numeric.has(h) ? 'number' : null }, h)))),
+    element('tbody', {}, ...groups.map(groupRow)));
+}
+
+function groupRow(group) {
+  const { worst } = group;
+  const cell = (label, text, kind) => element('td', { 'data-label': label, class: kind }, text);
+  const lines = group.first_line === undefined ? '\u2013'
+    : group.first_line === group.last_line ? String(group.first_line) : group.first_line + '\u2013' + group.last_line;
+  return element('tr', {},
+    element('td', { class: 'mark' }, element('span', { class: 'severity ' + group.severity }, group.severity)),
+    cell('Kind', format.kind(group.kind)),
+    cell('Lines', lines, 'number'),
+    cell('Times', format.count(group.count), 'number'),
+    cell('Worst', format.quantity(worst.value, worst.unit), 'number'),
+    cell('Limit', format.quantity(worst.limit, worst.unit), 'number'),
+    element('td', { 'data-label': 'Message', class: 'message' }, format.message(worst.message),
+      group.advice ? element('p', { class: 'advice' }, ...withCode(group.advice)) : null));
+}
+
+// What stands between backquotes is to be typed.
+function withCode(text) {
+  return text.split('`').map((part, i) => (i % 2 ? element('code', {}, part) : part));
 }
 
 function findingsTable(rows) {
@@ -41,7 +66,9 @@ const kGroupTitles = {
 };
 
 const kFigureLabels = {
-  duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', deposited_mm: 'Filament that sticks',
+  duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', printed_mm: 'Of that, printed', purged_mm: 'Of that, purged at a standstill',
+  missing_mm: 'Of that, missing on the part', primed_mm: 'Besides, pushed back after retractions',
+  deposited_mm: 'Laid on something, sticks', spanning_mm: 'Laid in air, held',
   travel_mm: 'Travel without extrusion',
   tip_rms_um: 'Tip error, RMS', tip_p95_um: 'Tip error, 95th percentile', tip_max_um: 'Tip error, largest',
   machine_before: 'Machine before', machine_after: 'Machine after', not_run_before: 'Not run before',
@@ -50,12 +77,14 @@ const kFigureLabels = {
   tip_max_before_um: 'Tip error before, largest', tip_max_after_um: 'Tip error after, largest',
   orientation_max_before_mrad: 'Orientation error before, largest', orientation_max_after_mrad: 'Orientation error after, largest',
   orientation_max_mrad: 'Orientation error, largest', open_loop_tip_max_um: 'Tip error without gap control, largest',
+  tip_tolerance_mm: 'Tip error accepted', orientation_tolerance_deg: 'Orientation error accepted',
   commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
   path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
   in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',
   max_um: 'Sag, largest', strands: 'Strands in air', unsupported_mm: 'Length in air',
   ra_um: 'Roughness Ra', rz_um: 'Roughness Rz', deviation_p95_um: 'Deviation from the intended part, 95th percentile',
-  min_clearance_mm: 'Least clearance', checks: 'Checks', pairs: 'Pairs of bodies',
+  min_clearance_mm: 'Least clearance, but for the nozzle over its work', closest: 'These two',
+  nozzle_clearance_mm: 'Nozzle to what it prints on, least', checks: 'Checks', pairs: 'Pairs of bodies',
   name: 'Name', version: 'Version', timestep_s: 'Time step', steps: 'Steps',
   real_time_factor: 'Simulated time / wall time', closure_max_um: 'Loop closure error, largest',
 };

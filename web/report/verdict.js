@@ -1,16 +1,17 @@
 'use strict';
 // The answer, the reason, and the few figures that carry it.
+const kGrades = { go: 'GO', 'go-with-warnings': 'GO with warnings', 'no-go': 'NO-GO' };
+
 function drawVerdict(report) {
   const summary = report.summary;
-  const go = summary.verdict === 'go';
   const errors = summary.findings.filter((f) => f.severity === 'error').length;
   const warnings = summary.findings.length - errors;
   const tally = format.plural(errors, 'error') + ' · ' + format.plural(warnings, 'warning');
   return element('header', {},
     element('p', { class: 'eyebrow' }, 'Understudy rehearsal'),
     element('h1', {}, report.title),
-    element('div', { class: 'verdict ' + (go ? 'go' : 'no-go') },
-      element('strong', {}, go ? 'GO' : 'NO-GO'),
+    element('div', { class: 'verdict ' + summary.grade },
+      element('strong', {}, kGrades[summary.grade]),
       element('div', {},
         element('p', { class: 'reason' }, format.message(report.reason)),
         element('p', { class: 'tally' }, tally))),
@@ -31,16 +32,22 @@ function drawKeyFigures(report) {
   }
   if (accuracy) {
     tile('Largest tip error', format.quantity(accuracy.tip_max_um, 'um'),
-      report.names.gap_control === 'off' ? '' : 'without gap control ' + format.quantity(accuracy.open_loop_tip_max_um, 'um'));
+      'accepted ' + format.quantity(1000 * accuracy.tip_tolerance_mm, 'um') + (report.names.gap_control === 'off' ? ''
+        : ', without gap control ' + format.quantity(accuracy.open_loop_tip_max_um, 'um')));
   }
-  if (collision) {
-    tile('Least clearance', format.quantity(collision.min_clearance_mm, 'mm'),
-      format.count(collision.checks) + ' checks');
-  }
+  if (collision && collision.nozzle_clearance_mm !== undefined)
+    tile('Nozzle to part, least', distance(collision.nozzle_clearance_mm), 'or to table or beads it ploughs');
+  if (collision && collision.min_clearance_mm !== undefined)
+    tile('Least clearance elsewhere', distance(collision.min_clearance_mm), collision.closest);
   if (print) {
-    tile('Duration', formatDuration(print.duration_s), format.quantity(print.extruded_mm, 'mm') + ' of filament');
+    tile('Duration', formatDuration(print.duration_s), format.quantity(print.printed_mm, 'mm') + ' of filament printed');
   }
   return tiles.length ? element('dl', { class: 'key-figures' }, ...tiles) : null;
+}
+
+// Below zero a clearance is the depth of a contact.
+function distance(clearance_mm) {
+  return clearance_mm < 0 ? format.quantity(-clearance_mm, 'mm') + ' deep' : format.quantity(clearance_mm, 'mm');
 }
 
 function formatDuration(seconds) {

@@ -66,6 +66,22 @@ TEST(GrowingObstacle, LevelWithItsOwnLayerIsNoCollisionAndAPressOfATenthIsNone) 
   }
 }
 
+// The bead's top is at 50 mm: 0.15 mm deep is 0.15 mm deep, and 0.09 mm is the nozzle at its work, whose
+// nearest is then the table.
+TEST(GrowingObstacle, TheNozzlesLeastClearanceCountsBeadsThatItPloughs) {
+  for (const double deep : {0.09e-3, 0.15e-3}) {
+    Stage stage;
+    stage.observer->observe(at(0, {-10e-3, 0, 0.05}, 1));
+    stage.beads.add(bead({0, -5e-3, 0.05 - 0.1e-3}, {0, 5e-3, 0.05 - 0.1e-3}, 2));
+    stage.observer->observe(at(1, {-10e-3, 0, 0.05 - deep}, 5));
+    stage.observer->observe(at(2, {10e-3, 0, 0.05 - deep}, 6));
+    const bool ploughs = deep > 0.1e-3;
+    EXPECT_NEAR(stage.observer->min_nozzle_clearance(), ploughs ? -deep : 0.05 - deep,
+                ploughs ? 0.02e-3 : 0.01e-3);
+    EXPECT_GT(stage.observer->min_clearance(), 1e-3) << "of everything else";
+  }
+}
+
 TEST(GrowingObstacle, TheFreshestMaterialIsContactByDesign) {
   std::size_t fresh = 0;
   Stage stage([&] { return fresh; });

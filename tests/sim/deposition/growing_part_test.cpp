@@ -145,6 +145,27 @@ TEST(GrowingPart, AStrandFromOneWallToAnotherIsHeldAtBothEnds) {
   EXPECT_NEAR(stretches[0].worst_gap, 21 * kLayer, 20e-9);
 }
 
+// A strut of 5 mm drawn straight up from the table is 5 mm long and as thick as what it was fed, not as long
+// as its shadow; so is one that leans.
+TEST(GrowingPart, AStrandIsAsLongAsItWasDrawnWhicheverWayItRuns) {
+  for (const double tilt : {0.0, 30.0}) {
+    Laying laying(printer());
+    Printer print(laying);
+    const Vec3 start(0, 0, kLayer), along(std::sin(from_deg(tilt)), 0, std::cos(from_deg(tilt)));
+    print.line(start, start + 5e-3 * along);
+    print.travel({0, 0, 20e-3});
+    ASSERT_FALSE(laying.unsupported_stretches().empty()) << tilt;
+    double length = 0, volume = 0;
+    for (const UnsupportedStretch& stretch : laying.unsupported_stretches()) {
+      length += stretch.length;
+      volume += stretch.volume;
+    }
+    // Its foot sticks as far as the nozzle is within the accepted 0.2 mm of the table.
+    EXPECT_NEAR(length, 5e-3, 0.1e-3) << tilt;
+    EXPECT_NEAR(volume / length, kArea, 0.02 * kArea) << tilt;
+  }
+}
+
 TEST(GrowingPart, AStrandThatEndsInTheAirIsFreeThere) {
   Laying laying(printer());
   Printer print(laying);

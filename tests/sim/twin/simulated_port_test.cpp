@@ -130,6 +130,24 @@ TEST_F(SimulatedPortTest, DrivesMoveInWholeMicrosteps) {
   }
 }
 
+TEST_F(SimulatedPortTest, AnAxisAskedForTooMuchStaysAtItsLimitOnlyWhereThatIsAskedFor) {
+  const double upper = machine_.make_mechanism()->axis_range(0).upper;
+  const int beyond = static_cast<int>((upper - home_[0]) / 5e-6) + 1000;  // 5 mm past the end
+  EXPECT_EQ(port_.submit(ramp(0.005, beyond, true), 1), Status::rejected);
+
+  RigidPlant plant;
+  TwinOptions options;
+  options.hold_at_limits = true;
+  options.queue_capacity = static_cast<std::size_t>(beyond);
+  SimulatedPort held(machine_, plant, {}, {}, options);
+  ASSERT_EQ(held.submit(ramp(0.005, beyond, true), 1), Status::ok);
+  ASSERT_EQ(held.wait_until(1e-3 * beyond + 0.01), Status::ok);
+  const double step = machine_.drives[0].step();
+  EXPECT_NEAR(held.state().position[0], upper, step);
+  for (const auto& command : plant.commands)
+    ASSERT_LE(command.position[0] + machine_.drive_zero()[0], upper + step);
+}
+
 TEST_F(SimulatedPortTest, StopDeceleratesWithoutAJolt) {
   ASSERT_EQ(port_.submit(ramp(0.02, 1000, true), 2), Status::ok);
   ASSERT_EQ(port_.wait_until(0.1), Status::ok);

@@ -1,0 +1,14 @@
+// What a user can do about a finding.
+#pragma once
+
+#include <string>
+
+#include "rehearsal/record.h"
+
+namespace understudy::rehearsal {
+
+/// One line; commands and options stand between backquotes and fit the run of the record. Empty where there
+/// is nothing to do.
+std::string advice(const Finding& finding, const Record& record);
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,35 @@
+// One thing that a rehearsal found.
+#pragma once
+
+#include <string>
+
+namespace understudy::rehearsal {
+
+enum class Severity { error, warning };
+
+/// kind is one of the contract's words. value and limit in `unit`, the unit of reports (mm, deg, um, mm/s).
+struct Finding {
+  std::string kind;
+  Severity severity = Severity::error;
+  int gcode_line = 0;
+  double time_s = 0;
+  double value = 0;
+  double limit = 0;
+  std::string unit;
+  std::string message;
+  int last_line = 0;       ///< of one that spans several lines; 0: it does not
+  std::string about = {};  ///< findings of one kind about the same are alike: "strut 3", "nozzle and part"
+};
+
+// What findings are about, where advice depends on it.
+inline constexpr const char* kStopped = "the print stopped";
+inline constexpr const char* kTooLow = "too low";
+inline constexpr const char* kTooHigh = "too high";
+inline constexpr const char* kNothingBelow = "nothing below";
+inline constexpr const char* kCold = "cold";
+inline constexpr const char* kUnmeasured = "unmeasured start";
+inline constexpr const char* kUncontrolled = "no approach";
+inline constexpr const char* kTip = "tip";
+inline constexpr const char* kOrientation = "orientation";
+
+}  // namespace understudy::rehearsal

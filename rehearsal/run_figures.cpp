@@ -1,0 +1,86 @@
+#include "rehearsal/run_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/units.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+/// Nothing where no gap exists: nothing was printed, or somewhere nothing lies below the nozzle.
+std::optional<GapFigures> gap_of(const TwinRun& run, const TwinRun* without,
+                                 const machine::MachineDescription& machine) {
+  const auto& laid = run.deposition;
+  if (!(laid.length > 0) || !std::isfinite(laid.gap_max) || !std::isfinite(laid.start_gap))
+    return std::nullopt;
+  GapFigures gap;
+  gap.commanded_mm = to_mm(machine.gap.aim);
+  if (without && without->deposition.length > 0 && std::isfinite(without->deposition.start_gap))
+    gap.open_loop_start_mm = to_mm(without->deposition.start_gap);
+  gap.start_mm = to_mm(laid.start_gap);
+  gap.path_min_mm = to_mm(laid.gap_min);
+  gap.path_mean_mm = to_mm(laid.gap_mean);
+  gap.path_max_mm = to_mm(laid.gap_max);
+  gap.in_band_fraction = laid.in_band_fraction;
+  gap.frames = static_cast<int>(run.frames.size());
+  return gap;
+}
+
+/// Volume of bead, told as length of the filament it came from.
+double as_filament_mm(double volume, const machine::MachineDescription& machine) {
+  if (!machine.tool.prints()) return 0;
+  const double d = machine.tool.filament_diameter;
+  return to_mm(volume / (0.25 * std::numbers::pi * d * d));
+}
+
+void fill_strands(const std::vector<sim::AirStrand>& strands, Record& record) {
+  SagFigures sag;
+  sag.strands = static_cast<int>(strands.size());
+  for (const sim::AirStrand& strand : strands) {
+    sag.max_um = std::max(sag.max_um, to_um(strand.sag));
+    sag.unsupported_mm += to_mm(strand.length);
+    record.strands.push_back({strand.line, strand.time, to_mm(strand.length), to_mm(strand.diameter),
+                              to_mm(strand.speed), to_um(strand.sag), strand.solid_after, strand.duration,
+                              strand.held_at_end, strand.solved, strand.small});
+  }
+  std::stable_sort(record.strands.begin(), record.strands.end(),
+                   [](const StrandRow& a, const StrandRow& b) { return a.sag_um > b.sag_um; });
+  record.sag = sag;
+}
+
+}  // namespace
+
+PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription& machine) {
+  const sim::DepositionSummary& laid = run.deposition;
+  double spanning_volume = 0;
+  for (const sim::UnsupportedStretch& stretch : run.loose)
+    if (sim::hangs_in_air(stretch) || sim::spans_a_groove(stretch)) spanning_volume += stretch.volume;
+  PrintFigures print;
+  print.duration_s = run.result.duration;
+  print.moves = run.result.moves;
+  print.extruded_mm = to_mm(run.result.extruded);
+  print.printed_mm = as_filament_mm(laid.laid_volume - laid.standstill_volume, machine);
+  print.purged_mm = as_filament_mm(laid.standstill_volume, machine);
+  print.missing_mm = std::max(0.0, print.extruded_mm - print.printed_mm - print.purged_mm);
+  print.primed_mm = to_mm(run.result.primed);
+  print.deposited_mm = as_filament_mm(laid.deposited_volume, machine);
+  print.spanning_mm = as_filament_mm(spanning_volume, machine);
+  print.travel_mm = to_mm(run.result.travel);
+  return print;
+}
+
+void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& machine,
+                  Record& record) {
+  record.print = print_figures(run, machine);
+  record.collision = run.collision;
+  record.engine = run.engine;
+  record.accuracy = run.accuracy;
+  const auto& open_loop = without ? without->accuracy : run.accuracy;
+  if (record.accuracy && open_loop) record.accuracy->open_loop_tip_max_um = open_loop->tip_max_um;
+  if (machine.tool.prints()) fill_strands(run.strands, record);
+  record.gap = gap_of(run, without, machine);
+}
+
+}  // namespace understudy::rehearsal
