@@ -11,9 +11,6 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
-#include "machine/gap_sensor_section.h"
-#include "machine/optics_mounting.h"
-#include "machine/section_text.h"
 #include "report/picture/png.h"
 #include "studies/gap/sample_gaps.h"
 
@@ -27,14 +24,6 @@ struct SampleGapsCall {
   double wedge_deg = 0, feeler_mm = 0.1, feeler_sigma_um = 5, height_sigma_um = 0;
   bool no_speckle = false;
 };
-
-/// The machine file that a perfect calibration would write.
-std::string truth_section(machine::MachineDescription machine, const machine::OpticsMounting& built) {
-  machine.gap_sensor = {drawn_mounting(machine), "the truth", std::string(64, '0'), 1,
-                        machine::MountingMatrix::Zero()};
-  machine::set_mounting(built, machine.laser, machine.microscope);
-  return machine::gap_sensor_section(machine);
-}
 
 int run_sample_gaps(const SampleGapsCall& call) {
   studies::SampleGapsRequest request = call.request;
@@ -53,8 +42,7 @@ int run_sample_gaps(const SampleGapsCall& call) {
   std::filesystem::create_directories(folder.path() / "truth");
   write_file(folder.path() / "table.csv", "# by: " + command_line() + "\n" + sample.table);
   write_file(folder.path() / "truth/gaps.csv", sample.truth);
-  machine::write_with_section(machine.file, truth_section(machine, sample.mounting),
-                              folder.path() / "truth/machine.yaml");
+  write_file(folder.path() / "truth/as-built.yaml", sample.as_built);
   folder.commit();
   fmt::print("{} pictures: {}\n", sample.pictures,
              (std::filesystem::path(call.output) / "table.csv").string());
@@ -99,9 +87,9 @@ void add_sample_gaps(CLI::App& app, Action& action) {
       ->required();
   command->footer(
       "Then: understudy calibrate gap-sensor FOLDER/table.csv -o calibrated.yaml\n"
-      "truth/machine.yaml is the machine file that a perfect calibration would write, truth/gaps.csv has the "
-      "true "
-      "gaps; no command reads them.");
+      "truth/as-built.yaml is the machine that stood there, for --as-built of other commands; truth/gaps.csv "
+      "has "
+      "the true gaps, which no command reads.");
   command->callback([=, &action] { action = [=] { return run_sample_gaps(*call); }; });
 }
 

@@ -8,7 +8,7 @@
 #include "core/interrupt.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "machine/optics_mounting.h"
+#include "sim/as_built/as_built_file.h"
 #include "sim/as_built/truth.h"
 #include "sim/sensors/microscope.h"
 
@@ -51,9 +51,9 @@ SampledGaps sample_gaps(const SampleGapsRequest& request, const machine::Machine
                         const std::function<void(const std::string& name, const Image& picture)>& keep) {
   check(request, machine);
   SampledGaps sample;
-  const machine::MachineDescription truth =
-      sim::true_description(machine, sim::make_as_built(machine, request.as_built, request.seed));
-  sample.mounting = machine::mounting_of(truth);
+  const sim::AsBuilt built = sim::make_as_built(machine, request.as_built, request.seed);
+  const machine::MachineDescription truth = sim::true_description(machine, built);
+  sample.as_built = sim::write_as_built(built);
   sim::MicroscopeOptions options;
   options.speckle = request.speckle;
   sim::Microscope microscope(truth, nullptr, request.seed, options);

@@ -23,9 +23,9 @@ struct SampleGapsRequest {
 };
 
 struct SampledGaps {
-  std::string table;                 ///< as `calibrate gap-sensor` takes it
-  std::string truth;                 ///< CSV: the gap of each picture
-  machine::OpticsMounting mounting;  ///< the true one
+  std::string table;     ///< as `calibrate gap-sensor` takes it
+  std::string truth;     ///< CSV: the gap of each picture
+  std::string as_built;  ///< the machine that stood there, as sim::read_as_built() takes it
   int pictures = 0;
 };
 

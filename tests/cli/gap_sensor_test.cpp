@@ -11,6 +11,7 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "sim/as_built/truth.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {
@@ -44,7 +45,8 @@ Errors calibrated_twin(int seed, const std::string& options = "") {
   const Outcome fitted = understudy("calibrate gap-sensor " + gaps + "/table.csv -o " + out);
   EXPECT_EQ(fitted.status, 0) << fitted.err;
   const auto drawn = machine::load_machine("hexapod"), found = machine::load_machine(out),
-             truth = machine::load_machine(gaps + "/truth/machine.yaml");
+             truth =
+                 sim::true_description(drawn, sim::make_as_built(drawn, gaps + "/truth/as-built.yaml", 1));
   const double aim = drawn.gap.aim;
   return {reads(drawn, truth, aim) - aim, reads(found, truth, aim) - aim,
           control::calibration_sigma(found, {}, aim)};
@@ -99,7 +101,7 @@ TEST(GapSensorCommand, EqualSeedsGiveEqualPicturesAndOtherSeedsOtherTruths) {
         understudy("sample-gaps --heights 0.1 --seed " + std::to_string(seed) + " -o " + (folder / name))
             .status,
         0);
-    return read_file(folder / (name + "/dot-001.png")) + read_file(folder / (name + "/truth/machine.yaml"));
+    return read_file(folder / (name + "/dot-001.png")) + read_file(folder / (name + "/truth/as-built.yaml"));
   };
   const std::string a = sampled("a", 3);
   EXPECT_EQ(a, sampled("b", 3));
