@@ -1,7 +1,11 @@
 #include "core/number_table.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
+
+#include <fmt/format.h>
 
 namespace understudy {
 namespace {
@@ -33,6 +37,19 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 }  // namespace
+
+void check_header_words(const std::vector<std::string>& header, const std::vector<std::string>& known,
+                        const Place& place) {
+  std::set<std::string> seen;
+  for (const std::string& word : header) {
+    if (std::find(known.begin(), known.end(), word) == known.end()) {
+      const std::string near = nearest_word(word, known);
+      throw InputError(place, fmt::format("unknown column '{}'{}", word.substr(0, 40),
+                                          near.empty() ? "" : ", did you mean '" + near + "'?"));
+    }
+    if (!seen.insert(word).second) throw InputError(place, fmt::format("column '{}' is given twice", word));
+  }
+}
 
 double table_number(const Cell& cell, const std::string& name, const Place& place) {
   const char* const begin = cell.text.data() + (cell.text.starts_with('+') ? 1 : 0);

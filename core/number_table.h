@@ -23,6 +23,11 @@ struct TextRow {
 /// Empty lines and lines that begin with # are passed over.
 bool read_text_row(std::istream& in, TextRow& row);
 
+/// Throws InputError at `place`, the header's, for a word that is not known, with the nearest one that is,
+/// and for one that stands twice.
+void check_header_words(const std::vector<std::string>& header, const std::vector<std::string>& known,
+                        const Place& place);
+
 /// Throws InputError at `place`, calling it `name`, unless the cell is a finite number.
 double table_number(const TextRow::Cell& cell, const std::string& name, const Place& place);
 

@@ -67,8 +67,14 @@ std::string about_gap(const Finding& finding, const Record& record) {
     return "if the print lies on a part, name it: `--fixture FILE.stl`; else look at the laser frames in the "
            "report";
   if (finding.about == kStopped)
-    return "look at the laser frames in the report; is the part where the program expects it (`--place "
-           "X,Y,Z`)?";
+    return fmt::format(
+        "look at the laser frames in the report; is the part where the program expects it (`--place X,Y,Z`)? "
+        "If the dot "
+        "moves beside its line, laser and camera are not where the machine file has them: take pictures of "
+        "the dot over "
+        "a flat and run `understudy calibrate gap-sensor table.csv --machine {} -o ready.yaml` "
+        "(docs/gap-sensor-calibration.md)",
+        record.machine_word);
   if (finding.about == kUncontrolled)
     return "begin each bead with a straight move against the tool axis, as `understudy plan surface` does";
   if (finding.about == kUnmeasured)

@@ -224,7 +224,7 @@ std::optional<Runs> run_or_find(const RehearsalRequest& request, const TwinSetup
 void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before, const RunOptions& options,
           const Runs& runs, Record& record) {
   const TwinRun* without = runs.without();
-  fill_figures(runs.main, without, setup.machine, record);
+  fill_figures(runs.main, without, setup.truth, record);
   if (before) fill_comparison(*before, runs, record);
   for (const auto& findings :
        {findings_of(runs.main, setup, options.gap_control),

@@ -52,7 +52,7 @@ void fill_strands(const std::vector<sim::AirStrand>& strands, Record& record) {
 
 }  // namespace
 
-PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription& machine) {
+PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription& truth) {
   const sim::DepositionSummary& laid = run.deposition;
   double spanning_volume = 0;
   for (const sim::UnsupportedStretch& stretch : run.loose)
@@ -61,26 +61,26 @@ PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription
   print.duration_s = run.result.duration;
   print.moves = run.result.moves;
   print.extruded_mm = to_mm(run.result.extruded);
-  print.printed_mm = as_filament_mm(laid.laid_volume - laid.standstill_volume, machine);
-  print.purged_mm = as_filament_mm(laid.standstill_volume, machine);
+  print.printed_mm = as_filament_mm(laid.laid_volume - laid.standstill_volume, truth);
+  print.purged_mm = as_filament_mm(laid.standstill_volume, truth);
   print.missing_mm = std::max(0.0, print.extruded_mm - print.printed_mm - print.purged_mm);
   print.primed_mm = to_mm(run.result.primed);
-  print.deposited_mm = as_filament_mm(laid.deposited_volume, machine);
-  print.spanning_mm = as_filament_mm(spanning_volume, machine);
+  print.deposited_mm = as_filament_mm(laid.deposited_volume, truth);
+  print.spanning_mm = as_filament_mm(spanning_volume, truth);
   print.travel_mm = to_mm(run.result.travel);
   return print;
 }
 
-void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& machine,
+void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& truth,
                   Record& record) {
-  record.print = print_figures(run, machine);
+  record.print = print_figures(run, truth);
   record.collision = run.collision;
   record.engine = run.engine;
   record.accuracy = run.accuracy;
   const auto& open_loop = without ? without->accuracy : run.accuracy;
   if (record.accuracy && open_loop) record.accuracy->open_loop_tip_max_um = open_loop->tip_max_um;
-  if (machine.tool.prints()) fill_strands(run.strands, record);
-  record.gap = gap_of(run, without, machine);
+  if (truth.tool.prints()) fill_strands(run.strands, record);
+  record.gap = gap_of(run, without, truth);
 }
 
 }  // namespace understudy::rehearsal

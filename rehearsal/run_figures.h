@@ -7,12 +7,12 @@
 
 namespace understudy::rehearsal {
 
-/// What came of the filament: fed is printed, purged and missing.
-PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription& machine);
+/// What came of the filament: fed is printed, purged and missing. `truth`: the machine that the twin holds.
+PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription& truth);
 
 /// All sections but `surface` and `calibration`. `without` is the same print without gap control; may be
 /// null.
-void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& machine,
+void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& truth,
                   Record& record);
 
 }  // namespace understudy::rehearsal

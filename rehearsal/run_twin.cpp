@@ -98,7 +98,7 @@ constexpr double kLaserSees = 6e-3;  // [m], around the tip
 struct Watch {
   explicit Watch(const TwinSetup& setup, const RunOptions& options)
       : workpiece(std::make_shared<sim::Workpiece>(setup.built_part)),
-        flow(setup.program, setup.truth),
+        flow(setup.program, setup.machine),
         strands(setup.truth, setup.material),
         deposition(setup.truth, workpiece, deposition_options(setup, flow, strands)),
         trace(deposition),

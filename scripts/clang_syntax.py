@@ -24,7 +24,7 @@ def command(entry):
         if word in ("-o", "-c") or before == "-o" or word in GCC_ONLY:
             continue
         kept.append(word)
-    return ["clang++", "-fsyntax-only", "-Werror", *kept, "-Wno-sign-conversion"]  # as the builds by clang
+    return ["clang++", "-fsyntax-only", "-Werror", *kept]
 
 
 def first_error(entry):

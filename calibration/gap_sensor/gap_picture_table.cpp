@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -39,15 +38,7 @@ bool contains(const Words& words, const std::string& word) {
 void check_header(const Words& header, const Place& place) {
   const Words known{kHeight.name,      kPicture,   kGap.name,    kGapSigma.name,
                     kHeightSigma.name, kTilt.name, kAzimuth.name};
-  std::set<std::string> seen;
-  for (const std::string& word : header) {
-    if (!contains(known, word)) {
-      const std::string near = nearest_word(word, known);
-      throw InputError(place, fmt::format("unknown column '{}'{}", word.substr(0, 40),
-                                          near.empty() ? "" : ", did you mean '" + near + "'?"));
-    }
-    if (!seen.insert(word).second) throw InputError(place, fmt::format("column '{}' is given twice", word));
-  }
+  check_header_words(header, known, place);
   for (const char* required : {kHeight.name, kPicture, kGap.name, kGapSigma.name})
     if (!contains(header, required)) throw InputError(place, fmt::format("missing column {}", required));
   if (contains(header, kTilt.name) != contains(header, kAzimuth.name))

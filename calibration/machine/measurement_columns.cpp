@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/number_table.h"
 #include "core/units.h"
 
 namespace understudy::calibration {
@@ -95,15 +95,7 @@ TableColumns check_columns(const Words& header, const machine::MachineDescriptio
   const auto kinds = {NoiseColumns::isotropic, NoiseColumns::axes, NoiseColumns::full};
   for (const NoiseColumns kind : kinds) std::ranges::copy(noise_columns(kind), std::back_inserter(known));
 
-  std::set<std::string> seen;
-  for (const std::string& word : header) {
-    if (!contains(known, word)) {
-      const std::string near = nearest_word(word, known);
-      throw InputError(place, fmt::format("unknown column '{}'{}", word.substr(0, 40),
-                                          near.empty() ? "" : ", did you mean '" + near + "'?"));
-    }
-    if (!seen.insert(word).second) throw InputError(place, fmt::format("column '{}' is given twice", word));
-  }
+  check_header_words(header, known, place);
   if (const Words absent = missing(required, header); !absent.empty())
     throw InputError(place, fmt::format("missing column{} {} (machine {})", absent.size() > 1 ? "s" : "",
                                         fmt::join(absent, ", "), machine.name));

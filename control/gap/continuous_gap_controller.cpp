@@ -262,8 +262,8 @@ std::string ContinuousGapController::why_follower_stopped() const {
   if (stop_ == GapStop::uncertain) return too_uncertain(machine_.gap, safe_.sigma);
   if (stop_ == GapStop::too_close && sample.used)
     return fmt::format("the gap is {:.3f} mm, 1 sigma {:.3f} mm: less than {:.3f} mm may be left",
-                       to_mm(follower_.gap(stopped_.correction)), to_mm(follower_.sigma()),
-                       to_mm(limits.floor));
+                       to_mm(follower_.gap(stopped_.correction)),
+                       to_mm(std::hypot(follower_.sigma(), safe_.sigma)), to_mm(limits.floor));
   if (stop_ == GapStop::too_far && sample.used)
     return fmt::format("the surface lies {:.3f} mm off the programmed one, at most {:.3f} mm are followed",
                        to_mm(-follower_.wanted()), to_mm(limits.travel_max));

@@ -94,7 +94,7 @@ std::string targets(const RenderRequest& request, const MachineDescription& mach
       studies::target_scene(rig, studies::built_as_designed(rig), request.camera, X_WT);
   scene.exposure.seed = request.seed;
   truth["camera"] = camera_value(scene.camera);
-  truth["X_WC"] = pose_value(rig.cameras[request.camera].X_WC);
+  truth["X_WC"] = pose_value(rig.cameras[static_cast<std::size_t>(request.camera)].X_WC);
   truth["radius_mm"] = to_mm(scene.radius);
   truth["targets"] = ordered_json::array();
   for (const Vec3& centre : scene.centres_C)

@@ -53,9 +53,10 @@ AsBuilt as_described(const machine::MachineDescription& machine);
 
 /// The machine that stands there, whatever its controller believes of it. `set` is nominal (the drawing),
 /// sampled (the drawing, off by the tolerances that a calibration is expected to leave), manufactured (off by
-/// those of manufacture) or an as-built file (as_built_file.h), which alters the drawing: calibrating a
-/// machine file changes none of these. Or it is calibrated (calibrated_draw.h): what the calibration of this
-/// file leaves open. Throws InputError for another word.
+/// those of manufacture, and in drives, play, sensors, part and process by the file's other tolerances) or an
+/// as-built file (as_built_file.h), which alters the drawing: calibrating a machine file changes none of
+/// these. Or it is calibrated (calibrated_draw.h): what the calibration of this file leaves open. Throws
+/// InputError for another word.
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set, std::uint64_t seed);
 
 /// What a print is tried on unless something else is asked for: calibrated where the file has a calibration,

@@ -20,7 +20,7 @@ void read_if_given(YamlMap& map, const std::string& key, Bounds bounds, const ch
     value = map.quantity(key, bounds, about);
 }
 
-/// `position` and `rotation` are keys of what stands so in frame `frame`.
+/// Keys of a position [mm] and of a quaternion; `about` says of what, in which frame.
 struct MountKeys {
   std::string position, rotation;
   const char* about;

@@ -11,7 +11,7 @@ namespace understudy::sim {
 /// Keys that the file does not have leave `built` as it is; errors are those of read_as_built().
 void read_world(YamlMap& root, AsBuilt& built);
 
-/// Each map of which a value differs from `described`; empty where none does.
+/// Every value; of the drives those that have errors. Without the maps of what the machine does not have.
 std::string write_world(const AsBuilt& built);
 
 }  // namespace understudy::sim

@@ -29,12 +29,9 @@ class DriveErrorPlant : public Plant {
   double time() const override { return plant_->time(); }
   void reset(const AxisVector& displacement) override { plant_->reset(travel(displacement)); }
   void step(const DriveCommand& command) override {
-    DriveCommand axes = command;
-    for (std::size_t i = 0; i < lead_.size(); ++i) {
-      if (!(lead_[i] > 0)) continue;
-      axes.position[i] = axis_travel(errors_[i], lead_[i], command.position[i]);
-      axes.velocity[i] *= ratio(errors_[i], lead_[i], command.position[i]);
-    }
+    DriveCommand axes{travel(command.position), command.velocity};
+    for (std::size_t i = 0; i < lead_.size(); ++i)
+      if (lead_[i] > 0) axes.velocity[i] *= ratio(errors_[i], lead_[i], command.position[i]);
     plant_->step(axes);
   }
   void set_condition(int axis, const AxisCondition& condition) override {

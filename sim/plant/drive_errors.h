@@ -7,8 +7,8 @@
 
 namespace understudy::sim {
 
-/// Commands and displacement() of the plant that comes back are the motors'; `plant`, where it is null or the
-/// drives have no errors, comes back itself.
+/// A plant whose commands and displacement() are those of the motors. Returns `plant` itself where it is null
+/// or no drive of `built` has an error.
 std::unique_ptr<Plant> with_drive_errors(std::unique_ptr<Plant> plant,
                                          const machine::MachineDescription& machine, const AsBuilt& built);
 

@@ -11,8 +11,8 @@ renderer::LaserScene scene_of(const machine::MachineDescription& machine,
   renderer::LaserScene scene;
   scene.part = std::move(part);
   scene.tool_bodies = machine.tool.bodies;
-  scene.X_TC = machine.microscope.X_TC * options.X_CC_built;
-  scene.X_TL = machine.laser.X_TL * options.X_LL_built;
+  scene.X_TC = machine.microscope.X_TC;
+  scene.X_TL = machine.laser.X_TL;
   scene.camera = machine.microscope.camera;
   scene.waist_diameter = machine.laser.waist_diameter;
   scene.wavelength = machine.laser.wavelength;

@@ -14,9 +14,6 @@ namespace understudy::sim {
 struct MicroscopeOptions {
   bool speckle = true;
   bool noise = true;
-  /// Where laser and camera really sit in the frames of their nominal mounts; the controller does not know.
-  Pose X_LL_built = Pose::Identity();
-  Pose X_CC_built = Pose::Identity();
 };
 
 /// Owns an OSMesa context; use from the thread that made it. Several may live in several threads.

@@ -14,11 +14,13 @@
 #include "control/gap/continuous_gap_controller.h"
 #include "control/gap/gap_follower.h"
 #include "control/gap/gap_reading.h"
+#include "control/gap/sensor_uncertainty.h"
 #include "control/motion/motion_planner.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "machine/description.h"
 #include "machine/loopback_port.h"
+#include "machine/optics_mounting.h"
 #include "tests/control/gap/bead_program.h"
 #include "tests/geometry/test_solids.h"
 #include "tests/guard/cycle_guard.h"
@@ -204,17 +206,18 @@ TEST(GapCycle, TheSurfaceUnderTheToolIsFoundWithoutAllocating) {
   EXPECT_FALSE(off_part);
 }
 
-TEST(GapCycle, ControllingTheGapAlongAPathNeitherAllocatesNorLocks) {
-  GapRig rig(hexapod(), low_by(0));
+/// 2 s of a path over a surface that rises, by a controller that believes `machine`.
+void control_without_calls(const machine::MachineDescription& machine) {
+  GapRig rig(machine, low_by(0));
   rig.set_play([](const Pose& X) -> Vec3 { return 0.01 * X.translation().x() * Vec3::UnitZ(); });
   const auto mesh = slab();
   const PrintedPart part{mesh.get(), {}};
   std::vector<OffsetChange> offsets;
-  ContinuousGapController gap(hexapod(), part, {{}, gap_follower_options(hexapod())}, rig.port(),
+  ContinuousGapController gap(machine, part, {{}, gap_follower_options(machine)}, rig.port(),
                               [&](const OffsetChange& change) { offsets.push_back(change); });
-  const auto mechanism = hexapod().make_mechanism();
+  const auto mechanism = machine.make_mechanism();
   const Pose X_WT_S = make_pose(Quat::Identity(), Vec3(0, 0, kTable + kGap));
-  MotionPlanner planner(*mechanism, hexapod().X_WB, motion_limits(hexapod()), {X_WT_S, 0.05});
+  MotionPlanner planner(*mechanism, machine.X_WB, motion_limits(machine), {X_WT_S, 0.05});
   planner.push(step_to(toolpath::StepKind::print, {10e-3, 0, kTable + kGap}, 5e-3, 6, 1e-4));
   planner.finish();
   gap.start(Vec3::Zero(), kGap, 5e-6);
@@ -245,6 +248,16 @@ TEST(GapCycle, ControllingTheGapAlongAPathNeitherAllocatesNorLocks) {
   EXPECT_GT(gap.following().used, 60);
   EXPECT_GT(offsets.size(), 50U);
   EXPECT_GT(farthest, 1e-6);
+}
+
+TEST(GapCycle, ControllingTheGapAlongAPathNeitherAllocatesNorLocks) { control_without_calls(hexapod()); }
+
+TEST(GapCycle, NorDoesAimingByTheUncertaintyOfACalibratedSensor) {
+  machine::MachineDescription calibrated = hexapod();
+  calibrated.gap_sensor = {machine::mounting_of(calibrated), "", "", 10,
+                           1e-12 * machine::MountingMatrix::Identity()};
+  ASSERT_GT(safe_aim(calibrated, {}, kGap).sigma, 0);
+  control_without_calls(calibrated);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "machine/fixture_file.h"
+#include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
 #include "sim/as_built/truth.h"
 #include "toolpath/gcode/gcode.h"
@@ -101,6 +102,20 @@ TEST(TruthAndBeliefOfSensors, APartThatStandsHigherIsFoundByTheLaserOnly) {
 TEST(TruthAndBeliefOfSensors, ThickerFilamentFeedsItsOwnVolume) {
   const TwinRun thick = run_built([](sim::AsBuilt& built) { built.filament_diameter *= 1.02; });
   EXPECT_NEAR(thick.deposition.extruded_volume / as_drawn().deposition.extruded_volume, 1.02 * 1.02, 1e-9);
+}
+
+// The program asks for the volume of the filament that the file describes; a length of filament is what was
+// fed.
+TEST(TruthAndBeliefOfSensors, ThickerFilamentIsTooMuchForTheProgramAndNoneIsMissing) {
+  const auto build = [](sim::AsBuilt& built) { built.filament_diameter *= 1.12; };
+  const TwinRun thick = run_built(build);
+  ASSERT_FALSE(thick.flow.empty());
+  EXPECT_NEAR(thick.flow[0].ratio, 1.12 * 1.12, 0.05);
+  EXPECT_LT(as_drawn().flow.size(), thick.flow.size());
+  TwinSetup setup = bottle();
+  build(setup.as_built);
+  const PrintFigures print = print_figures(thick, sim::true_description(setup.machine, setup.as_built));
+  EXPECT_NEAR(print.printed_mm + print.purged_mm, print.extruded_mm, 0.02 * print.extruded_mm);
 }
 
 TEST(TruthAndBeliefOfSensors, ALongScrewMovesTheTip) {

@@ -46,7 +46,7 @@ class BacklashDynamics {
   explicit BacklashDynamics(int axes);
 
   void set_play(int axis, const SeriesPlay& play);
-  const SeriesPlay& play(int axis) const { return plays_[axis]; }
+  const SeriesPlay& play(int axis) const { return plays_[static_cast<std::size_t>(axis)]; }
   /// All gaps in the middle and at rest.
   void centre();
 

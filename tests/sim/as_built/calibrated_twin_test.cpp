@@ -25,7 +25,7 @@ std::string parameters(const AsBuilt& built) {
 TEST(CalibratedTwin, TheBuiltMachineIsTheSameWhateverTheControllerKnows) {
   const auto drawn = machine::load_machine("hexapod");
   for (const char* set : {"nominal", "sampled", "manufactured"})
-    for (const std::uint64_t seed : {1, 2, 3})
+    for (const std::uint64_t seed : {1u, 2u, 3u})
       EXPECT_EQ(parameters(make_as_built(calibrated(), set, seed)),
                 parameters(make_as_built(drawn, set, seed)))
           << set;

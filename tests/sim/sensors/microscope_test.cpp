@@ -187,10 +187,10 @@ TEST(Microscope, ReproducesTheSpeckleErrorOfReferenceD) {
 }
 
 TEST(Microscope, MountErrorsMoveTheDotAndTheTruthAlike) {
-  MicroscopeOptions built{.speckle = false, .noise = false};
-  built.X_CC_built = make_pose(Quat::Identity(), Vec3(0.1e-3, 0, 0));
+  machine::MachineDescription built = reference_machine();
+  built.microscope.X_TC = built.microscope.X_TC * make_pose(Quat::Identity(), Vec3(0.1e-3, 0, 0));
   Microscope nominal(reference_machine(), nullptr, 1, {.speckle = false, .noise = false});
-  Microscope shifted(reference_machine(), nullptr, 1, built);
+  Microscope shifted(built, nullptr, 1, {.speckle = false, .noise = false});
   const Pose X_WT = make_pose(Quat::Identity(), Vec3(0, 0, 0.5e-3));
   const Vec2 before = *nominal.true_dot(X_WT), after = *shifted.true_dot(X_WT);
   EXPECT_NEAR(before.x() - after.x(), 6.4, 0.2);  // 0.1 mm at 64 px/mm, at the distance of the dot
