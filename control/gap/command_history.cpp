@@ -32,6 +32,7 @@ bool CommandHistory::at(double time, Commanded& found) const {
   found.time = time;
   found.path = between(a.path, b.path);
   found.correction = between(a.correction, b.correction);
+  found.excitation = between(a.excitation, b.excitation);
   found.filament = between(a.filament, b.filament);
   found.X_WT = interpolate(a.X_WT, b.X_WT, share);
   return true;

@@ -13,6 +13,7 @@ struct Commanded {
   double time = 0;               ///< [s]
   double path = 0;               ///< [m], of the tip since the control began; turns count
   double correction = 0;         ///< [m], along the tool axis
+  double excitation = 0;         ///< [m], its deliberate part
   double filament = 0;           ///< [m]
   Pose X_WT = Pose::Identity();  ///< before the correction
   bool printing = false;         ///< filament is fed on the way here

@@ -158,8 +158,13 @@ void ContinuousGapController::judge() {
     return;
   }
   reading_.expected = follower_.predicted_gap(at.path, at.correction);
-  const GapObservation seen_there{
-      at.time, at.path, at.correction, sample.reading.gap, sample.reading.sigma, still_reading(sample.dot)};
+  const GapObservation seen_there{at.time,
+                                  at.path,
+                                  at.correction,
+                                  sample.reading.gap,
+                                  sample.reading.sigma,
+                                  still_reading(sample.dot),
+                                  at.excitation};
   reading_.verdict = follower_.observe(seen_there);
   sample.used = reading_.verdict == GapVerdict::used;
   if (sample.used) ++following_.used;
@@ -199,7 +204,9 @@ void ContinuousGapController::remember(const PlannedPoint& point) {
     if (!next.printing) follower_.pass(next.time - last.time, travelled);
   }
   const bool follow = next.printing && measurable_ && stop_ == GapStop::none;
-  correction_ = next.correction = follower_.advance(machine_.cycle_time, next.path, follow).value;
+  const GapFollower::Correction decided = follower_.advance(machine_.cycle_time, next.path, follow);
+  correction_ = next.correction = decided.value;
+  next.excitation = decided.excitation;
   history_.push(next);
 }
 
@@ -267,6 +274,12 @@ std::string ContinuousGapController::why_follower_stopped() const {
   if (stop_ == GapStop::too_far && sample.used)
     return fmt::format("the surface lies {:.3f} mm off the programmed one, at most {:.3f} mm are followed",
                        to_mm(-follower_.wanted()), to_mm(limits.travel_max));
+  if (stop_ == GapStop::no_progress && follower_.unanswered() > 0)
+    return fmt::format(
+        "the gap reads {:.3f} mm and has stood still while the tool rose by {:.3f} mm: what shines may not "
+        "be the "
+        "dot",
+        to_mm(sample.reading.gap), to_mm(follower_.unanswered()));
   if (stop_ == GapStop::no_progress && sample.used)
     return fmt::format(
         "the gap reads {:.3f} mm and has not followed the tool, which may come nearer by {:.3f} mm "

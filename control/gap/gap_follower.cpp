@@ -10,6 +10,16 @@ namespace {
 
 constexpr int kRepeatsMax = 3;          // readings equal to the last bit: a camera's noise forbids one
 constexpr double kSpeckleShare = 0.01;  // of a new pattern that a sample from the same place is worth
+// Of the correction's rate and acceleration, while the tool is excited: the correction has the rest.
+constexpr double kExcitedShare = 0.6;
+
+GapExcitationOptions excitation_options(const GapFollowerOptions& options) {
+  GapExcitationOptions excitation;
+  excitation.amplitude = options.excitation;
+  excitation.rate_max = kExcitedShare * options.rate_max;
+  excitation.acceleration_max = kExcitedShare * options.acceleration_max;
+  return excitation;
+}
 
 }  // namespace
 
@@ -19,8 +29,12 @@ GapFollowerOptions gap_follower_options(const machine::MachineDescription& machi
   options.speckle_length = machine.laser.waist_diameter;
   options.floor = options.step_max = machine.gap.accepted_min / 2;
   options.unproved_max = (options.aim - options.floor) / 2;
+  options.excitation = (machine.gap.accepted_max - options.aim) / 3;
   return options;
 }
+
+GapFollower::GapFollower(const GapFollowerOptions& options)
+    : options_(options), excitation_(excitation_options(options)) {}
 
 void GapFollower::aim_at(double aim, double calibration_sigma) {
   options_.aim = aim;
@@ -91,6 +105,7 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
     miss(o.time, o.path, GapStop::stale_frame);
     return GapVerdict::repeated;
   }
+  judge_excitation(o);
   if (!known_) {
     begin(o);
     judge(o);
@@ -110,9 +125,9 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
   if (steps_ >= options_.step_samples) {
     response_.forget();
   } else {
-    if (response_.observe(o.gap - o.still, variance, innovation, p_ee_ + variance))
-      response_.restart(o.correction);
+    const bool follows = response_.observe(o.gap - o.still, variance, innovation, p_ee_ + variance);
     correct(innovation, variance);
+    if (follows) prove(o);
   }
   steps_ = 0;
   step_sum_ = step_squares_ = 0;
@@ -203,9 +218,58 @@ void GapFollower::judge_proof(const GapObservation& o) {
     raise(GapStop::no_progress);
 }
 
-/// The correction that is proved to be safe.
+/// The correction that is proved to be safe. A bead's first excitation is waited for: what shines may have
+/// come with the bead.
 double GapFollower::lowest() const {
+  if (excitation_.available() && !proved_ && excitation_.running()) return std::max(0.0, correction_.value);
   return std::max(-options_.travel_max, response_.highest() - options_.unproved_max);
+}
+
+/// The line as it was when readings last followed says where the gap may be by now.
+bool GapFollower::excitation_due(double path) const {
+  if (!proved_) return true;
+  const double s = std::max(0.0, path - proved_path_);
+  const double variance =
+      proved_ee_ + s * (2 * proved_es_ + s * proved_ss_) + options_.slope_walk * s * s * s / 3;
+  return kSafeSigmas * std::sqrt(std::max(0.0, variance)) > options_.aim - options_.floor;
+}
+
+void GapFollower::prove(const GapObservation& o) {
+  response_.restart(o.correction - o.excitation);
+  proved_ = true;
+  proved_path_ = o.path;
+  proved_ee_ = p_ee_;
+  proved_es_ = p_es_;
+  proved_ss_ = p_ss_;
+}
+
+void GapFollower::judge_excitation(const GapObservation& o) {
+  if (!excitation_.available()) return;
+  const double variance = o.sigma * o.sigma + options_.unmodelled * options_.unmodelled;
+  switch (excitation_.observe({o.path, o.correction, o.gap, o.still, variance})) {
+    case GapExcitation::Answer::open:
+      return;
+    case GapExcitation::Answer::follows:
+      prove(o);
+      return;
+    case GapExcitation::Answer::stands_still:
+      unanswered_ = excitation_.value();
+      raise(GapStop::no_progress);
+  }
+}
+
+void GapFollower::excite(double dt, double path, bool follow) {
+  if (!excitation_.available()) return;
+  const bool may = follow && known_ && stop_ == GapStop::none;
+  if (!follow && excitation_.rate() != 0) excitation_.abandon();
+  const bool slow = std::abs(correction_.rate) <= (1 - kExcitedShare) * options_.rate_max;
+  if (may && slow && !excitation_.running() && excitation_.rate() == 0) {
+    if (excitation_due(path)) {
+      excitation_.begin(slope_, std::sqrt(std::max(0.0, p_ss_)));
+    } else if (!excitation_.lowered())
+      excitation_.lower();
+  }
+  excitation_.advance(dt);
 }
 
 /// Rate and acceleration are limited; what is left is taken over within settle_time, and the line's own climb
@@ -213,6 +277,10 @@ double GapFollower::lowest() const {
 GapFollower::Correction GapFollower::advance(double dt, double path, bool follow) {
   const double climb = std::max(0.0, path - advanced_path_);
   advanced_path_ = std::max(advanced_path_, path);
+  excite(dt, path, follow);
+  const bool excited = excitation_.running() || excitation_.rate() != 0;
+  const double rate_max = options_.rate_max * (excited ? 1 - kExcitedShare : 1);
+  const double acceleration_max = options_.acceleration_max * (excited ? 1 - kExcitedShare : 1);
   double rate = 0;
   if (follow && known_) {
     const double wanted = options_.aim - predicted_error(path);
@@ -221,16 +289,17 @@ GapFollower::Correction GapFollower::advance(double dt, double path, bool follow
     const bool on_line = path > path_ && path < used_path_ + options_.extrapolated_max && wanted == target;
     const double line_rate = on_line ? -slope_ * climb / dt : 0;
     // Half of the acceleration: the other half is there for the target to move meanwhile.
-    const double reach = std::min(std::abs(left) / options_.settle_time,
-                                  std::sqrt(options_.acceleration_max * std::abs(left)));
-    rate = std::clamp(line_rate + std::copysign(reach, left), -options_.rate_max, options_.rate_max);
+    const double reach =
+        std::min(std::abs(left) / options_.settle_time, std::sqrt(acceleration_max * std::abs(left)));
+    rate = std::clamp(line_rate + std::copysign(reach, left), -rate_max, rate_max);
   }
-  const double change = options_.acceleration_max * dt;
+  const double change = acceleration_max * dt;
   const double next = correction_.rate + std::clamp(rate - correction_.rate, -change, change);
   correction_.value += 0.5 * (correction_.rate + next) * dt;
   correction_.rate = next;
   response_.reach(correction_.value);
-  return correction_;
+  return {correction_.value + excitation_.value(), correction_.rate + excitation_.rate(),
+          excitation_.value()};
 }
 
 }  // namespace understudy::control

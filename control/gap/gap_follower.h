@@ -5,8 +5,8 @@
 //
 // Speckle is averaged by a Kalman filter whose noise is that of the readings. What jumps is not followed: a
 // fresh bead or an edge lifts the reading by more than its noise explains. What does not move when the
-// correction does is not believed for long (control/gap/gap_response.h). Nothing here allocates or
-// throws.
+// correction does is not believed for long (control/gap/gap_response.h), and is asked by a deliberate motion
+// (control/gap/gap_excitation.h). Nothing here allocates or throws.
 #pragma once
 
 #include <array>
@@ -14,6 +14,7 @@
 
 #include "control/gap/confidence.h"
 #include "control/gap/gap_controller.h"
+#include "control/gap/gap_excitation.h"
 #include "control/gap/gap_response.h"
 
 namespace understudy::control {
@@ -40,10 +41,13 @@ struct GapFollowerOptions {
   double blind_path = 1.5e-3;       ///< [m] ... and at least so far, is a stop: longer than a bead is wide
   double blind_time_max = 3;        ///< [s], however slow
   double floor = 50e-6;             ///< [m], the gap less three sigma must stay above this
+  /// [m], how far the tool rises to see whether readings follow it; 0: never.
+  double excitation = 0;
 };
 
 /// For a machine: its aim, its speckle, half of its smallest accepted gap as floor and as the largest step,
-/// and half of what lies between aim and floor as unproved travel.
+/// half of what lies between aim and floor as unproved travel, and a third of what the band leaves above
+/// the aim as excitation.
 GapFollowerOptions gap_follower_options(const machine::MachineDescription& machine);
 
 /// One reading, brought together with what was commanded in the middle of its exposure.
@@ -55,6 +59,7 @@ struct GapObservation {
   double sigma = 0;       ///< [m]
   /// [m], what a spot that stands still in the picture would read here, up to a constant; NaN: it begins anew
   double still = 0;
+  double excitation = 0;  ///< [m], the deliberate part of `correction`
 };
 
 enum class GapVerdict { used, jump, repeated, not_yet };
@@ -62,11 +67,12 @@ enum class GapVerdict { used, jump, repeated, not_yet };
 class GapFollower {
  public:
   struct Correction {
-    double value = 0;  ///< [m], along the tool axis, positive away from the part
-    double rate = 0;   ///< [m/s]
+    double value = 0;       ///< [m], along the tool axis, positive away from the part
+    double rate = 0;        ///< [m/s]
+    double excitation = 0;  ///< [m], the deliberate part of `value`
   };
 
-  explicit GapFollower(const GapFollowerOptions& options) : options_(options) {}
+  explicit GapFollower(const GapFollowerOptions& options);
 
   /// The gap is known, as after an approach: the correction begins at 0 from here.
   void start(double time, double path, double gap, double sigma);
@@ -99,8 +105,10 @@ class GapFollower {
 
   /// Why the print must stop; none: it need not. Sticky.
   GapStop stop() const { return stop_; }
-  double blind_since() const { return seen_time_; }        ///< [s], the last good reading
-  int missed() const { return missed_; }                   ///< frames since then
+  double blind_since() const { return seen_time_; }  ///< [s], the last good reading
+  int missed() const { return missed_; }             ///< frames since then
+  /// Its stop is that of a reading that stood still while the tool moved by this [m]; else 0.
+  double unanswered() const { return unanswered_; }
   double wanted() const { return options_.aim - error_; }  ///< [m], the correction that would reach the aim
 
  private:
@@ -112,6 +120,10 @@ class GapFollower {
   void judge(const GapObservation& o);
   void judge_proof(const GapObservation& o);
   double lowest() const;
+  bool excitation_due(double path) const;
+  void excite(double dt, double path, bool follow);
+  void judge_excitation(const GapObservation& o);
+  void prove(const GapObservation& o);
   void raise(GapStop reason) { stop_ = stop_ == GapStop::none ? reason : stop_; }
 
   GapFollowerOptions options_;
@@ -132,7 +144,12 @@ class GapFollower {
   bool held_ = false;
   std::array<int, 16> reasons_{};  // of those, by GapStop
   GapStop stop_ = GapStop::none;
-  Correction correction_;
+  Correction correction_;  // without excitation
+  GapExcitation excitation_;
+  bool proved_ = false;     // in this bead
+  double proved_path_ = 0;  // [m], where, and the line's covariance there
+  double proved_ee_ = 0, proved_es_ = 0, proved_ss_ = 0;
+  double unanswered_ = 0;
   double advanced_path_ = 0;
 };
 

@@ -70,8 +70,10 @@ TEST(ContinuousPrint, KeepsTheGapWhereTheStartAloneLosesIt) {
     EXPECT_LT(beads_of(start_rig, start_rig.port()).in_band, 0.6);
     const Beads beads = beads_of(rig, rig.port());
     EXPECT_EQ(beads.in_band, 1) << beads.gap_min << " to " << beads.gap_max;
-    // 0.35 px of jitter are 5 um a frame; the start may be 8 um off besides.
-    EXPECT_LT(beads.rms, 10e-6);
+    // 0.35 px of jitter are 5 um a frame, and the start may be 8 um off besides: 10 um. To see whether
+    // readings follow it, the tool rises by 23 um: 23 sqrt(3/8) = 14 um while it does, here for two fifths of
+    // the bead.
+    EXPECT_LT(beads.rms, std::hypot(10e-6, 9e-6));
     ASSERT_TRUE(result.following);
     // 2 s of bead, a frame in 25 ms of it and the wait for the next cycle.
     EXPECT_NEAR(result.following->frames, 77, 6);
@@ -283,7 +285,10 @@ TEST(ContinuousPrint, ASecondApproachTakesOverWhatWasCorrected) {
   EXPECT_NEAR(result.approaches[1].outcome.offset_W.z(), 0, 40e-6);
   for (const auto& s : rig.port().history())
     if (s.line == 11) {
-      ASSERT_NEAR(rig.gap_at(rig.commanded(s.position)), 0.13e-3, 30e-6);
+      // The tool rises by 23.3 um besides, to see whether the readings follow it.
+      const double gap = rig.gap_at(rig.commanded(s.position));
+      ASSERT_GT(gap, 0.13e-3 - 30e-6);
+      ASSERT_LT(gap, 0.13e-3 + 30e-6 + 23.3e-6);
     }
 }
 

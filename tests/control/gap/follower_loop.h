@@ -27,7 +27,7 @@ class FollowerLoop {
   };
   using Camera = std::function<Look(double time, double path, double gap)>;
   struct Point {
-    double time = 0, correction = 0, rate = 0, gap = 0;
+    double time = 0, correction = 0, rate = 0, gap = 0, excitation = 0;
   };
 
   FollowerLoop(const GapFollowerOptions& options, Error error, double noise = 0, std::uint64_t seed = 1)
@@ -42,7 +42,7 @@ class FollowerLoop {
     for (; now < seconds && follower.stop() == GapStop::none; now += kCycle) {
       const double time = now + kQueueLead, path = speed * time;
       const auto c = follower.advance(kCycle, path, true);
-      points.push_back({time, c.value, c.rate, error_(time, path) + c.value});
+      points.push_back({time, c.value, c.rate, error_(time, path) + c.value, c.excitation});
       if (now < frame_due) continue;
       take(exposed);
       exposed = now + kHalfExposure;
@@ -56,20 +56,21 @@ class FollowerLoop {
 
  private:
   void take(double exposed) {
-    const double path = speed * exposed, correction = correction_at(exposed);
-    const double gap = error_(exposed, path) + correction;
+    const double path = speed * exposed;
+    const Point at = at_time(exposed);
+    const double gap = error_(exposed, path) + at.correction;
     Look look{GapStop::none, gap};
     if (camera_) look = camera_(exposed, path, gap);
     const double sigma = std::max(noise_, 0.1e-6);
     if (look.seen != GapStop::none)
       follower.miss(exposed, path, look.seen);
     else
-      verdicts.push_back(
-          follower.observe({exposed, path, correction, look.gap + noise_ * random_.normal(), sigma}));
+      verdicts.push_back(follower.observe(
+          {exposed, path, at.correction, look.gap + noise_ * random_.normal(), sigma, 0, at.excitation}));
   }
-  double correction_at(double time) const {
+  Point at_time(double time) const {
     const auto index = static_cast<std::ptrdiff_t>((time - kQueueLead) / kCycle);
-    return index < 0 || points.empty() ? 0 : points[static_cast<std::size_t>(index)].correction;
+    return index < 0 || points.empty() ? Point{} : points[static_cast<std::size_t>(index)];
   }
 
   Error error_;

@@ -16,9 +16,16 @@ constexpr double kAim = 0.13e-3;  // [m]
 
 GapFollowerOptions options_of_hexapod() { return gap_follower_options(machine::load_machine("hexapod")); }
 
+/// The filter alone: its tool is not moved to see whether readings follow it.
+GapFollowerOptions filter_alone() {
+  GapFollowerOptions options = options_of_hexapod();
+  options.excitation = 0;
+  return options;
+}
+
 /// A loop that knows the gap where it begins.
 FollowerLoop loop_with(const FollowerLoop::Error& error, double noise = 0, std::uint64_t seed = 1,
-                       GapFollowerOptions options = options_of_hexapod()) {
+                       GapFollowerOptions options = filter_alone()) {
   FollowerLoop loop(options, error, noise, seed);
   loop.follower.start(0, 0, error(0, 0), std::max(noise, 0.1e-6));
   return loop;
@@ -40,6 +47,7 @@ TEST(GapFollower, TakesItsNumbersFromTheMachine) {
   EXPECT_DOUBLE_EQ(o.aim, 0.13e-3);
   EXPECT_DOUBLE_EQ(o.floor, 0.05e-3);
   EXPECT_DOUBLE_EQ(o.speckle_length, 0.15e-3);
+  EXPECT_DOUBLE_EQ(o.excitation, 70e-6 / 3);  // a third of 0.2 - 0.13 mm
 }
 
 TEST(GapFollower, AStepIsTakenOverOnceAndNotOvershot) {
@@ -244,7 +252,7 @@ TEST(GapFollower, StopsWhereTheSurfaceIsFartherOffThanItMayFollow) {
 
 TEST(GapFollower, DoesNothingBeforeReadingsAgree) {
   FollowerLoop loop(
-      options_of_hexapod(), [](double, double) { return kAim + 60e-6; }, 4e-6);
+      filter_alone(), [](double, double) { return kAim + 60e-6; }, 4e-6);
   loop.follower.start_unknown(0, 0);
   loop.set_camera([](double t, double, double gap) -> FollowerLoop::Look {
     return {t < 0.4 ? GapStop::no_dot : GapStop::none, gap};
@@ -281,8 +289,9 @@ TEST(GapFollower, AfterALongWayWithoutReadingsTheNextOneCounts) {
 TEST(GapFollower, ItsCorrectionIsSmooth) {
   const GapFollowerOptions o = options_of_hexapod();
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    auto loop = loop_with(
-        [](double t, double) { return kAim + 0.15e-3 * std::sin(2 * t) + (t > 1 ? 45e-6 : 0); }, 8e-6, seed);
+    auto loop =
+        loop_with([](double t, double) { return kAim + 0.15e-3 * std::sin(2 * t) + (t > 1 ? 45e-6 : 0); },
+                  8e-6, seed, o);
     loop.run(3);
     for (std::size_t i = 1; i < loop.points.size(); ++i) {
       const auto &a = loop.points[i - 1], &b = loop.points[i];
@@ -294,13 +303,17 @@ TEST(GapFollower, ItsCorrectionIsSmooth) {
 }
 
 TEST(GapFollower, ComesToRestWhenItIsNotToFollow) {
-  auto loop = loop_with([](double, double) { return kAim + 0.2e-3; });
-  loop.run(0.1);
-  ASSERT_NE(loop.follower.advance(kCycle, 1e-3, true).rate, 0);
-  GapFollower::Correction c;
-  for (int i = 0; i < 26; ++i)
-    c = loop.follower.advance(kCycle, 1e-3, false);  // 0.5 mm/s at 20 mm/s^2: 25 ms
-  EXPECT_EQ(c.rate, 0);
+  for (const GapFollowerOptions& options : {filter_alone(), options_of_hexapod()})
+    for (const double before : {0.06, 0.1, 0.14}) {
+      // 0.2 mm too near: the tool rises at once.
+      auto loop = loop_with([](double, double) { return kAim - 0.2e-3; }, 1e-6, 1, options);
+      loop.run(before);
+      ASSERT_NE(loop.follower.advance(kCycle, 1e-3, true).rate, 0);
+      GapFollower::Correction c;
+      for (int i = 0; i < 26; ++i)
+        c = loop.follower.advance(kCycle, 1e-3, false);  // 0.5 mm/s at 20 mm/s^2: 25 ms
+      EXPECT_EQ(c.rate, 0) << before;
+    }
 }
 
 TEST(GapFollower, NothingThatIsNotFiniteComesOut) {
