@@ -276,9 +276,8 @@ std::string ContinuousGapController::why_follower_stopped() const {
                        to_mm(-follower_.wanted()), to_mm(limits.travel_max));
   if (stop_ == GapStop::no_progress && follower_.unanswered() > 0)
     return fmt::format(
-        "the gap reads {:.3f} mm and has stood still while the tool rose by {:.3f} mm: what shines may not "
-        "be the "
-        "dot",
+        "the gap reads {:.3f} mm and has not followed the tool, which rose by {:.3f} mm: "
+        "what shines may not be the dot",
         to_mm(sample.reading.gap), to_mm(follower_.unanswered()));
   if (stop_ == GapStop::no_progress && sample.used)
     return fmt::format(

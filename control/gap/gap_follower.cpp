@@ -186,6 +186,7 @@ void GapFollower::pass(double dt, double way) {
   seen_time_ += dt;
   seen_path_ += way;
   held_time_ += dt;
+  asked_time_ += dt;
   held_path_ += way;
 }
 
@@ -237,6 +238,7 @@ bool GapFollower::excitation_due(double path) const {
 void GapFollower::prove(const GapObservation& o) {
   response_.restart(o.correction - o.excitation);
   proved_ = true;
+  asked_ = false;
   proved_path_ = o.path;
   proved_ee_ = p_ee_;
   proved_es_ = p_es_;
@@ -248,6 +250,7 @@ void GapFollower::judge_excitation(const GapObservation& o) {
   const double variance = o.sigma * o.sigma + options_.unmodelled * options_.unmodelled;
   switch (excitation_.observe({o.path, o.correction, o.gap, o.still, variance})) {
     case GapExcitation::Answer::open:
+      judge_silence(o);
       return;
     case GapExcitation::Answer::follows:
       prove(o);
@@ -258,9 +261,20 @@ void GapFollower::judge_excitation(const GapObservation& o) {
   }
 }
 
+/// Readings that tell neither a part from a spot nor a spot from a part.
+void GapFollower::judge_silence(const GapObservation& o) {
+  if (!excitation_.running()) return;
+  if (!asked_) asked_time_ = o.time;
+  asked_ = true;
+  if (o.time - asked_time_ < options_.silent_time_max) return;
+  unanswered_ = options_.excitation;
+  raise(GapStop::no_progress);
+}
+
 void GapFollower::excite(double dt, double path, bool follow) {
   if (!excitation_.available()) return;
   const bool may = follow && known_ && stop_ == GapStop::none;
+  if (!follow) asked_ = false;
   if (!follow && excitation_.rate() != 0) excitation_.abandon();
   const bool slow = std::abs(correction_.rate) <= (1 - kExcitedShare) * options_.rate_max;
   if (may && slow && !excitation_.running() && excitation_.rate() == 0) {

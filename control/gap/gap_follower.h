@@ -43,6 +43,7 @@ struct GapFollowerOptions {
   double floor = 50e-6;             ///< [m], the gap less three sigma must stay above this
   /// [m], how far the tool rises to see whether readings follow it; 0: never.
   double excitation = 0;
+  double silent_time_max = 1;  ///< [s] of excitation without an answer: four of them
 };
 
 /// For a machine: its aim, its speckle, half of its smallest accepted gap as floor and as the largest step,
@@ -107,7 +108,7 @@ class GapFollower {
   GapStop stop() const { return stop_; }
   double blind_since() const { return seen_time_; }  ///< [s], the last good reading
   int missed() const { return missed_; }             ///< frames since then
-  /// Its stop is that of a reading that stood still while the tool moved by this [m]; else 0.
+  /// Its stop is that of a reading that has not followed the tool, which rose by this [m]; else 0.
   double unanswered() const { return unanswered_; }
   double wanted() const { return options_.aim - error_; }  ///< [m], the correction that would reach the aim
 
@@ -123,6 +124,7 @@ class GapFollower {
   bool excitation_due(double path) const;
   void excite(double dt, double path, bool follow);
   void judge_excitation(const GapObservation& o);
+  void judge_silence(const GapObservation& o);
   void prove(const GapObservation& o);
   void raise(GapStop reason) { stop_ = stop_ == GapStop::none ? reason : stop_; }
 
@@ -146,7 +148,9 @@ class GapFollower {
   GapStop stop_ = GapStop::none;
   Correction correction_;  // without excitation
   GapExcitation excitation_;
-  bool proved_ = false;     // in this bead
+  bool proved_ = false;    // in this bead
+  double asked_time_ = 0;  // [s], readings since then have not answered
+  bool asked_ = false;
   double proved_path_ = 0;  // [m], where, and the line's covariance there
   double proved_ee_ = 0, proved_es_ = 0, proved_ss_ = 0;
   double unanswered_ = 0;
