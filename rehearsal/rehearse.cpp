@@ -89,14 +89,15 @@ TwinSetup prepare(const RehearsalRequest& request) {
   }
   if (!request.fixture.empty())
     setup.part = read_fixture(machine::find_fixture(request.fixture), setup.machine);
+  const sim::TruthSeeds seeds = request.truth_seeds.value_or(request.seed);
   setup.as_built = sim::make_as_built(
       setup.machine, request.as_built.empty() ? sim::default_as_built(setup.machine) : request.as_built,
-      request.seed);
+      seeds);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
-  setup.seed = request.seed;
+  setup.seed = seeds[sim::TruthGroup::noise];
   setup.faults = resolve_faults(request.faults, setup.machine);
   return setup;
 }
