@@ -41,7 +41,7 @@ bool stopped_early(const Record& record) {
 InputError nothing_varies(const machine::MachineDescription& machine, const std::string& as_built) {
   if (as_built == "sampled" || as_built == "manufactured" || as_built == "calibrated")
     return {Place{machine.file.string(), 0, 0},
-            fmt::format("as-built {}: no tolerance is above 0, nothing varies; state some "
+            fmt::format("as-built {}: no tolerance of what acts here is above 0, nothing varies; state some "
                         "(docs/machine-description.md)",
                         as_built)};
   return InputError(
@@ -102,11 +102,10 @@ BudgetPlan plan_budget(const BudgetRequest& request) {
   BudgetPlan plan;
   plan.as_built = request.print.as_built.empty() ? sim::default_as_built(machine) : request.print.as_built;
   plan.groups = sim::drawn_truths(machine, plan.as_built);
+  const bool camera = camera_in_use(request.print, machine);
+  if (!camera) std::erase_if(plan.groups, seen_by_camera);
   if (plan.groups.empty()) throw nothing_varies(machine, plan.as_built);
-  if (camera_in_use(request.print, machine))
-    plan.groups.push_back(TruthGroup::noise);
-  else
-    std::erase_if(plan.groups, seen_by_camera);
+  if (camera) plan.groups.push_back(TruthGroup::noise);
   plan.rehearsals = request.samples * static_cast<int>(plan.groups.size() + 2);
   return plan;
 }

@@ -123,7 +123,8 @@ TEST_F(BottleBudget, WhatDoesNotVaryIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("one machine"));
   use_tolerances(kNoGeometry);
   request_.print.as_built = "sampled";
-  EXPECT_THAT(refusal(), testing::AllOf(HasSubstr("machine.yaml"), HasSubstr("no tolerance is above 0")));
+  EXPECT_THAT(refusal(), testing::AllOf(HasSubstr("machine.yaml"),
+                                        HasSubstr("no tolerance of what acts here is above 0")));
 }
 
 /// A world's answer: a tip error, or none of a print that stopped.
