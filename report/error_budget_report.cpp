@@ -1,6 +1,7 @@
 #include "report/error_budget_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -60,7 +61,8 @@ Remedy geometry_remedy(const std::string& as_built) {
 }
 
 std::string with_interval(const SobolIndex& index) {
-  return fmt::format("{:5.2f} [{:5.2f}, {:5.2f}]", index.value, index.low, index.high);
+  return fmt::format("{:>5} [{:>5}, {:>5}]", share_text(index.value), share_text(index.low),
+                     share_text(index.high));
 }
 
 std::string world_name(const ErrorBudget& budget, std::size_t world) {
@@ -123,6 +125,11 @@ Remedy remedy_of(TruthGroup group, const std::string& as_built) {
   }
   UNDERSTUDY_ASSERT(group == TruthGroup::noise, "every group has a remedy");
   return {"", "average more frames of the gap camera"};
+}
+
+std::string share_text(double share) {
+  const bool rounds_to_zero = std::abs(share) < 0.005;
+  return fmt::format("{:.2f}", rounds_to_zero ? 0.0 : share);
 }
 
 std::vector<std::size_t> by_total(const QuantityBudget& quantity) {

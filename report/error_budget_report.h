@@ -15,6 +15,9 @@ struct Remedy {
 };
 Remedy remedy_of(sim::TruthGroup group, const std::string& as_built);
 
+/// Of an index, to hundredths; never "-0.00".
+std::string share_text(double share);
+
 /// Indices into the groups of a budget, the largest total first.
 std::vector<std::size_t> by_total(const studies::QuantityBudget& quantity);
 

@@ -26,7 +26,7 @@ void bar(SvgDrawing& drawing, double y, const SobolIndex& index, const char* col
   constexpr const char* kWhisker = "stroke=\"#222\" stroke-width=\"1.3\"";
   drawing.line({low, middle}, {high, middle}, kWhisker);
   for (const double x : {low, high}) drawing.line({x, middle - 4}, {x, middle + 4}, kWhisker);
-  drawing.text({std::max(end, high) + 6, middle + 4}, fmt::format("{:.2f}", index.value), "start");
+  drawing.text({std::max(end, high) + 6, middle + 4}, share_text(index.value), "start");
 }
 
 }  // namespace

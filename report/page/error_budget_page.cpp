@@ -16,8 +16,8 @@ using studies::QuantityBudget;
 using studies::SobolIndex;
 
 std::string cell(const SobolIndex& index) {
-  return fmt::format("<td class=\"number\">{:.2f}</td><td class=\"number\">{:.2f} to {:.2f}</td>",
-                     index.value, index.low, index.high);
+  return fmt::format("<td class=\"number\">{}</td><td class=\"number\">{} to {}</td>",
+                     share_text(index.value), share_text(index.low), share_text(index.high));
 }
 
 std::string table(const QuantityBudget& quantity, const ErrorBudget& budget) {

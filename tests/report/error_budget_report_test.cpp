@@ -47,6 +47,12 @@ TEST(ErrorBudgetReport, CsvHasALineForEachGroupAndForEachRehearsal) {
   EXPECT_THAT(runs, HasSubstr("0,mounting,1,,"));  // no answer is no number
 }
 
+TEST(ErrorBudgetReport, AShareThatRoundsToZeroHasNoSign) {
+  EXPECT_EQ(share_text(-0.004), "0.00");
+  EXPECT_EQ(share_text(-0.006), "-0.01");
+  EXPECT_EQ(share_text(0.996), "1.00");
+}
+
 TEST(ErrorBudgetReport, EveryGroupHasAWordAndAProcedure) {
   for (const TruthGroup group : sim::all_truth_groups())
     for (const char* set : {"sampled", "manufactured", "calibrated"})
