@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,29 +15,69 @@
 #include "regression/run_scenario.h"
 #include "regression/scenario_file.h"
 #include "regression/sweep.h"
+#include "report/error_budget_report.h"
+#include "report/page/error_budget_page.h"
+#include "studies/budget/error_budget.h"
 
 namespace understudy::cli {
 namespace {
 
+constexpr int kSweepSamples = 200, kBudgetSamples = 64;
+
 struct SweepRequest {
-  std::string scenario, folder = "sweep";
-  int samples = 200;
+  std::string scenario, as_built, folder = "sweep";
+  bool budget = false;
+  std::optional<int> samples;
   int threads = 0;
   std::uint64_t first_seed = 1;
 };
 
-int run_sweep(const SweepRequest& r) {
-  if (r.samples < 1 || r.samples > 1000000)
-    throw InputError(fmt::format("--samples {} is outside 1..1000000", r.samples));
+rehearsal::RehearsalRequest print_of(const SweepRequest& r) {
+  auto print = regression::request_of(regression::load_scenario(r.scenario));
+  if (!r.as_built.empty()) print.as_built = r.as_built;
+  print.command = command_line();
+  return print;
+}
+
+int run_budget(const SweepRequest& r) {
+  studies::BudgetRequest request;
+  request.samples = r.samples.value_or(kBudgetSamples);
+  request.first_seed = r.first_seed;
+  request.threads = r.threads;
   check_jobs(r.threads);
-  auto request = regression::request_of(regression::load_scenario(r.scenario));
-  request.command = command_line();
+  request.print = print_of(r);
+  fmt::print(stderr, "{}\n", report::budget_cost(studies::plan_budget(request), request.samples));
+  OutputFolder out(r.folder, "budget.json");
+  studies::ErrorBudget budget;
+  {
+    ProgressLine line;
+    budget =
+        studies::run_budget(request, [&](double share, const std::string& what) { line.show(share, what); });
+  }
+  write_file(out.path() / "budget.json", report::budget_json(budget));
+  write_file(out.path() / "budget.csv", report::budget_csv(budget));
+  write_file(out.path() / "runs.csv", report::budget_runs_csv(budget));
+  write_file(out.path() / "budget.html", report::error_budget_html(budget));
+  stop_if_interrupted();
+  out.commit();
+  const std::filesystem::path written(r.folder);
+  fmt::print("{}\n{}\n{}\n", report::budget_table(budget), (written / "budget.json").string(),
+             (written / "budget.html").string());
+  return kGood;
+}
+
+int run_sweep(const SweepRequest& r) {
+  const int samples = r.samples.value_or(kSweepSamples);
+  if (samples < 1 || samples > 1000000)
+    throw InputError(fmt::format("--samples {} is outside 1..1000000", samples));
+  check_jobs(r.threads);
+  const auto request = print_of(r);
   const auto machine = machine::load_machine(request.machine);
   OutputFolder out(r.folder, "sweep.csv");
   std::vector<regression::SweepRow> rows;
   {
     ProgressLine line;
-    rows = regression::sweep(request, r.first_seed, r.samples, r.threads,
+    rows = regression::sweep(request, r.first_seed, samples, r.threads,
                              [&](double share, const std::string& what) { line.show(share, what); });
   }
   const auto table =
@@ -56,12 +97,20 @@ void add_sweep(CLI::App& app, Action& action) {
   auto* command =
       app.add_subcommand("sweep", "One scenario on many as-built machines, with and without gap control");
   command->add_option("scenario", request->scenario, "scenario file")->required();
-  command->add_option("--samples", request->samples, "machines")->capture_default_str();
+  command->add_flag("--budget", request->budget,
+                    "which truths the errors come from: Sobol indices (docs/error-budget.md)");
+  command->add_option(
+      "--samples", request->samples,
+      fmt::format("machines, {} unless given; of a budget pairs of them, {}", kSweepSamples, kBudgetSamples));
+  command->add_option("--as-built", request->as_built,
+                      "sampled, manufactured or calibrated, in place of the scenario's");
   command->add_option("--first-seed", request->first_seed, "seed of the first machine")
       ->capture_default_str();
   add_jobs(*command, request->threads);
   command->add_option("--out", request->folder, "folder of results")->capture_default_str();
-  command->callback([=, &action] { action = [=] { return run_sweep(*request); }; });
+  command->callback([=, &action] {
+    action = [=] { return request->budget ? run_budget(*request) : run_sweep(*request); };
+  });
 }
 
 }  // namespace understudy::cli

@@ -65,7 +65,7 @@ BeforeCalibration before_calibration(const TwinSetup& setup, const std::string& 
                                      const std::string& after) {
   BeforeCalibration result{setup, file_name(before), file_name(after), {}};
   MachineDescription& machine = result.setup.machine;
-  machine = machine::load_machine(before);
+  machine = machine::load_machine(before, result.setup.calibrated);
   if (machine.mechanism != setup.machine.mechanism)
     throw InputError(fmt::format("--before {}: its mechanism is {}, that of {} is {}", before,
                                  machine.mechanism, after, setup.machine.mechanism));

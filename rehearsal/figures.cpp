@@ -7,6 +7,9 @@ class Figures {
  public:
   void section(const char* name) { section_ = name; }
   void put(const std::string& name, double value) { all_.push_back({section_, name, value}); }
+  void put(const std::string& name, const std::optional<double>& value) {
+    if (value) put(name, *value);
+  }
   void count(const std::string& name, std::uint64_t value) { all_.push_back({section_, name, value}); }
   void count(const std::string& name, int value) { count(name, static_cast<std::uint64_t>(value)); }
   void text(const std::string& name, const std::string& value) { all_.push_back({section_, name, value}); }
@@ -70,6 +73,10 @@ void add(const GapFigures& gap, Figures& to) {
   to.put("path_max_mm", gap.path_max_mm);
   to.put("in_band_fraction", gap.in_band_fraction);
   to.count("frames", gap.frames);
+  to.put("believed_mean_mm", gap.believed_mean_mm);
+  to.put("stated_sigma_um", gap.stated_sigma_um);
+  to.put("stated_path_fraction", gap.stated_path_fraction);
+  to.put("inside_stated_3_sigma_fraction", gap.inside_stated_3_sigma_fraction);
 }
 
 void add(const SagFigures& sag, Figures& to) {

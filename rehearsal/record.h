@@ -36,6 +36,11 @@ struct GapFigures {
   std::optional<double> open_loop_start_mm;  ///< without gap control
   double start_mm = 0, path_min_mm = 0, path_mean_mm = 0, path_max_mm = 0, in_band_fraction = 0;
   int frames = 0;
+  /// What the controller believed of it (GapBelief); nothing where it states no uncertainty.
+  std::optional<double> believed_mean_mm = {},
+                        stated_sigma_um = {};                 ///< the median of its 1 sigma along the path
+  std::optional<double> stated_path_fraction = {};            ///< of the path for which it states one
+  std::optional<double> inside_stated_3_sigma_fraction = {};  ///< of that, the true gap within 3 sigma
 };
 /// One twin driven by two descriptions, without gap control.
 struct CalibrationFigures {
@@ -101,6 +106,12 @@ struct TracePoint {
   kinematics::AxisVector axes{};  ///< SI, measured
 };
 
+/// What the controller held of the gap at one instant (gap_belief.h).
+struct GapBelief {
+  double gap = 0;    ///< [m]
+  double sigma = 0;  ///< [m], 1 sigma as it states it; NaN: it states none
+};
+
 /// A laser frame kept for the report: the controller's look and the truth beside it.
 struct FrameRecord {
   control::GapSample look;
@@ -139,6 +150,8 @@ struct Record {
   double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
   std::vector<TracePoint> trace;
   int trace_stride = 1;                               ///< snapshots a point of the trace
+  std::vector<GapBelief> gap_beliefs;                 ///< one for each point of the trace
+  std::string gap_belief_note;                        ///< where their sigma comes from, in words
   std::vector<TracePoint> trace_without_gap_control;  ///< empty when the run itself had none
   std::vector<TracePoint> trace_before_calibration;   ///< without gap control, too
   std::vector<FrameRecord> frames;

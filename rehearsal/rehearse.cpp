@@ -20,6 +20,7 @@
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings.h"
 #include "rehearsal/fixture.h"
+#include "rehearsal/gap_belief.h"
 #include "rehearsal/process_check.h"
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/run_figures.h"
@@ -80,7 +81,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
   if (std::find(engines.begin(), engines.end(), request.engine) == engines.end())
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   TwinSetup setup;
-  setup.machine = machine::load_machine(request.machine);
+  setup.machine = machine::load_machine(request.machine, setup.calibrated);
   setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
   if (setup.machine.tool.prints()) {
     setup.material =
@@ -89,14 +90,15 @@ TwinSetup prepare(const RehearsalRequest& request) {
   }
   if (!request.fixture.empty())
     setup.part = read_fixture(machine::find_fixture(request.fixture), setup.machine);
+  const sim::TruthSeeds seeds = request.truth_seeds.value_or(request.seed);
   setup.as_built = sim::make_as_built(
       setup.machine, request.as_built.empty() ? sim::default_as_built(setup.machine) : request.as_built,
-      request.seed);
+      seeds);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
-  setup.seed = request.seed;
+  setup.seed = seeds[sim::TruthGroup::noise];
   setup.faults = resolve_faults(request.faults, setup.machine);
   return setup;
 }
@@ -220,6 +222,18 @@ std::optional<Runs> run_or_find(const RehearsalRequest& request, const TwinSetup
   }
 }
 
+/// The controller's belief beside the truth that the record has by now.
+void fill_beliefs(const TwinSetup& setup, control::GapControl mode, const control::PrintResult& result,
+                  Record& record) {
+  const GapKnowledge knowledge{setup.machine, setup.calibrated, mode, result};
+  std::vector<CommandedInstant> instants;
+  for (const TracePoint& point : record.trace)
+    instants.push_back({point.time, point.extruding, point.X_WT_programmed});
+  record.gap_beliefs = gap_beliefs(knowledge, instants);
+  record.gap_belief_note = how_stated(knowledge);
+  if (record.gap) fill_belief(record.trace, record.gap_beliefs, *record.gap);
+}
+
 /// What the runs say, on top of what the limits said.
 void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before, const RunOptions& options,
           const Runs& runs, Record& record) {
@@ -234,6 +248,7 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
   record.trace_stride = runs.main.trace_stride;
   if (without) record.trace_without_gap_control = without->trace;
   record.frames = runs.main.frames;
+  fill_beliefs(setup, options.gap_control, runs.main.result, record);
 }
 
 }  // namespace

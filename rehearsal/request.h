@@ -9,6 +9,7 @@
 
 #include "machine/default_machine.h"
 #include "rehearsal/fault_request.h"
+#include "sim/as_built/truth_seeds.h"
 
 namespace understudy::rehearsal {
 
@@ -37,6 +38,7 @@ struct RehearsalRequest {
   std::string material;  ///< name or path; empty: the machine's
   std::string as_built;  ///< of sim::make_as_built; empty: sim::default_as_built
   std::uint64_t seed = 1;
+  std::optional<sim::TruthSeeds> truth_seeds;  ///< of each group of truths; nothing: `seed` of all
   std::string gap_control;  ///< off, start, continuous; empty: start on a machine that sees, else off
   /// Largest true errors of a print that is good; without one, the machine file's.
   std::optional<double> tip_tolerance_mm, orientation_tolerance_deg;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/assert.h"
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace understudy::rehearsal {
@@ -81,6 +83,30 @@ void fill_figures(const TwinRun& run, const TwinRun* without, const machine::Mac
   if (record.accuracy && open_loop) record.accuracy->open_loop_tip_max_um = open_loop->tip_max_um;
   if (truth.tool.prints()) fill_strands(run.strands, record);
   record.gap = gap_of(run, without, truth);
+}
+
+void fill_belief(const std::vector<TracePoint>& trace, const std::vector<GapBelief>& beliefs,
+                 GapFigures& gap) {
+  constexpr double kSigmas = 3;
+  UNDERSTUDY_ASSERT(trace.size() == beliefs.size(), "each point of the trace has its belief");
+  double path = 0, stated = 0, inside = 0, believed = 0;
+  std::vector<double> sigmas;
+  for (std::size_t i = 1; i < trace.size(); ++i) {
+    const double way = trace[i].path - trace[i - 1].path;
+    if (!trace[i].extruding || !std::isfinite(trace[i].gap)) continue;
+    path += way;
+    const auto& [held, sigma] = beliefs[i];
+    if (!std::isfinite(sigma)) continue;
+    stated += way;
+    believed += way * held;
+    if (std::abs(trace[i].gap - held) <= kSigmas * sigma) inside += way;
+    sigmas.push_back(sigma);
+  }
+  if (!(stated > 0)) return;
+  gap.believed_mean_mm = to_mm(believed / stated);
+  gap.stated_sigma_um = to_um(quantile(sigmas, 0.5));
+  gap.stated_path_fraction = stated / path;
+  gap.inside_stated_3_sigma_fraction = inside / stated;
 }
 
 }  // namespace understudy::rehearsal

@@ -15,4 +15,9 @@ PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription
 void fill_figures(const TwinRun& run, const TwinRun* without, const machine::MachineDescription& truth,
                   Record& record);
 
+/// How far the truth of the trace keeps to what the controller states, weighted by the path; both have an
+/// entry for each point.
+void fill_belief(const std::vector<TracePoint>& trace, const std::vector<GapBelief>& beliefs,
+                 GapFigures& gap);
+
 }  // namespace understudy::rehearsal

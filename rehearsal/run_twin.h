@@ -8,6 +8,7 @@
 #include "core/progress.h"
 #include "geometry/mesh.h"
 #include "machine/accepted_errors.h"
+#include "machine/calibrated_parameters.h"
 #include "machine/description.h"
 #include "machine/material.h"
 #include "rehearsal/flow_watch.h"
@@ -24,9 +25,10 @@ namespace understudy::rehearsal {
 
 /// What a run reads; immutable, shared by runs in several threads.
 struct TwinSetup {
-  machine::MachineDescription machine;  ///< what the controller holds
-  machine::MachineDescription truth;    ///< sim::true_description(machine, as_built): what the twin holds
-  machine::Material material;           ///< of a tool that prints
+  machine::MachineDescription machine;       ///< what the controller holds
+  machine::CalibratedParameters calibrated;  ///< of the same file: how sure its geometry is
+  machine::MachineDescription truth;  ///< sim::true_description(machine, as_built): what the twin holds
+  machine::Material material;         ///< of a tool that prints
   machine::AcceptedErrors accepted;
   toolpath::Program program;
   std::shared_ptr<const geometry::Mesh> part;  ///< as drawn: what the controller holds; may be null

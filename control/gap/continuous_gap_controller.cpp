@@ -148,6 +148,15 @@ void ContinuousGapController::update() {
   if (follower_.stop() != GapStop::none) raise(follower_.stop(), reading_.at, reading_.taken_at);
   following_.gap = follower_.gap(reading_.at.correction);
   following_.sigma = follower_.sigma();
+  note_belief();
+}
+
+/// Also after a frame that could not be used: the estimate goes on, less sure.
+void ContinuousGapController::note_belief() {
+  const Commanded& at = reading_.at;
+  if (!follower_.known() || at.time != reading_.sample.time) return;
+  reading_.sample.believed = follower_.predicted_gap(at.path, at.correction);
+  reading_.sample.believed_sigma = std::hypot(follower_.predicted_sigma(at.time, at.path), safe_.sigma);
 }
 
 void ContinuousGapController::judge() {

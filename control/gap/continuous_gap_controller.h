@@ -100,6 +100,7 @@ class ContinuousGapController {
   machine::Status take_frame(const Commanded& expected);
   GapStop sense(const Commanded& expected);
   void judge();
+  void note_belief();
   double still_reading(const vision::DotMeasurement& dot);
   void remember(const PlannedPoint& point);
   void note_offset(const PlannedPoint& point);

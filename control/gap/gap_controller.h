@@ -34,6 +34,8 @@ struct GapSample {
   bool used = false;  ///< false: discarded, see `why`
   std::string why;
   machine::Frame frame;
+  double believed = 0;        ///< [m], the gap at this time as estimated from all frames up to this one
+  double believed_sigma = 0;  ///< [m], of noise, path and calibration; 0: there is no estimate yet
 };
 
 struct GapOutcome {

@@ -72,12 +72,22 @@ double GapFollower::predicted_error(double path) const {
   return error_ + slope_ * std::max(0.0, std::min(path, used_path_ + options_.extrapolated_max) - path_);
 }
 
+double GapFollower::predicted_variance(double dt, double s) const {
+  const double q = options_.slope_walk;
+  return p_ee_ + s * (2 * p_es_ + s * p_ss_) + q * s * s * s / 3 + options_.drift * options_.drift * dt;
+}
+
+double GapFollower::predicted_sigma(double time, double path) const {
+  return std::sqrt(
+      std::max(0.0, predicted_variance(std::max(0.0, time - time_), std::max(0.0, path - path_))));
+}
+
 /// Its slope walks over the path, and its height with time.
 void GapFollower::predict(double time, double path) {
   const double s = std::max(0.0, path - path_), dt = std::max(0.0, time - time_);
   const double q = options_.slope_walk;
   error_ = predicted_error(path);
-  p_ee_ += s * (2 * p_es_ + s * p_ss_) + q * s * s * s / 3 + options_.drift * options_.drift * dt;
+  p_ee_ = predicted_variance(dt, s);
   p_es_ += s * p_ss_ + q * s * s / 2;
   p_ss_ += q * s;
   path_ = std::max(path_, path);

@@ -102,6 +102,7 @@ class GapFollower {
   double sigma() const;                                                ///< [m]
   /// What the gap will be at a place of the path with a correction.
   double predicted_gap(double path, double correction) const { return predicted_error(path) + correction; }
+  double predicted_sigma(double time, double path) const;  ///< [m], of it then
   bool known() const { return known_; }
 
   /// Why the print must stop; none: it need not. Sticky.
@@ -114,6 +115,7 @@ class GapFollower {
 
  private:
   double predicted_error(double path) const;
+  double predicted_variance(double dt, double s) const;
   void predict(double time, double path);
   void correct(double innovation, double variance);
   bool lasting_step(double innovation, double variance);

@@ -79,6 +79,18 @@ Json trace_value(const std::vector<TracePoint>& trace, const Record& record) {
   return object;
 }
 
+/// What the controller believed at the points that the trace's columns show.
+void put_beliefs(const Record& record, Json& trace) {
+  Json gap = Json::array(), sigma = Json::array();
+  for (const std::size_t i : thin_out(record.trace, kChartPoints)) {
+    const auto& [held, stated] = record.gap_beliefs[i];
+    gap.push_back(stable_number(to_mm(held), "believed gap", kTraceDigits));
+    sigma.push_back(std::isfinite(stated) ? Json(stable_number(to_um(stated), "stated sigma")) : Json());
+  }
+  trace["columns"]["believed_gap_mm"] = std::move(gap);
+  trace["columns"]["stated_sigma_um"] = std::move(sigma);
+}
+
 Json frame_value(const FrameRecord& frame) {
   const control::GapSample& look = frame.look;
   const Image& image = look.frame.image;
@@ -162,6 +174,9 @@ Json report_data(const rehearsal::Record& record, const std::vector<Illustration
                           {"aim_mm", stable_number(record.gap_aim_mm, "gap aim")}};
   report["axes"] = axes_value(record);
   if (!record.trace.empty()) report["trace"] = trace_value(record.trace, record);
+  if (!record.trace.empty() && record.gap_beliefs.size() == record.trace.size())
+    put_beliefs(record, report["trace"]);
+  if (!record.gap_belief_note.empty()) report["gap_belief_note"] = record.gap_belief_note;
   if (!record.trace_without_gap_control.empty())
     report["trace_without_gap_control"] = trace_value(record.trace_without_gap_control, record);
   if (!record.trace_before_calibration.empty())

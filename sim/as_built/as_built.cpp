@@ -79,18 +79,19 @@ AsBuilt as_described(const machine::MachineDescription& machine) {
 }
 
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set,
-                      std::uint64_t seed) {
-  if (set == "calibrated") return draw_calibrated(machine, seed);
+                      const TruthSeeds& seeds) {
+  if (set == "calibrated") return draw_calibrated(machine, seeds);
   AsBuilt built = without_errors(machine, Geometry::drawn);
   built.source = set;
-  built.seed = seed;
+  built.seed = seeds[TruthGroup::geometry];
   if (set == "sampled") {
     add_errors(machine.tolerances.after_calibration, built);
   } else if (set == "manufactured") {
     add_errors(machine.tolerances.manufactured, built);
-    if (machine.tolerances.mounting) draw_mounting(*machine.tolerances.mounting, built);
+    if (machine.tolerances.mounting) draw_mounting(*machine.tolerances.mounting, seeds, built);
     // A description that was made in memory has no file, and no tolerances but its own.
-    if (!machine.file.empty()) draw_world(machine::load_built_tolerances(machine.file.string()), built);
+    if (!machine.file.empty())
+      draw_world(machine::load_built_tolerances(machine.file.string()), seeds, built);
   } else if (set != "nominal") {
     read_as_built(set, built);
   }

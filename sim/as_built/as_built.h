@@ -6,6 +6,7 @@
 #include <string>
 
 #include "machine/description.h"
+#include "sim/as_built/truth_seeds.h"
 
 namespace understudy::sim {
 
@@ -28,7 +29,7 @@ struct BuiltPart {
 struct AsBuilt {
   /// "nominal", "sampled", "manufactured", "calibrated", the file it was read from, or empty: as described.
   std::string source;
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;  ///< of the geometry
   // Hexapod.
   kinematics::HexapodGeometry hexapod;       ///< true 42 parameters and dev
   kinematics::PerStrut<double> nut_play{};   ///< [m], total free travel
@@ -57,7 +58,8 @@ AsBuilt as_described(const machine::MachineDescription& machine);
 /// as-built file (as_built_file.h), which alters the drawing: calibrating a machine file changes none of
 /// these. Or it is calibrated (calibrated_draw.h): what the calibration of this file leaves open. Throws
 /// InputError for another word.
-AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set, std::uint64_t seed);
+AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set,
+                      const TruthSeeds& seeds);
 
 /// What a print is tried on unless something else is asked for: calibrated where the file has a calibration,
 /// else sampled.

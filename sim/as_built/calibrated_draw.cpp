@@ -92,7 +92,7 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine,
   return built;
 }
 
-AsBuilt draw_calibrated(const machine::MachineDescription& machine, std::uint64_t seed) {
+AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthSeeds& seeds) {
   constexpr const char* kOthers = "nominal, sampled, manufactured or an as-built file";
   const Place file{machine.file.string(), 0, 0};
   if (!machine.calibration)
@@ -110,12 +110,12 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine, std::uint64_
         fmt::format("as-built calibrated: the calibration, by {}, has no covariance; calibrate again with "
                     "an estimator that gives one, or ask for {}",
                     machine.calibration->estimator, kOthers));
-  AsBuilt built = draw_calibrated(machine, parameters, seed);
-  draw_world(others, built);
+  AsBuilt built = draw_calibrated(machine, parameters, seeds[TruthGroup::geometry]);
+  draw_world(others, seeds, built);
   if (machine.gap_sensor) {
-    move_mounting(draw(machine.gap_sensor->covariance, seed, "mounting"), built);
+    move_mounting(draw(machine.gap_sensor->covariance, seeds[TruthGroup::mounting], "mounting"), built);
   } else if (machine.tolerances.mounting) {
-    draw_mounting(*machine.tolerances.mounting, built);
+    draw_mounting(*machine.tolerances.mounting, seeds, built);
   }
   return built;
 }

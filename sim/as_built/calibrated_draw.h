@@ -17,6 +17,6 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine,
 /// The same for the file that `machine` was read from, with what the calibration does not tell drawn within
 /// the file's tolerances: drives, sensors, part and filament, and play unless it was found. Throws
 /// InputError, with what to do, where it has no calibration or its calibration no covariance.
-AsBuilt draw_calibrated(const machine::MachineDescription& machine, std::uint64_t seed);
+AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthSeeds& seeds);
 
 }  // namespace understudy::sim

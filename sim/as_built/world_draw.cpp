@@ -17,7 +17,8 @@ using machine::BuiltTolerances;
 
 class Draws {
  public:
-  explicit Draws(const AsBuilt& built) : seed_(built.seed), set_(built.source) {}
+  Draws(const TruthSeeds& seeds, TruthGroup group, const AsBuilt& built)
+      : seed_(seeds[group]), set_(built.source) {}
   Random stream(const std::string& truth) const {
     return Random(seed_, fmt::format("as-built/{}/{}", set_, truth));
   }
@@ -38,20 +39,22 @@ class Draws {
   std::string set_;
 };
 
-void draw_drives(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
+void draw_drives(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built) {
+  const Draws lead(seeds, TruthGroup::lead, built), periodic(seeds, TruthGroup::periodic, built);
   const auto& axes = built.chain.axes;
   const std::size_t count = axes.empty() ? kinematics::kStruts : axes.size();
   for (std::size_t i = 0; i < count; ++i) {
     if (!axes.empty() && axes[i].angle) continue;  // a gear has no lead
     DriveError& drive = built.drives[i];
     const std::string of = fmt::format("drive {}", i + 1);
-    drive.scale += draws.normal(of + " lead", t.lead);
-    drive.periodic += std::abs(draws.normal(of + " periodic", t.periodic));
-    drive.phase = draws.phase(of + " phase");
+    drive.scale += lead.normal(of + " lead", t.lead);
+    drive.periodic += std::abs(periodic.normal(of + " periodic", t.periodic));
+    drive.phase = periodic.phase(of + " phase");
   }
 }
 
-void draw_play(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
+void draw_play(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built) {
+  const Draws draws(seeds, TruthGroup::play, built);
   for (std::size_t i = 0; i < built.nut_play.size(); ++i) {
     draws.scale(fmt::format("nut play {}", i + 1), t.play, built.nut_play[i]);
     draws.scale(fmt::format("ball play {}", i + 1), t.play, built.ball_play[i]);
@@ -60,28 +63,38 @@ void draw_play(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
     draws.scale(fmt::format("axis play {}", i + 1), t.play, built.axis_play[i]);
 }
 
-void draw_optics(const Draws& draws, const BuiltTolerances& t, AsBuilt& built) {
-  draws.scale("laser power", t.laser_power, built.laser.peak_level);
-  draws.scale("laser waist", t.waist, built.laser.waist_diameter);
+void draw_optics(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built) {
+  const Draws light(seeds, TruthGroup::light, built), camera(seeds, TruthGroup::camera, built);
   machine::Microscope& microscope = built.microscope;
-  microscope.camera.centre_px += draws.vector("camera centre", t.camera_centre).head<2>();
-  draws.scale("camera blur", t.blur, microscope.blur_px);
-  draws.scale("ambient light", t.ambient_light, microscope.ambient_level);
+  light.scale("laser power", t.laser_power, built.laser.peak_level);
+  light.scale("laser waist", t.waist, built.laser.waist_diameter);
+  light.scale("ambient light", t.ambient_light, microscope.ambient_level);
+  microscope.camera.centre_px += camera.vector("camera centre", t.camera_centre).head<2>();
+  camera.scale("camera blur", t.blur, microscope.blur_px);
 }
 
-void draw_part(const Draws& draws, const BuiltTolerances& t, BuiltPart& part) {
-  part.X_WF = make_pose(exp_rotation(draws.vector("part rotation", t.part_rotation)),
-                        draws.vector("part position", t.part_position)) *
+void draw_part(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built) {
+  const Draws place(seeds, TruthGroup::part_place, built), shape(seeds, TruthGroup::part_shape, built);
+  BuiltPart& part = built.part;
+  part.X_WF = make_pose(exp_rotation(place.vector("part rotation", t.part_rotation)),
+                        place.vector("part position", t.part_position)) *
               part.X_WF;
-  draws.scale("part size", t.part_size, part.size);
-  part.ripple += std::abs(draws.normal("part ripple", t.part_ripple));
-  part.phase = draws.phase("part phase");
+  shape.scale("part size", t.part_size, part.size);
+  part.ripple += std::abs(shape.normal("part ripple", t.part_ripple));
+  part.phase = shape.phase("part phase");
+}
+
+void draw_process(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built) {
+  const Draws draws(seeds, TruthGroup::process, built);
+  built.filament_diameter += draws.normal("filament diameter", t.filament_diameter);
+  draws.scale("extruder lag", t.extruder_lag, built.extruder_lag);
+  built.nozzle_offset += draws.normal("nozzle temperature", t.nozzle_temperature);
 }
 
 }  // namespace
 
-void draw_mounting(const machine::MountingTolerances& tolerances, AsBuilt& built) {
-  const Draws draws(built);
+void draw_mounting(const machine::MountingTolerances& tolerances, const TruthSeeds& seeds, AsBuilt& built) {
+  const Draws draws(seeds, TruthGroup::mounting, built);
   machine::MountingVector error = machine::mounting_sigmas(tolerances);
   for (int i = 0; i < machine::kMountingFreedoms; ++i)
     error[i] = draws.normal(machine::mounting_freedom(i), error[i]);
@@ -94,15 +107,12 @@ void move_mounting(const machine::MountingVector& error, AsBuilt& built) {
   machine::set_mounting(machine::moved(mounting, error), built.laser, built.microscope);
 }
 
-void draw_world(const BuiltTolerances& tolerances, AsBuilt& built) {
-  const Draws draws(built);
-  draw_drives(draws, tolerances, built);
-  draw_play(draws, tolerances, built);
-  draw_optics(draws, tolerances, built);
-  draw_part(draws, tolerances, built.part);
-  built.filament_diameter += draws.normal("filament diameter", tolerances.filament_diameter);
-  draws.scale("extruder lag", tolerances.extruder_lag, built.extruder_lag);
-  built.nozzle_offset += draws.normal("nozzle temperature", tolerances.nozzle_temperature);
+void draw_world(const BuiltTolerances& tolerances, const TruthSeeds& seeds, AsBuilt& built) {
+  draw_drives(seeds, tolerances, built);
+  draw_play(seeds, tolerances, built);
+  draw_optics(seeds, tolerances, built);
+  draw_part(seeds, tolerances, built);
+  draw_process(seeds, tolerances, built);
 }
 
 }  // namespace understudy::sim

@@ -142,6 +142,18 @@ TEST(BadUsage, JobsAreFrom1To1024) {
     }
 }
 
+TEST(BadBudget, WhatCannotBeSharedOutIsRefusedBeforeTheWork) {
+  const Folder folder;
+  const std::string bottle =
+      "sweep " + kSource + "/scenarios/song-bottle.yaml --budget --out " + (folder / "out");
+  expect_refused(bottle + " --samples 7", folder, {"--samples 7 is outside 8..100000"});
+  expect_refused(bottle + " --as-built nominal", folder, {"nominal", "manufactured"});
+  const std::string built = folder.write("built.yaml", "deviation_mm: 14.5\n");
+  expect_refused(bottle + " --as-built " + built, folder, {"built.yaml", "one machine"});
+  expect_refused(bottle + " --as-built calibrated", folder, {"calibration"});
+  expect_refused(bottle + " -j 0", folder, {"-j 0 is outside 1..1024"});
+}
+
 TEST(BadOutput, AFolderThatCannotBeWrittenIsRefusedBeforeTheWork) {
   const Folder folder;
   const std::string file = folder.write("file", "x");

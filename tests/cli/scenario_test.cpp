@@ -95,5 +95,37 @@ TEST(Sweep, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(read_file(folder / "one/sweep.csv"), read_file(folder / "three/sweep.csv"));
 }
 
+// Half a millimetre of the line without its approach: all that differs after a calibration is the geometry.
+TEST(Sweep, ABudgetTellsItsCostItsTableAndItsFilesWhateverTheThreads) {
+  const Folder folder;
+  const std::string program =
+      folder.write("line.gcode",
+                   "G21\nG90\nM82\nG94\nM109 S230\n"
+                   "G0 X-5.34577 Y0 Z30.187397 W0.984807753 I0 J-0.173648178 K0\n"
+                   "G1 X-5.112004 Y0 Z30.270181 W0.98615421 I0 J-0.16583086 K0 E0.006035 F300\n"
+                   "G1 X-4.876968 Y0 Z30.349281 W0.987438993 I0 J-0.158000744 K0 E0.012069\n");
+  std::string yaml = read_file(changed(folder, "engine: mujoco", "engine: quasistatic"));
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    yaml.replace(yaml.find(what), what.size(), by);
+  };
+  replace(kSource + "/scenarios/song-bottle.gcode", program);
+  replace("gap_control: start", "gap_control: off");
+  const std::string scenario = folder.write("line.yaml", yaml);
+  const auto run = [&](const std::string& threads) {
+    return understudy("sweep " + scenario + " --budget --samples 8 -j " + threads + " --out " +
+                      (folder / threads));
+  };
+  const Outcome one = run("1"), two = run("2");
+  ASSERT_EQ(one.status, 0) << one.err;
+  ASSERT_EQ(two.status, 0) << two.err;
+  EXPECT_THAT(one.err, HasSubstr("8 samples x (1 group + 2) = 24 rehearsals"));
+  EXPECT_THAT(one.out, HasSubstr("geometry    " + std::string(" 1.00 [ 1.00,  1.00]")));
+  EXPECT_THAT(one.out, HasSubstr("understudy calibrate"));
+  for (const char* file : {"/budget.csv", "/runs.csv"})
+    EXPECT_EQ(read_file((folder / "1") + file), read_file((folder / "2") + file));
+  EXPECT_THAT(read_file((folder / "1") + "/budget.html"), HasSubstr("<svg"));
+  EXPECT_THAT(read_file((folder / "1") + "/budget.json"), HasSubstr("understudy.budget/1"));
+}
+
 }  // namespace
 }  // namespace understudy::cli_test

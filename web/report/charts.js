@@ -1,6 +1,6 @@
 'use strict';
 // Curves along the path and over time, by dygraphs. Colours of Okabe and Ito: apart for colour-blind eyes too.
-const kColour = { with: '#0072b2', without: '#c26a00', band: 'rgba(0, 158, 115, 0.14)', aim: '#007a59', limit: '#a33b00' };
+const kColour = { with: '#0072b2', without: '#c26a00', band: 'rgba(0, 158, 115, 0.14)', belief: 'rgba(86, 180, 233, 0.32)', aim: '#007a59', limit: '#a33b00' };
 const kAxisColours = ['#0072b2', '#d55e00', '#009e73', '#a8558a', '#b38300', '#3a9bd6', '#333333', '#8a6d4b'];
 
 function drawCharts(report, add) {
@@ -58,15 +58,41 @@ function pathCurves(report, column) {
   return curves.some((curve) => curve.rows.length > 1) ? curves : null;
 }
 
+// Pieces [[x, low, high], ...] of what the controller believed, three of its sigmas to either side.
+function believedBand(report) {
+  if (!report.trace.columns.stated_sigma_um) return [];
+  const sigma = alongPath(report.trace, 'stated_sigma_um'), gap = alongPath(report.trace, 'believed_gap_mm');
+  const pieces = [[]];
+  gap.forEach(([x, y], i) => {
+    const margin = 3e-3 * sigma[i][1];
+    if (isFinite(y) && isFinite(margin)) pieces[pieces.length - 1].push([x, y - margin, y + margin]);
+    else if (pieces[pieces.length - 1].length) pieces.push([]);
+  });
+  return pieces.filter((piece) => piece.length > 1);
+}
+
+// What the band is, and how much of the truth it holds; or why there is none.
+function believedNote(report, pieces) {
+  if (!report.gap_belief_note) return '';
+  if (!pieces.length) return ' No band of what the controller believes: ' + report.gap_belief_note + '.';
+  const { stated_sigma_um: sigma, stated_path_fraction: stated, inside_stated_3_sigma_fraction: inside } = report.summary.gap || {};
+  return ' Blue band: what the controller believes, three of its stated sigmas to either side (' + report.gap_belief_note + ').' +
+    (inside === undefined ? '' : ' Median sigma ' + format.number(sigma, 1) + '\u00a0µm; the true gap is inside on ' +
+      format.number(100 * inside, 1) + '\u00a0% of the path' + (stated < 0.9995 ? ' for which it states one, ' +
+      format.number(100 * stated, 1) + '\u00a0% of all' : '') + '.');
+}
+
 function gapChart(report) {
   const curves = pathCurves(report, 'gap_mm');
   if (!curves) return null;
   const band = report.gap_band;
+  const belief = believedBand(report);
   const note = 'True distance from nozzle to surface along the tool axis.' + (band ? ' Shaded: the accepted band of ' +
-    band.min_mm + '\u2013' + band.max_mm + ' mm; dotted: the aim, ' + band.aim_mm + ' mm.' : '');
+    band.min_mm + '\u2013' + band.max_mm + ' mm; dotted: the aim, ' + band.aim_mm + ' mm.' : '') +
+    believedNote(report, belief);
   return { title: 'Gap along the path', note, curves, unit: 'mm', decimals: 3,
     xLabel: 'path length (mm)', yLabel: 'gap (mm)', include: band ? [0, 1.25 * band.max_mm] : [0],
-    band: band && [band.min_mm, band.max_mm], aim: band && band.aim_mm, zero: true, zeroName: 'surface', onPath: true };
+    belief, band: band && [band.min_mm, band.max_mm], aim: band && band.aim_mm, zero: true, zeroName: 'surface', onPath: true };
 }
 
 function tipChart(report) {
@@ -153,6 +179,18 @@ function underlay(chart, context, area, graph) {
   if (chart.band) {
     context.fillStyle = kColour.band;
     context.fillRect(area.x, y(chart.band[1]), area.w, y(chart.band[0]) - y(chart.band[1]));
+  }
+  for (const piece of chart.belief || []) {
+    context.save();
+    context.beginPath();
+    context.rect(area.x, area.y, area.w, area.h);
+    context.clip();
+    context.fillStyle = kColour.belief;
+    context.beginPath();
+    for (const [x, low] of piece) context.lineTo(graph.toDomXCoord(x), y(low));
+    for (const [x, , high] of [...piece].reverse()) context.lineTo(graph.toDomXCoord(x), y(high));
+    context.fill();
+    context.restore();
   }
   if (chart.aim) line(chart.aim, kColour.aim, [2, 3]);
   for (const limit of chart.limits || []) line(limit, kColour.limit, [6, 4]);

@@ -81,6 +81,8 @@ const kFigureLabels = {
   commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
   path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
   in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',
+  believed_mean_mm: 'Believed by the controller, mean', stated_sigma_um: 'Its stated uncertainty, 1 sigma',
+  stated_path_fraction: 'Path for which it states one', inside_stated_3_sigma_fraction: 'Of that, true gap within 3 sigma',
   max_um: 'Sag, largest', strands: 'Strands in air', unsupported_mm: 'Length in air',
   ra_um: 'Roughness Ra', rz_um: 'Roughness Rz', deviation_p95_um: 'Deviation from the intended part, 95th percentile',
   min_clearance_mm: 'Least clearance, but for the nozzle over its work', closest: 'These two',

@@ -50,6 +50,23 @@ TEST(GapFollower, TakesItsNumbersFromTheMachine) {
   EXPECT_DOUBLE_EQ(o.excitation, 70e-6 / 3);  // a third of 0.2 - 0.13 mm
 }
 
+// Without a reading the slope is what it may be, its walk integrated twice, and the tool's own drift: each
+// independent of the others.
+TEST(GapFollower, WhatItStatesOfAPlaceAheadIsLessSureTheFartherItLies) {
+  GapFollowerOptions o;
+  o.unmodelled = 4e-6;
+  o.slope_sigma = 0.01;
+  o.slope_walk = 0.3;
+  o.drift = 2e-6;
+  GapFollower follower(o);
+  follower.start(0, 0, kAim, 3e-6);
+  EXPECT_NEAR(follower.predicted_sigma(0, 0), 5e-6, 1e-12);
+  EXPECT_NEAR(follower.predicted_sigma(9, 0), std::hypot(5e-6, 6e-6), 1e-12);
+  // 1 mm: 0.01 of it, and 0.3 (1 mm)^3 / 3 = (10 um)^2.
+  EXPECT_NEAR(follower.predicted_sigma(0, 1e-3), std::sqrt(25 + 100 + 100) * 1e-6, 1e-12);
+  EXPECT_NEAR(follower.sigma(), 5e-6, 1e-12) << "the estimate itself stays";
+}
+
 TEST(GapFollower, AStepIsTakenOverOnceAndNotOvershot) {
   auto loop = loop_with([](double, double) { return kAim + 40e-6; });
   loop.run(0.6);

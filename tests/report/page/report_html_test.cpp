@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -66,6 +68,23 @@ TEST(ReportHtml, DataCannotBecomeMarkup) {
 TEST(ReportHtml, HoldsTheSummaryAsItIs) {
   for (const Record& record : {sample_go(), sample_no_go(), sample_stopped_by_constraints()})
     EXPECT_EQ(data_of(record)["summary"], Json::parse(summary_json(record)));
+}
+
+TEST(ReportHtml, BeliefsStandBesideTheTraceAndWhatIsNotStatedIsNull) {
+  Record record = sample_go();
+  EXPECT_FALSE(data_of(record)["trace"]["columns"].contains("stated_sigma_um")) << "none was recorded";
+  for (const auto& point : record.trace)
+    record.gap_beliefs.push_back({0.13e-3, point.extruding ? 5e-6 : std::nan("")});
+  record.gap_belief_note = "of the gap read at the start";
+  const Json data = data_of(record);
+  EXPECT_EQ(data["gap_belief_note"], "of the gap read at the start");
+  const Json& columns = data["trace"]["columns"];
+  ASSERT_EQ(columns["stated_sigma_um"].size(), columns["gap_mm"].size());
+  ASSERT_EQ(columns["believed_gap_mm"].size(), columns["gap_mm"].size());
+  for (std::size_t i = 0; i < columns["gap_mm"].size(); ++i) {
+    EXPECT_EQ(columns["believed_gap_mm"][i], 0.13);
+    EXPECT_EQ(columns["stated_sigma_um"][i], columns["extruding"][i] == 1 ? Json(5.0) : Json());
+  }
 }
 
 TEST(ReportHtml, TraceHasOneValueAPointInEveryColumn) {

@@ -1,5 +1,6 @@
 // The page as a browser draws it. Slow: each case starts a headless Chromium.
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -118,6 +119,22 @@ TEST_F(SlowReportPage, ACalibrationHasItsTableAndItsChart) {
   const std::string without = drawn(record);
   EXPECT_EQ(count(without, "class=\"comparison\""), 0u);
   EXPECT_NE(without.find("Not compared: with the description before, hexapod"), std::string::npos);
+}
+
+TEST_F(SlowReportPage, WhatTheControllerBelievesIsABandOrALineInWords) {
+  Record record = sample_go();
+  record.gap_belief_note = "of the gap read at the start";
+  EXPECT_NE(drawn(record).find("No band of what the controller believes"), std::string::npos);
+  for (const auto& point : record.trace)
+    record.gap_beliefs.push_back({0.13e-3, point.extruding ? 5e-6 : std::nan("")});
+  record.gap->stated_sigma_um = 5;
+  record.gap->stated_path_fraction = 1;
+  record.gap->inside_stated_3_sigma_fraction = 0.25;
+  const std::string page = drawn(record);
+  EXPECT_NE(page.find("Blue band: what the controller believes"), std::string::npos);
+  EXPECT_NE(page.find("the true gap is inside on 25.0"), std::string::npos);
+  for (const char* text : {"NaN", "undefined", "Infinity"})
+    EXPECT_EQ(page.find(text), std::string::npos) << text;
 }
 
 TEST_F(SlowReportPage, MarkupInMessagesIsShownAsText) {

@@ -29,7 +29,7 @@ AsBuilt drawn(const BuiltTolerances& tolerances, std::uint64_t seed) {
   AsBuilt built = described();
   built.source = "manufactured";
   built.seed = seed;
-  draw_world(tolerances, built);
+  draw_world(tolerances, seed, built);
   return built;
 }
 
@@ -159,7 +159,7 @@ TEST(MountingDraw, SpreadsAsItsTolerancesState) {
     AsBuilt built = described();
     built.source = "manufactured";
     built.seed = seed;
-    draw_mounting(t, built);
+    draw_mounting(t, seed, built);
     const auto errors = mounting_errors(built, t);
     for (std::size_t k = 0; k < errors.size(); ++k) squares[k] += errors[k] * errors[k];
   }
