@@ -21,6 +21,7 @@
 #include "rehearsal/findings.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/process_check.h"
+#include "rehearsal/registration.h"
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
@@ -81,7 +82,8 @@ TwinSetup prepare(const RehearsalRequest& request) {
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   TwinSetup setup;
   setup.machine = machine::load_machine(request.machine);
-  setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
+  if (!request.program.empty())
+    setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
   if (setup.machine.tool.prints()) {
     setup.material =
         machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);
@@ -94,6 +96,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
       request.seed);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
+  setup.registration = registration_task(request, setup.machine, setup.part);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
   setup.seed = request.seed;
@@ -234,6 +237,8 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
   record.trace_stride = runs.main.trace_stride;
   if (without) record.trace_without_gap_control = without->trace;
   record.frames = runs.main.frames;
+  if (runs.main.registration)
+    record.registration = registration_figures(*runs.main.registration, *setup.registration);
 }
 
 }  // namespace
