@@ -40,8 +40,8 @@ std::string pose_text(const rehearsal::Record& record, const rehearsal::Registra
       "quaternion: [{:.9f}, {:.9f}, {:.9f}, {:.9f}]   # w, x, y, z\nreference_mm: [{:.3f}]\n"
       "# Of the shift of the reference point in um and the turn about it in mrad, along x, y, z of W.\n"
       "covariance:\n",
-      command_line(), record.fixture_name, record.machine_word, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(),
-      fmt::join(figures.reference_mm, ", "));
+      command_line(), record.fixture_name, record.machine_word, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
+      q.z(), fmt::join(figures.reference_mm, ", "));
   for (Eigen::Index i = 0; i < 6; ++i) {
     text += "  - [";
     for (Eigen::Index j = 0; j < 6; ++j)
@@ -77,7 +77,8 @@ int run_register(const RegisterCall& call) {
   const bool found = figures.fit && record.go;
   fmt::print("{} on {}: {}\n", record.fixture_name, record.machine_name, found ? "found" : "not found");
   for (const auto& finding : record.findings)
-    if (finding.severity == rehearsal::Severity::error) fmt::print("  {}: {}\n", finding.kind, finding.message);
+    if (finding.severity == rehearsal::Severity::error)
+      fmt::print("  {}: {}\n", finding.kind, finding.message);
   print_registration(figures);
   if (!found) return kNo;
   write_file(call.output, pose_text(record, figures));
@@ -92,7 +93,8 @@ void add_register(CLI::App& app, Action& action) {
   call->request.engine = "quasistatic";
   auto* command = app.add_subcommand(
       "register", "Find where a clamped part stands, by the twin's own gap sensor (docs/registration.md)");
-  command->add_option("--fixture", call->request.fixture, "the part: an STL in mm, or a name under models/parts")
+  command
+      ->add_option("--fixture", call->request.fixture, "the part: an STL in mm, or a name under models/parts")
       ->required();
   add_machine_option(*command, call->request.machine);
   add_registration_options(*command, call->request.registration);
@@ -103,7 +105,8 @@ void add_register(CLI::App& app, Action& action) {
   command->add_option("--seed", call->request.seed, "of the as-built errors and of all noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("-o,--output", call->output, "pose of the part with its covariance, a .yaml")->required();
+  command->add_option("-o,--output", call->output, "pose of the part with its covariance, a .yaml")
+      ->required();
   command->footer(
       "Example: understudy register --fixture bottle --as-built manufactured --seed 4 -o pose.yaml\n"
       "`understudy rehearse --register` finds the part and then prints on it where it stands.");

@@ -12,7 +12,8 @@ constexpr int kPlacesMax = 100;
 
 std::string triple(const std::array<double, 3>& values, const char* format) {
   return fmt::format("{}, {}, {}", fmt::format(fmt::runtime(format), values[0]),
-                     fmt::format(fmt::runtime(format), values[1]), fmt::format(fmt::runtime(format), values[2]));
+                     fmt::format(fmt::runtime(format), values[1]),
+                     fmt::format(fmt::runtime(format), values[2]));
 }
 
 }  // namespace
@@ -40,8 +41,8 @@ void print_registration(const rehearsal::RegistrationFigures& figures) {
   fmt::print("    and turned by ({}) mrad, 1 sigma ({})\n", triple(figures.turn_mrad, "{:.2f}"),
              triple(figures.turn_sigma_mrad, "{:.2f}"));
   for (const std::string& freedom : figures.unseen) fmt::print("    not seen, left as drawn: {}\n", freedom);
-  fmt::print("    chi-square {:.1f} for {} degrees of freedom, at most {:.1f} for this part\n", figures.chi_square,
-             figures.degrees_of_freedom, figures.chi_square_limit);
+  fmt::print("    chi-square {:.1f} for {} degrees of freedom, at most {:.1f} for this part\n",
+             figures.chi_square, figures.degrees_of_freedom, figures.chi_square_limit);
   fmt::print("    surface found within {:.0f} um (1 sigma, at the worst place)", figures.normal_sigma_max_um);
   if (figures.normal_error_rms_um)
     fmt::print("; truly off by {:.0f} um RMS, {:.0f} um at most", *figures.normal_error_rms_um,

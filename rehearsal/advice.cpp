@@ -106,8 +106,10 @@ std::string about_accuracy(const Finding& finding, const Record& record) {
 
 std::string about_registration(const Finding&, const Record& record) {
   return fmt::format(
-      "see in the report which places did not fit: is it this part, clamped as drawn and clean, and are the machine "
-      "(`understudy calibrate`) and its gap sensor (`understudy calibrate gap-sensor`) calibrated? Is what `part` "
+      "see in the report which places did not fit: is it this part, clamped as drawn and clean, and are the "
+      "machine "
+      "(`understudy calibrate`) and its gap sensor (`understudy calibrate gap-sensor`) calibrated? Is what "
+      "`part` "
       "of the section tolerances of {} says of the clamped part true?",
       record.machine_word);
 }

@@ -17,22 +17,40 @@ namespace understudy::rehearsal {
 namespace {
 
 // Of a machine file that does not state how a part is clamped: by hand, against stops or in a vice.
-constexpr double kPosition = 0.5e-3;        // [m]
-constexpr double kRotation = 5e-3;          // [rad]
-constexpr double kRepeatability = 5e-6;     // [m]: play, microsteps, a screw's error over a turn
+constexpr double kPosition = 0.5e-3;     // [m]
+constexpr double kRotation = 5e-3;       // [rad]
+constexpr double kRepeatability = 4e-6;  // [m]: microsteps, a screw's error over a turn
+// Spread of places over which what differs between them is all there (docs/registration.md#the-fit).
+constexpr double kWaveShown = 20e-3;  // [m], a wave's length
+constexpr double kPlayShown =
+    80e-3;  // [m], as its square: play changes sides, never more than a quarter counts
+constexpr double kTipShown = 100e-3;  // [m], half of a workspace
 
 control::PartTolerance part_tolerance(const machine::BuiltTolerances& stated) {
   return {stated.part_position > 0 ? stated.part_position : kPosition,
           stated.part_rotation > 0 ? stated.part_rotation : kRotation, stated.part_size};
 }
 
-/// Waves are sines of the stated amplitude; the tip's error is shared among three directions.
-double place_sigma(const machine::BuiltTolerances& stated, const machine::MachineDescription& machine) {
-  const double wave = stated.part_ripple / std::numbers::sqrt2;
-  const double tip = machine.calibration && std::isfinite(machine.calibration->tip_sigma)
-                         ? machine.calibration->tip_sigma / std::numbers::sqrt3
-                         : 0;
-  return std::hypot(std::hypot(wave, tip), kRepeatability);
+/// [m], RMS from their middle.
+double spread_of(const std::vector<control::ProbingPlace>& places) {
+  Vec3 middle = Vec3::Zero();
+  for (const auto& place : places) middle += place.p_W / static_cast<double>(places.size());
+  double squares = 0;
+  for (const auto& place : places) squares += (place.p_W - middle).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(places.size()));
+}
+
+/// What the machine and the part's waves do alike at all places goes into the pose. What differs from place
+/// to place grows with the distance between them, up to all of it.
+double place_sigma(const machine::BuiltTolerances& stated, const machine::MachineDescription& machine,
+                   double spread) {
+  const double wave = std::min(1.0, spread / kWaveShown) * stated.part_ripple / std::numbers::sqrt2;
+  const double play = std::min(0.25, std::pow(spread / kPlayShown, 2)) * machine.tip_play();
+  const double tip =
+      machine.calibration && std::isfinite(machine.calibration->tip_sigma)
+          ? std::min(1.0, spread / kTipShown) * machine.calibration->tip_sigma / std::numbers::sqrt3
+          : 0;
+  return std::hypot(std::hypot(wave, tip), std::hypot(play, kRepeatability));
 }
 
 bool breaks_limits(const control::ConstraintReport& report) {
@@ -79,7 +97,9 @@ RegistrationRow row_of(const control::PlaceReading& place, const std::optional<d
   row.gap_mm = to_mm(place.outcome.gap);
   row.reading_sigma_um = to_um(place.reading_sigma);
   row.residual_um = to_um(place.residual);
-  if (fit) row.sigma_um = to_um(fit->sigma_along(fit->X_W * place.place.p_W, fit->X_W.linear() * place.place.normal_W));
+  if (fit)
+    row.sigma_um =
+        to_um(fit->sigma_along(fit->X_W * place.place.p_W, fit->X_W.linear() * place.place.normal_W));
   if (error) row.error_um = to_um(*error);
   return row;
 }
@@ -97,24 +117,27 @@ Finding refusal(std::string message) {
 
 std::optional<control::RegistrationTask> registration_task(const RehearsalRequest& request,
                                                            const machine::MachineDescription& machine,
-                                                           std::shared_ptr<const geometry::Mesh> part) {
+                                                           std::shared_ptr<const geometry::Mesh> part,
+                                                           const toolpath::Program& program) {
   if (!request.registration.wanted) return std::nullopt;
-  if (!part) throw InputError("registration needs the part that is to be found: --fixture FILE.stl or a name");
+  if (!part)
+    throw InputError("registration needs the part that is to be found: --fixture FILE.stl or a name");
   if (!machine.has_microscope)
     throw InputError(fmt::format("registration needs a laser and a microscope; {} has none", machine.name));
   const auto stated = machine::load_built_tolerances(request.machine);
   control::RegistrationTask task;
   task.part = part;
   task.tolerance = part_tolerance(stated);
-  task.place_sigma = place_sigma(stated, machine);
   const control::ProbingCheck check(machine, *part, control::largest_shift(*part, task.tolerance));
   if (!request.registration.pattern.empty()) {
     task.places = control::read_pattern(request.registration.pattern, *part, check);
     task.wanted = static_cast<int>(task.places.size());
-    return task;
+  } else {
+    task.wanted = request.registration.places;
+    task.places = control::choose_places(*part, task.tolerance, check, control::printed_region(program),
+                                         task.wanted + task.wanted / 2);
   }
-  task.wanted = request.registration.places;
-  task.places = control::choose_places(*part, task.tolerance, check, task.wanted + task.wanted / 2);
+  task.place_sigma = place_sigma(stated, machine, spread_of(task.places));
   return task;
 }
 

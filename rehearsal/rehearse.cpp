@@ -96,7 +96,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
       request.seed);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
-  setup.registration = registration_task(request, setup.machine, setup.part);
+  setup.registration = registration_task(request, setup.machine, setup.part, setup.program);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
   setup.seed = request.seed;

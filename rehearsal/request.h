@@ -36,7 +36,7 @@ struct RegistrationRequest {
 };
 
 struct RehearsalRequest {
-  std::string program;  ///< path of a G-code file; empty: nothing is printed
+  std::string program;                             ///< path of a G-code file; empty: nothing is printed
   std::string machine = machine::kDefaultMachine;  ///< name or path
   std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
   std::string engine = "mujoco";

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -17,10 +18,10 @@ namespace {
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 constexpr int kIterations = 50;
-constexpr double kConverged = 1e-6;   // of the tolerance: nanometres
-constexpr double kSeenAbove = 1;      // information in units of the tolerance
-constexpr double kTurnShare = 0.2;    // of a motion at the part's size: less is a shift
-constexpr double kRareNormal = 3.719; // one in 10 000, of a standard normal
+constexpr double kConverged = 1e-6;    // of the tolerance: nanometres
+constexpr double kSeenAbove = 1;       // information in units of the tolerance
+constexpr double kTurnShare = 0.2;     // of a motion at the part's size: less is a shift
+constexpr double kRareNormal = 3.719;  // one in 10 000, of a standard normal
 
 /// Distances of the points from the drawn part, with the part at X_W, and how they change.
 struct Linearised {
@@ -45,16 +46,24 @@ Linearised linearise(const geometry::Mesh& drawn, const std::vector<MeasuredPoin
   return at;
 }
 
-Eigen::MatrixXd covariance_of(const std::vector<MeasuredPoint>& points) {
+/// What the points are off by, in units of what each has of its own.
+struct Noise {
+  Eigen::VectorXd own;         // [m]
+  Eigen::MatrixXd covariance;  // with what all share, divided by the own sigmas of row and column
+};
+
+Noise noise_of(const std::vector<MeasuredPoint>& points) {
   const auto n = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixXd common(n, points.front().common.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  Noise noise{Eigen::VectorXd(n), Eigen::MatrixXd::Identity(n, n)};
+  Eigen::MatrixXd shared(n, points.front().common.size());
   for (Eigen::Index i = 0; i < n; ++i) {
     const MeasuredPoint& point = points[static_cast<std::size_t>(i)];
-    common.row(i) = point.common.transpose();
-    covariance(i, i) = point.sigma * point.sigma;
+    UNDERSTUDY_ASSERT(point.sigma > 0, "every point has a sigma of its own");
+    noise.own[i] = point.sigma;
+    shared.row(i) = point.common.transpose() / point.sigma;
   }
-  return covariance + common * common.transpose();
+  noise.covariance += shared * shared.transpose();
+  return noise;
 }
 
 /// The freedoms in units of the tolerance, apart by what the points tell of each.
@@ -63,11 +72,24 @@ struct Freedoms {
   Eigen::SelfAdjointEigenSolver<Mat6> solver;  // of L^T J^T R^-1 J L
 
   bool seen(Eigen::Index i) const { return solver.eigenvalues()[i] > kSeenAbove; }
+  int seen_count() const {
+    int count = 0;
+    for (Eigen::Index i = 0; i < 6; ++i) count += seen(i);
+    return count;
+  }
   Eigen::Matrix<double, 6, 1> motion(Eigen::Index i) const { return root * solver.eigenvectors().col(i); }
+  /// Eigenvalues increase: the unseen ones come first.
+  Rows motions(bool of_seen) const {
+    const Eigen::Index k = seen_count();
+    const Mat6 all = root * solver.eigenvectors();
+    return of_seen ? Rows(all.rightCols(k).transpose()) : Rows(all.leftCols(6 - k).transpose());
+  }
 };
 
-Freedoms freedoms_of(const Rows& rows, const Eigen::LLT<Eigen::MatrixXd>& noise, const Mat6& root) {
-  const Eigen::MatrixXd white = noise.matrixL().solve(rows * root);
+Freedoms freedoms_of(const Linearised& at, const Noise& noise, const Mat6& root) {
+  const Eigen::LLT<Eigen::MatrixXd> cholesky(noise.covariance);
+  const Eigen::MatrixXd white =
+      cholesky.matrixL().solve(noise.own.cwiseInverse().asDiagonal() * (at.rows * root));
   return {root, Eigen::SelfAdjointEigenSolver<Mat6>(Mat6(white.transpose() * white))};
 }
 
@@ -78,18 +100,23 @@ Pose turned_about(const Vec3& reference, const Eigen::Matrix<double, 6, 1>& moti
   return X;
 }
 
-/// One step along what is seen, in units of the tolerance.
-Eigen::Matrix<double, 6, 1> step_of(const Linearised& at, const Eigen::LLT<Eigen::MatrixXd>& noise,
-                                    const Freedoms& freedoms) {
-  const Eigen::Matrix<double, 6, 1> right =
-      freedoms.root.transpose() * (at.rows.transpose() * noise.solve(at.distance));
-  Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    if (!freedoms.seen(i)) continue;
-    const auto v = freedoms.solver.eigenvectors().col(i);
-    step -= v.dot(right) / freedoms.solver.eigenvalues()[i] * v;
-  }
-  return step;
+/// Least squares along what is seen. The weights are those of each point's own noise: weights of what all
+/// points share would make much of small differences between them, which a wrong model gives, too.
+struct SeenFit {
+  Rows motions;                // rows: what is seen, in units of the tolerance
+  Eigen::MatrixXd design;      // of the seen motions, in units of the own noise
+  Eigen::MatrixXd inverse;     // pseudo-inverse of the design
+  Eigen::MatrixXd covariance;  // of the points in those units, with what the unseen freedoms do
+};
+
+SeenFit seen_fit(const Linearised& at, const Noise& noise, const Freedoms& freedoms) {
+  const Eigen::MatrixXd rows = noise.own.cwiseInverse().asDiagonal() * at.rows;
+  SeenFit fit{freedoms.motions(true), {}, {}, noise.covariance};
+  fit.design = rows * fit.motions.transpose();
+  fit.inverse = fit.design.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd unseen = rows * freedoms.motions(false).transpose();
+  fit.covariance += unseen * unseen.transpose();
+  return fit;
 }
 
 /// Columns that span the same, each as near as can be to an axis of W.
@@ -148,8 +175,7 @@ std::vector<UnseenFreedom> name_unseen(const Freedoms& freedoms, const Vec3& ref
     const Eigen::MatrixXd unit =
         Eigen::JacobiSVD<Eigen::MatrixXd>(way, Eigen::ComputeThinU | Eigen::ComputeThinV).matrixU();
     const Eigen::MatrixXd directions = aligned(unit);
-    for (Eigen::Index k = 0; k < shifts; ++k)
-      unseen.push_back(shift_along(directions.col(k), tolerance));
+    for (Eigen::Index k = 0; k < shifts; ++k) unseen.push_back(shift_along(directions.col(k), tolerance));
   }
   for (Eigen::Index k = 0; k < turns; ++k) {
     Eigen::Matrix<double, 6, 1> motion = basis * turning.matrixV().col(k);
@@ -166,25 +192,18 @@ double rare_chi_square(int degrees_of_freedom) {
   return n * std::pow(1 - spread + kRareNormal * std::sqrt(spread), 3);
 }
 
-/// What a part of another size leaves after its best pose is no sign of another part.
-double chi_square_of(const Linearised& at, const Eigen::MatrixXd& covariance, const Freedoms& freedoms,
-                     double size_sigma) {
-  Rows seen(at.rows.rows(), 6);
-  Eigen::Index count = 0;
-  for (Eigen::Index i = 0; i < 6; ++i)
-    if (freedoms.seen(i)) seen.col(count++) = at.rows * freedoms.motion(i);
-  const Eigen::LLT<Eigen::MatrixXd> noise(covariance);
-  Eigen::VectorXd growth = noise.matrixL().solve(size_sigma * at.growth);
-  Eigen::VectorXd left = noise.matrixL().solve(at.distance);
-  if (count > 0) {
-    const Eigen::MatrixXd white = noise.matrixL().solve(seen.leftCols(count));
-    const Eigen::MatrixXd span =
-        Eigen::JacobiSVD<Eigen::MatrixXd>(white, Eigen::ComputeThinU | Eigen::ComputeThinV).matrixU();
-    growth -= span * (span.transpose() * growth).eval();
-    left -= span * (span.transpose() * left).eval();
-  }
-  const double along = growth.dot(left);
-  return left.squaredNorm() - along * along / (1 + growth.squaredNorm());
+/// Of what the best pose leaves. What a part of another size leaves is no sign of another part.
+double chi_square_of(const Linearised& at, const Noise& noise, const SeenFit& fit, double size_sigma) {
+  const Eigen::Index n = at.distance.size(), k = fit.design.cols();
+  if (n <= k) return 0;
+  const Eigen::MatrixXd all =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(fit.design).householderQ() * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd beside = all.rightCols(n - k);
+  const Eigen::VectorXd growth = size_sigma * at.growth.cwiseQuotient(noise.own);
+  const Eigen::VectorXd left = beside.transpose() * at.distance.cwiseQuotient(noise.own);
+  const Eigen::MatrixXd covariance =
+      beside.transpose() * (fit.covariance + growth * growth.transpose()) * beside;
+  return left.dot(covariance.ldlt().solve(left));
 }
 
 double half_size(const geometry::Mesh& mesh) { return 0.5 * (mesh.upper() - mesh.lower()).norm(); }
@@ -235,29 +254,27 @@ PartFit fit_part(const geometry::Mesh& drawn, const std::vector<MeasuredPoint>& 
   PartFit fit;
   for (const MeasuredPoint& point : points) fit.reference_W += point.p_W;
   fit.reference_W /= static_cast<double>(points.size());
-  const Eigen::MatrixXd covariance = covariance_of(points);
-  const Eigen::LLT<Eigen::MatrixXd> noise(covariance);
-  UNDERSTUDY_ASSERT(noise.info() == Eigen::Success, "every point has a sigma of its own");
+  const Noise noise = noise_of(points);
   const Mat6 root = tolerance_root(tolerance, fit.reference_W);
 
   Linearised at = linearise(drawn, points, fit.X_W, fit.reference_W);
-  Freedoms freedoms = freedoms_of(at.rows, noise, root);
+  Freedoms freedoms = freedoms_of(at, noise, root);
+  SeenFit seen = seen_fit(at, noise, freedoms);
   for (int i = 0; i < kIterations && !fit.converged; ++i) {
-    const Eigen::Matrix<double, 6, 1> step = step_of(at, noise, freedoms);
-    fit.X_W = turned_about(fit.reference_W, root * step) * fit.X_W;
+    const Eigen::VectorXd step = -seen.inverse * at.distance.cwiseQuotient(noise.own);
+    fit.X_W = turned_about(fit.reference_W, seen.motions.transpose() * step) * fit.X_W;
     at = linearise(drawn, points, fit.X_W, fit.reference_W);
-    freedoms = freedoms_of(at.rows, noise, root);
+    freedoms = freedoms_of(at, noise, root);
+    seen = seen_fit(at, noise, freedoms);
     fit.converged = step.norm() < kConverged;
   }
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    const Eigen::Matrix<double, 6, 1> motion = freedoms.motion(i);
-    const double variance = freedoms.seen(i) ? 1 / freedoms.solver.eigenvalues()[i] : 1;
-    fit.covariance += variance * motion * motion.transpose();
-    fit.seen += freedoms.seen(i);
-  }
+  const Rows left_alone = freedoms.motions(false);
+  const Eigen::MatrixXd known = seen.motions.transpose() * seen.inverse;
+  fit.covariance = known * seen.covariance * known.transpose() + left_alone.transpose() * left_alone;
+  fit.seen = freedoms.seen_count();
   fit.unseen = name_unseen(freedoms, fit.reference_W, half_size(drawn));
   fit.residuals.assign(at.distance.begin(), at.distance.end());
-  fit.chi_square = chi_square_of(at, covariance, freedoms, tolerance.size);
+  fit.chi_square = chi_square_of(at, noise, seen, tolerance.size);
   fit.degrees_of_freedom = static_cast<int>(points.size()) - fit.seen;
   fit.chi_square_limit = rare_chi_square(fit.degrees_of_freedom);
   return fit;

@@ -14,7 +14,8 @@ namespace understudy::control {
 struct MeasuredPoint {
   Vec3 p_W{0, 0, 0};  ///< [m], as the controller reckons it
   double sigma = 0;   ///< [m], 1 sigma along the normal, of what is this point's own
-  /// [m], change of the distance along the normal for 1 sigma of each independent cause that all points share.
+  /// [m], change of the distance along the normal for 1 sigma of each independent cause that all points
+  /// share.
   Eigen::VectorXd common;
 };
 
@@ -22,15 +23,15 @@ struct MeasuredPoint {
 struct PartTolerance {
   double position = 0;  ///< [m]
   double rotation = 0;  ///< [rad], about the origin of W
-  double size = 0;      ///< a share, about the origin of W: a part that is larger fits worse, which is no fault
+  double size = 0;  ///< a share, about the origin of W: a part that is larger fits worse, which is no fault
 };
 
 /// A motion of the part that the points do not tell, or less well than the tolerance does.
 struct UnseenFreedom {
-  bool turn = false;           ///< else a shift
-  Vec3 direction_W{0, 0, 1};   ///< unit, of the shift or of the axis
-  Vec3 through_W{0, 0, 0};     ///< [m], a point of the axis
-  double sigma = 0;            ///< [m] or [rad], 1 sigma, which the tolerance leaves
+  bool turn = false;          ///< else a shift
+  Vec3 direction_W{0, 0, 1};  ///< unit, of the shift or of the axis
+  Vec3 through_W{0, 0, 0};    ///< [m], a point of the axis
+  double sigma = 0;           ///< [m] or [rad], 1 sigma, which the tolerance leaves
 };
 /// "turn about (0.00 1.00 0.00) through (0.0, 0.0, 15.5) mm".
 std::string to_string(const UnseenFreedom& freedom);
@@ -55,10 +56,10 @@ struct PartFit {
   double sigma_along(const Vec3& p_W, const Vec3& normal_W) const;
 };
 
-/// Gauss-Newton on distances to `drawn` (closed, in W as drawn). A combination of freedoms counts as seen when
-/// its standard deviation by the points alone is below that by the tolerance: eigenvalues of the information
-/// in units of the tolerance above 1. The tolerance has no part in what is seen. Six points or more, and
-/// positive tolerances.
+/// Gauss-Newton on distances to `drawn` (closed, in W as drawn). A combination of freedoms counts as seen
+/// when its standard deviation by the points alone is below that by the tolerance: eigenvalues of the
+/// information in units of the tolerance above 1. The tolerance has no part in what is seen. Six points or
+/// more, and positive tolerances.
 PartFit fit_part(const geometry::Mesh& drawn, const std::vector<MeasuredPoint>& points,
                  const PartTolerance& tolerance);
 

@@ -13,13 +13,13 @@
 namespace understudy::control {
 namespace {
 
-constexpr double kAirMin = 1e-3;         // [m], between tool and part, beside what the part may be off
-constexpr double kAtTip = 3e-3;          // [m]: nearer to the tip the part is smooth, as the local surface says
-constexpr double kRetreat = 10e-3;       // [m], along the tool axis, before the tool goes up
-constexpr double kOverPart = 10e-3;      // [m], at which the tool travels
-constexpr double kSurfaceSpacing = 2e-3; // [m], of the points that stand for the part
-constexpr double kStandoffMax = 3.5e-3;  // [m]: farther, the dot leaves the picture
-constexpr int kLooks = 4;                // at the tool's bodies on each stretch of the way
+constexpr double kAirMin = 1e-3;     // [m], between tool and part, beside what the part may be off
+constexpr double kAtTip = 3e-3;      // [m]: nearer to the tip the part is smooth, as the local surface says
+constexpr double kRetreat = 10e-3;   // [m], along the tool axis, before the tool goes up
+constexpr double kOverPart = 10e-3;  // [m], at which the tool travels
+constexpr double kSurfaceSpacing = 2e-3;  // [m], of the points that stand for the part
+constexpr double kStandoffMax = 3.5e-3;   // [m]: farther, the dot leaves the picture
+constexpr int kLooks = 4;                 // at the tool's bodies on each stretch of the way
 
 }  // namespace
 
@@ -37,10 +37,11 @@ ProbingCheck::ProbingCheck(const machine::MachineDescription& machine, const geo
       mechanism_(machine.make_mechanism()),
       surface_W_(cover(part, kSurfaceSpacing)) {
   if (margin + kAirMin > kStandoffMax)
-    throw InputError(fmt::format(
-        "by its tolerances the part may stand {:.2f} mm beside its place (4 sigma), and the gap sensor looks down "
-        "from {:.2f} mm at most: clamp it more exactly, or state smaller tolerances of the part",
-        to_mm(margin), to_mm(kStandoffMax - kAirMin)));
+    throw InputError(
+        fmt::format("by its tolerances the part may stand {:.2f} mm beside its place (4 sigma), and the gap "
+                    "sensor looks down "
+                    "from {:.2f} mm at most: clamp it more exactly, or state smaller tolerances of the part",
+                    to_mm(margin), to_mm(kStandoffMax - kAirMin)));
 }
 
 ProbingCheck::~ProbingCheck() = default;
@@ -96,7 +97,8 @@ std::string ProbingCheck::why_not(const ProbingPlace& place) const {
     return fmt::format("the tool would come nearer than {:g} mm to the part or the table", to_mm(kAirMin));
   for (const auto& [from, to] : {std::pair(way.near, way.start), std::pair(way.above, way.near)})
     for (int i = 0; i < kLooks; ++i)
-      if (tool_clearance(machine_, surface_W_, interpolate(from, to, static_cast<double>(i) / kLooks), 0) < air)
+      if (tool_clearance(machine_, surface_W_, interpolate(from, to, static_cast<double>(i) / kLooks), 0) <
+          air)
         return fmt::format("on its way the tool would come nearer than {:.3g} mm to the part or the table",
                            to_mm(air));
   return "";

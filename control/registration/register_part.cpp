@@ -48,7 +48,8 @@ std::vector<ProbingPlace> shortest_way(std::vector<ProbingPlace> places, Vec3 fr
 
 class Registrar {
  public:
-  Registrar(const RegistrationTask& task, const machine::MachineDescription& machine, machine::MachinePort& port)
+  Registrar(const RegistrationTask& task, const machine::MachineDescription& machine,
+            machine::MachinePort& port)
       : task_(task),
         machine_(machine),
         port_(port),
@@ -87,7 +88,8 @@ class Registrar {
 };
 
 void Registrar::measure_all() {
-  const std::size_t wanted = std::min(task_.places.size(), static_cast<std::size_t>(std::max(0, task_.wanted)));
+  const std::size_t wanted =
+      std::min(task_.places.size(), static_cast<std::size_t>(std::max(0, task_.wanted)));
   const auto spare = task_.places.begin() + static_cast<std::ptrdiff_t>(wanted);
   for (const ProbingPlace& place :
        shortest_way({task_.places.begin(), spare}, cycle_.resting_pose().translation()))
@@ -204,7 +206,8 @@ void Registrar::fit() {
     result_.refused = "no pose of the drawn part explains the readings: the fit does not converge";
   else if (!found.expected_part())
     result_.refused = fmt::format(
-        "the readings do not fit the drawn part: chi-square {:.1f} for {} degrees of freedom, at most {:.1f} is "
+        "the readings do not fit the drawn part: chi-square {:.1f} for {} degrees of freedom, at most {:.1f} "
+        "is "
         "plausible; the worst place is {:.3f} mm off it",
         found.chi_square, found.degrees_of_freedom, found.chi_square_limit, to_mm(worst));
 }
@@ -212,11 +215,12 @@ void Registrar::fit() {
 }  // namespace
 
 int Registration::measured() const {
-  return static_cast<int>(std::count_if(places.begin(), places.end(), [](const auto& p) { return p.measured; }));
+  return static_cast<int>(
+      std::count_if(places.begin(), places.end(), [](const auto& p) { return p.measured; }));
 }
 
-Eigen::VectorXd common_errors(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
-                              double normal_share) {
+Eigen::VectorXd common_errors(const machine::MachineDescription& machine, const LocalSurface& surface,
+                              double gap, double normal_share) {
   const Eigen::MatrixXd root = mounting_root(machine);
   machine::MountingVector derivatives;
   if (!reading_derivatives(machine, surface, gap, derivatives)) derivatives.setZero();

@@ -33,16 +33,16 @@ struct PlaceReading {
   MeasuredPoint point;               ///< where `measured`
   double reading_sigma = 0;          ///< [m], of the reading's noise along the normal
   bool measured = false;
-  std::string why;        ///< not measured: one line
-  double residual = 0;    ///< [m], off the part where it was found
+  std::string why;      ///< not measured: one line
+  double residual = 0;  ///< [m], off the part where it was found
 };
 
 struct Registration {
   std::vector<PlaceReading> places;  ///< in the order of measuring
   std::optional<PartFit> fit;
-  Stop stop;               ///< the machine failed
-  std::string refused;     ///< why the part is not where the program may be printed; empty: `fit` holds
-  double duration = 0;     ///< [s], port clock
+  Stop stop;            ///< the machine failed
+  std::string refused;  ///< why the part is not where the program may be printed; empty: `fit` holds
+  double duration = 0;  ///< [s], port clock
 
   bool good() const { return fit.has_value() && refused.empty() && !stop; }
   int measured() const;
@@ -50,8 +50,8 @@ struct Registration {
 
 /// What the sensor's calibration leaves of a reading, as `MeasuredPoint::common`: of the machine file's
 /// `gap_sensor`, else of its tolerances of mounting, else nothing.
-Eigen::VectorXd common_errors(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
-                              double normal_share);
+Eigen::VectorXd common_errors(const machine::MachineDescription& machine, const LocalSurface& surface,
+                              double gap, double normal_share);
 
 /// Looks at the places one after the other, from above all of the part each time, and ends at home. A place
 /// whose reading fails is left out and named. Without six readings, and where the readings do not fit the

@@ -31,7 +31,7 @@ double distance_in_shape(const geometry::Cylinder& s, const Vec3& p) {
 /// Beside the cone exact, beyond its rims not farther than it is.
 double distance_in_shape(const geometry::Frustum& s, const Vec3& p) {
   const double slope = (s.radius_top - s.radius_bottom) / s.height;
-  const double beside = p.head<2>().norm() - (s.radius_bottom + slope * p.z());
+  const double beside = p.head<2>().norm() - (s.radius_bottom + slope * std::clamp(p.z(), 0.0, s.height));
   return revolved(beside / std::hypot(1, slope), std::max(-p.z(), p.z() - s.height));
 }
 
@@ -47,23 +47,27 @@ struct Extent {
   double radius, low, high;
 };
 Extent extent_of(const geometry::Shape& shape) {
-  return std::visit(machine::Overloaded{
-                        [](const geometry::Sphere& s) { return Extent{s.radius, -s.radius, s.radius}; },
-                        [](const geometry::Capsule& s) {
-                          return Extent{s.radius, -s.length / 2 - s.radius, s.length / 2 + s.radius};
-                        },
-                        [](const geometry::Cylinder& s) { return Extent{s.radius, -s.length / 2, s.length / 2}; },
-                        [](const geometry::Frustum& s) {
-                          return Extent{std::max(s.radius_bottom, s.radius_top), 0, s.height};
-                        },
-                        [](const geometry::Box& s) {
-                          return Extent{s.size.head<2>().norm() / 2, -s.size.z() / 2, s.size.z() / 2};
-                        },
-                        [](const geometry::MeshShape& s) {
-                          const double r = std::max(s.mesh->lower().norm(), s.mesh->upper().norm());
-                          return Extent{r, -r, r};
-                        }},
-                    shape.form);
+  return std::visit(
+      machine::Overloaded{[](const geometry::Sphere& s) {
+                            return Extent{s.radius, -s.radius, s.radius};
+                          },
+                          [](const geometry::Capsule& s) {
+                            return Extent{s.radius, -s.length / 2 - s.radius, s.length / 2 + s.radius};
+                          },
+                          [](const geometry::Cylinder& s) {
+                            return Extent{s.radius, -s.length / 2, s.length / 2};
+                          },
+                          [](const geometry::Frustum& s) {
+                            return Extent{std::max(s.radius_bottom, s.radius_top), 0, s.height};
+                          },
+                          [](const geometry::Box& s) {
+                            return Extent{s.size.head<2>().norm() / 2, -s.size.z() / 2, s.size.z() / 2};
+                          },
+                          [](const geometry::MeshShape& s) {
+                            const double r = std::max(s.mesh->lower().norm(), s.mesh->upper().norm());
+                            return Extent{r, -r, r};
+                          }},
+      shape.form);
 }
 
 /// Lowest z in W of a body.

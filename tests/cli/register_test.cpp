@@ -22,10 +22,12 @@ std::string contents(const std::string& path) {
 TEST(RegisterCommand, APatternThatThePartDoesNotCarryIsNamedByItsLine) {
   const Folder folder;
   const std::string pose = folder / "pose.yaml";
-  const std::string pattern = folder.write("pattern.csv", "x_mm,y_mm,z_mm\n0,0,31\n0,10,31\n0,-10,31\n0,15,31\n0,-15,33\n0,5,31\n");
+  const std::string pattern =
+      folder.write("pattern.csv", "x_mm,y_mm,z_mm\n0,0,31\n0,10,31\n0,-10,31\n0,15,31\n0,-15,33\n0,5,31\n");
   const Outcome outcome = understudy("register --fixture bottle --pattern " + pattern + " -o " + pose);
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("pattern.csv:6"), HasSubstr("off the drawn part"), HasSubstr("0.1 mm")));
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("pattern.csv:6"), HasSubstr("off the drawn part"), HasSubstr("0.1 mm")));
   EXPECT_FALSE(fs::exists(pose));
 }
 
@@ -47,10 +49,11 @@ TEST(RegisterCommand, WritesThePoseWithItsCovariance) {
   const std::string pose = folder / "pose.yaml";
   const Outcome outcome = understudy("register --fixture bottle --as-built nominal -o " + pose);
   ASSERT_EQ(outcome.status, 0) << outcome.err << outcome.out;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("found"), HasSubstr("not seen, left as drawn"), HasSubstr("turn about")));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("found"), HasSubstr("not seen, left as drawn"), HasSubstr("turn about")));
   const std::string text = contents(pose);
-  for (const char* key : {"position_mm: [", "quaternion: [", "reference_mm: [", "covariance:\n  - [", "unseen: [\"",
-                          "chi_square: "})
+  for (const char* key : {"position_mm: [", "quaternion: [", "reference_mm: [", "covariance:\n  - [",
+                          "unseen: [\"", "chi_square: "})
     EXPECT_THAT(text, HasSubstr(key));
 }
 

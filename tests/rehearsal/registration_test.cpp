@@ -34,9 +34,9 @@ struct MovedPart {
     write_file(path, "part: {position_mm: [0.3, -0.2, -0.35], quaternion: [0.9999795, 0.002, 0, 0.0025]}\n");
   }
   ~MovedPart() { std::filesystem::remove(path); }
-  std::filesystem::path path = std::filesystem::temp_directory_path() /
-                               (std::string("moved-") +
-                                testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml");
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() /
+      (std::string("moved-") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml");
 };
 
 TEST(RegisteredRehearsal, PrintsInTheBandOnAPartThatStandsBesideItsPlace) {
@@ -69,7 +69,7 @@ TEST(RegisteredRehearsal, APartOfAnotherShapeIsRefusedAndNothingIsPrinted) {
   const auto machine = machine::load_machine("hexapod");
   const auto part = geometry::read_stl(machine::find_fixture("bottle"));
   request.registration.wanted = true;
-  auto task = registration_task(request, machine, part);
+  auto task = registration_task(request, machine, part, {});
   ASSERT_TRUE(task);
   RegistrationRun run;
   run.found.refused = "the readings do not fit the drawn part";
@@ -86,12 +86,13 @@ TEST(RegisteredRehearsal, NeedsAPartAndASensor) {
   RehearsalRequest request = bottle();
   request.registration.wanted = true;
   const auto machine = machine::load_machine("hexapod");
-  EXPECT_THROW(registration_task(request, machine, nullptr), InputError);
+  EXPECT_THROW(registration_task(request, machine, nullptr, {}), InputError);
   auto blind = machine;
   blind.has_microscope = false;
-  EXPECT_THROW(registration_task(request, blind, geometry::read_stl(machine::find_fixture("bottle"))), InputError);
+  EXPECT_THROW(registration_task(request, blind, geometry::read_stl(machine::find_fixture("bottle")), {}),
+               InputError);
   request.registration.wanted = false;
-  EXPECT_FALSE(registration_task(request, machine, nullptr));
+  EXPECT_FALSE(registration_task(request, machine, nullptr, {}));
 }
 
 }  // namespace

@@ -12,9 +12,7 @@ using toolpath::Step;
 using toolpath::StepKind;
 
 /// A quarter turn about z, and a shift: (1, 0, 0) goes to (10, 1, 0) mm.
-Pose quarter() {
-  return make_pose(exp_rotation(Vec3(0, 0, std::numbers::pi / 2)), Vec3(10e-3, 0, 0));
-}
+Pose quarter() { return make_pose(exp_rotation(Vec3(0, 0, std::numbers::pi / 2)), Vec3(10e-3, 0, 0)); }
 
 TEST(MovedProgram, EveryPoseGoesWithThePart) {
   const Program moved = moved_program(bead_program(), quarter());

@@ -28,7 +28,8 @@ TEST(ToolClearance, DistancesOfBodiesAreThoseOfTheirGeometry) {
   EXPECT_NEAR(distance(cone, {3, 0, 1}), std::sqrt(2), 1e-12);
   EXPECT_NEAR(distance(cone, {0, 0, -2}), 2, 1e-12);
   EXPECT_DOUBLE_EQ(distance({"", geometry::Capsule{1, 4}}, {3, 0, 5}), std::hypot(3, 3) - 1);
-  EXPECT_DOUBLE_EQ(distance({"", geometry::Sphere{2}, make_pose(Quat::Identity(), Vec3(1, 0, 0))}, {4, 4, 0}), 3);
+  EXPECT_DOUBLE_EQ(distance({"", geometry::Sphere{2}, make_pose(Quat::Identity(), Vec3(1, 0, 0))}, {4, 4, 0}),
+                   3);
 }
 
 TEST(ToolClearance, CoversABoxEverywhere) {
