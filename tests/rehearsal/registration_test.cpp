@@ -31,7 +31,8 @@ RehearsalRequest bottle() {
 /// A machine as drawn on which the part is clamped 0.35 mm low, 0.3 mm aside and turned by 4 and 5 mrad.
 struct MovedPart {
   MovedPart() {
-    write_file(path, "part: {position_mm: [0.3, -0.2, -0.35], quaternion: [0.9999795, 0.002, 0, 0.0025]}\n");
+    write_file(path,
+               "part: {position_mm: [0.3, -0.2, -0.35], quaternion: [0.999994875, 0.002, 0, 0.0025]}\n");
   }
   ~MovedPart() { std::filesystem::remove(path); }
   std::filesystem::path path =
@@ -64,7 +65,23 @@ TEST(RegisteredRehearsal, PrintsInTheBandOnAPartThatStandsBesideItsPlace) {
   for (const TracePoint& p : record.trace) ASSERT_GT(p.gap, 0.05e-3) << "at " << p.time;
 }
 
-TEST(RegisteredRehearsal, APartOfAnotherShapeIsRefusedAndNothingIsPrinted) {
+// Waves of 0.3 mm, where the tolerances speak of 10 um: no pose of the drawn bottle explains them.
+TEST(RegisteredRehearsal, AWarpedPartIsRefused) {
+  const MovedPart warped;
+  write_file(warped.path, "part: {ripple_um: 300}\n");
+  RehearsalRequest request = bottle();
+  request.program.clear();  // looked at all over
+  request.as_built = warped.path.string();
+  request.registration.wanted = true;
+  const Record record = rehearse(request);
+  ASSERT_TRUE(record.registration);
+  EXPECT_THAT(record.registration->refused, HasSubstr("do not fit the drawn part"));
+  EXPECT_FALSE(record.go);
+  ASSERT_FALSE(record.findings.empty());
+  EXPECT_EQ(record.findings[0].kind, "registration");
+}
+
+TEST(RegisteredRehearsal, APartThatIsRefusedIsAFinding) {
   RehearsalRequest request = bottle();
   const auto machine = machine::load_machine("hexapod");
   const auto part = geometry::read_stl(machine::find_fixture("bottle"));
