@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
+#include "cli/registration_options.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "rehearsal/finding_groups.h"
@@ -71,6 +72,7 @@ void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
   print_findings(rehearsal::group_findings(record));
+  if (record.registration) print_registration(*record.registration);
   if (record.gap) {
     const auto& gap = *record.gap;
     fmt::print("  gap at the start {:.3f} mm", gap.start_mm);
@@ -204,6 +206,12 @@ void add_rehearse(CLI::App& app, Action& action) {
       "--gap-control", request->gap_control,
       "off; start: close the gap before each print move by laser and camera; continuous: and follow "
       "it along the path; start where the machine has them");
+  auto* find = command
+                   ->add_flag("--register", request->registration.wanted,
+                              "first find the part by laser and camera, and print where it stands")
+                   ->group("Finding the part");
+  add_registration_options(*command, request->registration);
+  for (const char* option : {"--pattern", "--places"}) command->get_option(option)->needs(find);
   add_tolerances(*command, *request);
   add_dialect(*command, request->dialect);
   add_surface(*command, request->surface);

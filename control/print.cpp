@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "control/approach.h"
+#include "control/approach_motion.h"
 #include "control/cycle.h"
+#include "control/standing_pose.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/units.h"
@@ -20,46 +22,6 @@ using toolpath::StepKind;
 namespace {
 
 constexpr double kOutputPatience = 5.0;  // [s]
-constexpr double kAtHome = 50e-6;        // [m or rad]: drives that rest at home read this or less beside it
-
-/// Straight moves along the tool axis for the gap controller, at the approach's own feed.
-class ApproachMotion : public GapMotion {
- public:
-  ApproachMotion(ControlCycle& cycle, const Step& approach) : cycle_(cycle), approach_(approach) {}
-
-  Status move_to(const Pose& X_WT) override {
-    Step step = approach_;
-    step.X_WT = X_WT;
-    step.duration = 0;
-    step.filament = 0;
-    if (const Stop stop = cycle_.push(step)) return stop.status;
-    return cycle_.come_to_rest().status;
-  }
-  machine::MachinePort& port() override { return cycle_.port(); }
-
- private:
-  ControlCycle& cycle_;
-  const Step& approach_;
-};
-
-/// Where the tool stands before the first step: home, unless the drives read otherwise.
-Pose standing_pose(const machine::MachineDescription& machine, const machine::MachinePort& port) {
-  const auto mechanism = machine.make_mechanism();
-  const auto axes = static_cast<std::size_t>(mechanism->axis_count());
-  const kinematics::AxisVector measured = port.state().position;
-  kinematics::AxisVector home{};
-  const std::span<double> home_axes(home.data(), axes);
-  bool at_home = mechanism->inverse(machine.X_BT_home, home_axes, home_axes) == kinematics::SolveStatus::ok;
-  for (std::size_t i = 0; i < axes; ++i) at_home = at_home && std::abs(measured[i] - home[i]) <= kAtHome;
-  if (at_home) return machine.X_WB * machine.X_BT_home;
-  Pose X_BT;
-  const kinematics::SolveStatus solved =
-      mechanism->forward(std::span<const double>(measured.data(), axes), machine.X_BT_home, X_BT);
-  if (solved != kinematics::SolveStatus::ok)
-    throw MachineError(fmt::format("the drives read axis positions that belong to no pose of the machine: {}",
-                                   kinematics::to_string(solved)));
-  return machine.X_WB * X_BT;
-}
 
 class PrintLoop {
  public:

@@ -104,6 +104,16 @@ std::string about_accuracy(const Finding& finding, const Record& record) {
                      std::ceil(10 * finding.value) / 10);
 }
 
+std::string about_registration(const Finding&, const Record& record) {
+  return fmt::format(
+      "see in the report which places did not fit: is it this part, clamped as drawn and clean, and are the "
+      "machine "
+      "(`understudy calibrate`) and its gap sensor (`understudy calibrate gap-sensor`) calibrated? Is what "
+      "`part` "
+      "of the section tolerances of {} says of the clamped part true?",
+      record.machine_word);
+}
+
 using About = std::function<std::string(const Finding&, const Record&)>;
 
 About always(const char* text) {
@@ -123,6 +133,7 @@ const std::map<std::string, About>& advice_by_kind() {
       {"near_collision", always("nothing, if the machine's bodies are described as large as they are")},
       {"accuracy", about_accuracy},
       {"gap", about_gap},
+      {"registration", about_registration},
       {"flow", always("lower the feed F where the bead begins and ends, or let the extruder start earlier")},
       {"adhesion", about_adhesion},
       {"sag", always("draw the strand slower and with more fan (`M106 S255`), or hold it at both ends")}};

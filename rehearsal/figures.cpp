@@ -1,5 +1,7 @@
 #include "rehearsal/figures.h"
 
+#include <array>
+
 namespace understudy::rehearsal {
 namespace {
 
@@ -79,6 +81,34 @@ void add(const GapFigures& gap, Figures& to) {
   to.put("inside_stated_3_sigma_fraction", gap.inside_stated_3_sigma_fraction);
 }
 
+void add(const RegistrationFigures& found, Figures& to) {
+  to.section("registration");
+  to.count("places", found.places);
+  to.count("left_out", found.left_out);
+  to.put("duration_s", found.duration_s);
+  if (!found.refused.empty()) to.text("refused", found.refused);
+  if (!found.fit) return;
+  to.count("seen", found.seen);
+  to.texts("unseen", found.unseen);
+  const char* axes[] = {"x", "y", "z"};
+  const auto put_each = [&](const std::string& what, const std::array<double, 3>& values, const char* unit) {
+    for (std::size_t i = 0; i < 3; ++i) to.put(what + axes[i] + unit, values[i]);
+  };
+  put_each("reference_", found.reference_mm, "_mm");
+  put_each("shift_", found.shift_um, "_um");
+  put_each("shift_sigma_", found.shift_sigma_um, "_um");
+  put_each("turn_", found.turn_mrad, "_mrad");
+  put_each("turn_sigma_", found.turn_sigma_mrad, "_mrad");
+  to.put("chi_square", found.chi_square);
+  to.count("degrees_of_freedom", found.degrees_of_freedom);
+  to.put("chi_square_limit", found.chi_square_limit);
+  to.put("place_sigma_um", found.place_sigma_um);
+  to.put("normal_sigma_max_um", found.normal_sigma_max_um);
+  if (!found.normal_error_rms_um) return;
+  to.put("normal_error_rms_um", *found.normal_error_rms_um);
+  to.put("normal_error_max_um", found.normal_error_max_um);
+}
+
 void add(const SagFigures& sag, Figures& to) {
   to.section("sag");
   to.put("max_um", sag.max_um);
@@ -132,6 +162,7 @@ std::vector<Figure> figures(const Record& record) {
   if (record.print) add(*record.print, all);
   if (record.accuracy) add(*record.accuracy, record, all);
   if (record.calibration) add(*record.calibration, all);
+  if (record.registration) add(*record.registration, all);
   if (record.gap) add(*record.gap, all);
   if (record.sag) add(*record.sag, all);
   if (record.collision) add(*record.collision, all);

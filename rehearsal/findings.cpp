@@ -265,7 +265,10 @@ std::vector<Finding> findings_of(const TwinRun& run, const TwinSetup& setup,
   add_low_gap(run.deposition, machine.gap, findings);
   add_strand_findings(run, setup, findings);
   const bool explained = run.result.stop.gap != control::GapStop::none;
-  if (!run.result.completed && !explained) {
+  if (run.registration && !run.registration->good()) {
+    const auto refusals = registration_findings(*run.registration);
+    findings.insert(findings.end(), refusals.begin(), refusals.end());
+  } else if (!run.result.completed && !explained) {
     Finding f;
     f.kind = "unreachable";
     f.gcode_line = run.result.stop.line;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "control/gap/gap_controller.h"
+#include "control/registration/part_fit.h"
 #include "core/frames.h"
 #include "machine/port.h"
 #include "rehearsal/finding.h"
@@ -67,6 +68,32 @@ struct SagFigures {
 struct SurfaceFigures {
   std::optional<double> ra_um, rz_um;      ///< along the chosen line
   std::optional<double> deviation_p95_um;  ///< of the printed surface from the intended part
+};
+/// A place that the gap sensor looked at.
+struct RegistrationRow {
+  std::array<double, 3> place_mm{0, 0, 0};  ///< on the drawn part
+  std::string why;                          ///< it was left out
+  /// Where it was measured: gap read, noise of that, distance from the part as found, 1 sigma of the found
+  /// part's surface there, and by how much that surface is truly off, as the tool meets it.
+  std::optional<double> gap_mm, reading_sigma_um, residual_um, sigma_um, error_um;
+};
+/// The clamped part as the machine found it. Shift and turn are of the drawn part, the shift where the
+/// reference point is.
+struct RegistrationFigures {
+  int places = 0, left_out = 0;
+  int seen = 0;                     ///< freedoms of six
+  std::vector<std::string> unseen;  ///< in words; left as drawn
+  std::array<double, 3> reference_mm{}, shift_um{}, turn_mrad{}, shift_sigma_um{}, turn_sigma_mrad{};
+  double chi_square = 0, chi_square_limit = 0;
+  int degrees_of_freedom = 0;
+  double place_sigma_um = 0;       ///< that each place was taken to be off besides the reading's noise
+  double normal_sigma_max_um = 0;  ///< 1 sigma of the found surface, at the worst place
+  double normal_error_max_um = 0;  ///< its true error where it was measured
+  std::optional<double> normal_error_rms_um;
+  double duration_s = 0;
+  std::string refused;  ///< why nothing was printed; empty: it was
+  std::vector<RegistrationRow> rows;
+  std::optional<control::PartFit> fit;
 };
 struct EngineFigures {
   std::string name, version;
@@ -141,6 +168,7 @@ struct Record {
   std::optional<SagFigures> sag;
   std::optional<CollisionFigures> collision;
   std::optional<SurfaceFigures> surface;
+  std::optional<RegistrationFigures> registration;  ///< where it was asked for
   std::optional<EngineFigures> engine;
   Provenance provenance;
 

@@ -22,6 +22,7 @@
 #include "rehearsal/fixture.h"
 #include "rehearsal/gap_belief.h"
 #include "rehearsal/process_check.h"
+#include "rehearsal/registration.h"
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
@@ -82,7 +83,8 @@ TwinSetup prepare(const RehearsalRequest& request) {
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   TwinSetup setup;
   setup.machine = machine::load_machine(request.machine, setup.calibrated);
-  setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
+  if (!request.program.empty())
+    setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
   if (setup.machine.tool.prints()) {
     setup.material =
         machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);
@@ -96,6 +98,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
       seeds);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
+  setup.registration = registration_task(request, setup.machine, setup.part, setup.program);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
   setup.seed = seeds[sim::TruthGroup::noise];
@@ -249,6 +252,8 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
   if (without) record.trace_without_gap_control = without->trace;
   record.frames = runs.main.frames;
   fill_beliefs(setup, options.gap_control, runs.main.result, record);
+  if (runs.main.registration)
+    record.registration = registration_figures(*runs.main.registration, *setup.registration);
 }
 
 }  // namespace

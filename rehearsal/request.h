@@ -29,8 +29,15 @@ struct SurfaceRequest {
   std::vector<double> probe{0, 0, -1};  ///< direction in which the line looks for the surface
 };
 
+/// Whether the part is found by the gap sensor before the print (docs/registration.md).
+struct RegistrationRequest {
+  bool wanted = false;
+  std::string pattern;  ///< CSV of places; empty: chosen
+  int places = 9;       ///< of the chosen ones
+};
+
 struct RehearsalRequest {
-  std::string program;                             ///< path of a G-code file
+  std::string program;                             ///< path of a G-code file; empty: nothing is printed
   std::string machine = machine::kDefaultMachine;  ///< name or path
   std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
   std::string engine = "mujoco";
@@ -45,6 +52,7 @@ struct RehearsalRequest {
   std::vector<FaultRequest> faults;  ///< what goes wrong on the way
   DialectRequest dialect;
   SurfaceRequest surface;
+  RegistrationRequest registration;
   std::string command;     ///< for the record: how a user repeats this
   bool keep_scene = true;  ///< keep what pictures are drawn from; sweeps leave it out
   bool compare_without_gap_control =

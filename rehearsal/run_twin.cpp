@@ -128,6 +128,14 @@ struct Watch {
   sim::ObserverThread thread;
 };
 
+/// Nothing is printed on a part that was not found.
+control::PrintResult not_printed(const RegistrationRun& registration) {
+  control::PrintResult result;
+  result.stop.status = machine::Status::rejected;
+  result.stop.why = registration.found.stop ? registration.found.stop.why : registration.found.refused;
+  return result;
+}
+
 EngineFigures engine_of(const sim::Plant& plant, const sim::SimulatedPort& port, double wall) {
   const std::string engine = plant.engine();
   const auto space = engine.find(' ');
@@ -188,7 +196,21 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   print_options.part = setup.part.get();
   Relay relay(progress, watch.thread, watch.trace);
   TwinRun run;
-  run.result = control::print(setup.program, setup.machine, port, print_options, &relay);
+  const toolpath::Program* program = &setup.program;
+  if (setup.registration) {
+    if (progress) progress(0, "registering the part");
+    const auto true_gap = [&](std::uint64_t exposure) {
+      const auto found = truth.find(exposure);
+      return found == truth.end() ? std::nullopt : std::optional(found->second.gap);
+    };
+    run.registration = run_registration(*setup.registration, setup.program, setup.machine, port, true_gap,
+                                        !options.beyond_limits);
+    program = &run.registration->program;
+    print_options.part = run.registration->part.get();
+  }
+  run.result = run.registration && !run.registration->good()
+                   ? not_printed(*run.registration)
+                   : control::print(*program, setup.machine, port, print_options, &relay);
   watch.thread.drain();
   if (!port.engine_failure().empty()) throw MachineError(port.engine_failure());
   watch.deposition.finish();

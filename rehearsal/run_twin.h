@@ -13,6 +13,7 @@
 #include "machine/material.h"
 #include "rehearsal/flow_watch.h"
 #include "rehearsal/record.h"
+#include "rehearsal/registration.h"
 #include "rehearsal/trace_observer.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
@@ -38,9 +39,11 @@ struct TwinSetup {
   std::string engine;
   std::uint64_t seed = 0;
   std::vector<sim::FaultEvent> faults;
+  std::optional<control::RegistrationTask> registration;  ///< before the print
 };
 
 struct TwinRun {
+  std::optional<RegistrationRun> registration;
   control::PrintResult result;
   std::vector<TracePoint> trace;
   int trace_stride = 1;  ///< snapshots a point of the trace

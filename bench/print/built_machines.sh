@@ -1,6 +1,7 @@
 #!/bin/sh
 # The bottle's line on built machines, each off in all that its tolerances name (--as-built manufactured), after the
-# calibrations that a lab would make of it. One line a machine: verdict and gap of each gap control.
+# calibrations that a lab would make of it and, last, with the part found first (+registration). One line a machine: verdict
+# and gap of each gap control.
 #   bench/print/built_machines.sh UNDERSTUDY [FIRST-SEED [LAST-SEED]]
 set -eu
 understudy=$(realpath "$1")
@@ -15,12 +16,13 @@ for seed in $(seq "$first" "$last"); do
   "$understudy" calibrate poses.csv -o calibrated.yaml >calibrate.txt
   "$understudy" sample-gaps $built -o gaps >gaps.txt
   "$understudy" calibrate gap-sensor gaps/table.csv --machine calibrated.yaml -o ready.yaml >sensor.txt
-  for machine in hexapod calibrated.yaml ready.yaml; do
+  for machine in hexapod calibrated.yaml ready.yaml ready.yaml+registration; do
+    case $machine in *+registration) register=--register ;; *) register= ;; esac
     for control in off start continuous; do
-      "$understudy" rehearse line.gcode --machine "$machine" --fixture bottle $built --engine quasistatic --no-pictures \
+      "$understudy" rehearse line.gcode --machine "${machine%+registration}" $register --fixture bottle $built --engine quasistatic --no-pictures \
         --gap-control $control --out out >rehearse.txt || [ $? -eq 1 ]
-      printf '%s %s %s: ' "$seed" "$(basename "$machine" .yaml)" "$control"
-      sed -n '1p; s/^  gap at the start/gap at the start/p; s/^  error *gap/gap/p' rehearse.txt | cut -c1-150 | paste -sd' ' -
+      printf '%s %s %s: ' "$seed" "$(echo "$machine" | sed 's/\.yaml//')" "$control"
+      sed -n '1p; s/^  gap at the start/gap at the start/p; s/^  error *gap/gap/p; s/^    surface found/surface found/p' rehearse.txt | cut -c1-150 | paste -sd' ' -
       rm -rf out
     done
   done

@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kNoise = 5e-6;  // [m], of an approach's last estimate, at most (docs/gap-control.md#figures)
 
-/// Error of the reading per unit of each freedom of the mounting [m/m], [m/rad] and [m]: the controller takes
-/// a dot that is displaced for one of another gap.
+}  // namespace
+
+/// The controller takes a dot that is displaced for one of another gap.
 bool reading_derivatives(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                          machine::MountingVector& derivatives) {
   constexpr double kGapStep = 1e-6;    // [m]
@@ -41,8 +42,6 @@ bool reading_derivatives(const machine::MachineDescription& machine, const Local
   }
   return true;
 }
-
-}  // namespace
 
 double calibration_sigma(const machine::MachineDescription& machine, const LocalSurface& surface,
                          double gap) {

@@ -14,6 +14,11 @@ namespace understudy::control {
 /// Does not allocate.
 double calibration_sigma(const machine::MachineDescription& machine, const LocalSurface& surface, double gap);
 
+/// Error of a reading of this gap for each freedom of the mounting [m/m], [m/rad] and [m]. False where no dot
+/// is seen. Does not allocate.
+bool reading_derivatives(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
+                         machine::MountingVector& derivatives);
+
 /// A gap to aim at with such a sensor.
 struct SafeAim {
   double gap = 0;    ///< [m]

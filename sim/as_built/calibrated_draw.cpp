@@ -104,6 +104,7 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthS
   (void)machine::load_machine(machine.file.string(), parameters);
   machine::BuiltTolerances others = machine::load_built_tolerances(machine.file.string());
   if (parameters.play) others.play = 0;
+  if (machine.gap_sensor) others.camera_centre = 0;  // found as a turn of the microscope
   if (parameters.covariance.size() == 0)
     throw InputError(
         file,

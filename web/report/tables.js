@@ -62,7 +62,7 @@ function findingRow(finding) {
 }
 
 const kGroupTitles = {
-  print: 'Print', accuracy: 'Accuracy', calibration: 'Calibration', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', engine: 'Engine',
+  print: 'Print', accuracy: 'Accuracy', calibration: 'Calibration', registration: 'Part as found', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', engine: 'Engine',
 };
 
 const kFigureLabels = {
@@ -78,6 +78,8 @@ const kFigureLabels = {
   orientation_max_before_mrad: 'Orientation error before, largest', orientation_max_after_mrad: 'Orientation error after, largest',
   orientation_max_mrad: 'Orientation error, largest', open_loop_tip_max_um: 'Tip error without gap control, largest',
   tip_tolerance_mm: 'Tip error accepted', orientation_tolerance_deg: 'Orientation error accepted',
+  places: 'Places measured', left_out: 'Places left out', seen: 'Freedoms seen, of six', unseen: 'Not seen, left as drawn', refused: 'Not printed',
+  normal_sigma_max_um: 'Surface found within, 1 sigma, worst place', normal_error_rms_um: 'Surface truly off, RMS', normal_error_max_um: 'Surface truly off, largest',
   commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
   path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
   in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',
@@ -93,6 +95,7 @@ const kFigureLabels = {
 
 function figureText(key, value) {
   if (typeof value === 'string') return value;
+  if (Array.isArray(value)) return value.join('; ');
   if (key.endsWith('_fraction')) return format.percent(value);
   if (key === 'timestep_s') return format.quantity(1000 * value, '') + '\u00a0ms';
   const unit = format.unitOfKey(key);
