@@ -60,7 +60,7 @@ Noise noise_of(const std::vector<MeasuredPoint>& points) {
     const MeasuredPoint& point = points[static_cast<std::size_t>(i)];
     UNDERSTUDY_ASSERT(point.sigma > 0, "every point has a sigma of its own");
     noise.own[i] = point.sigma;
-    shared.row(i) = point.common.transpose() / point.sigma;
+    if (shared.cols() > 0) shared.row(i) = point.common.transpose() / point.sigma;
   }
   noise.covariance += shared * shared.transpose();
   return noise;
