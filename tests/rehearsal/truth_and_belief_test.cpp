@@ -1,10 +1,13 @@
 // Sensors and part of the twin against what the controller holds of them: either moves alone.
 #include <cmath>
+#include <filesystem>
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "core/output_file.h"
 #include "machine/fixture_file.h"
+#include "rehearsal/rehearse.h"
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
 #include "sim/as_built/truth.h"
@@ -115,6 +118,24 @@ TEST(TruthAndBeliefOfSensors, ThickerFilamentIsTooMuchForTheProgramAndNoneIsMiss
   TwinSetup setup = bottle();
   build(setup.as_built);
   const PrintFigures print = print_figures(thick, sim::true_description(setup.machine, setup.as_built));
+  EXPECT_NEAR(print.printed_mm + print.purged_mm, print.extruded_mm, 0.02 * print.extruded_mm);
+}
+
+/// The same from a file to the record.
+TEST(TruthAndBeliefOfSensors, ARehearsalCountsTheFilamentThatTheMachineHolds) {
+  const auto file = std::filesystem::temp_directory_path() / "thick-filament.yaml";
+  write_file(file, "process: {filament_diameter_mm: 1.96}\n");  // 1.12 of what is described
+  RehearsalRequest request;
+  request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
+  request.fixture = "bottle";
+  request.engine = "quasistatic";
+  request.as_built = file.string();
+  request.keep_scene = false;
+  const Record record = rehearse(request);
+  std::filesystem::remove(file);
+  ASSERT_TRUE(record.print);
+  const PrintFigures& print = *record.print;
+  ASSERT_GT(print.printed_mm, 0.1);
   EXPECT_NEAR(print.printed_mm + print.purged_mm, print.extruded_mm, 0.02 * print.extruded_mm);
 }
 
