@@ -117,7 +117,7 @@ Finding refusal(std::string message) {
 
 std::optional<control::RegistrationTask> registration_task(const RehearsalRequest& request,
                                                            const machine::MachineDescription& machine,
-                                                           std::shared_ptr<const geometry::Mesh> part,
+                                                           const std::shared_ptr<const geometry::Mesh>& part,
                                                            const toolpath::Program& program) {
   if (!request.registration.wanted) return std::nullopt;
   if (!part)

@@ -18,7 +18,7 @@ namespace understudy::rehearsal {
 /// not carry, a part that the sensor cannot look at.
 std::optional<control::RegistrationTask> registration_task(const RehearsalRequest& request,
                                                            const machine::MachineDescription& machine,
-                                                           std::shared_ptr<const geometry::Mesh> part,
+                                                           const std::shared_ptr<const geometry::Mesh>& part,
                                                            const toolpath::Program& program);
 
 /// What a run made of it.
