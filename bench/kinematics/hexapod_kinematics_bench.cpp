@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "tests/kinematics/hexapod/g4.h"
 
 namespace understudy::kinematics {
@@ -25,12 +25,10 @@ const std::vector<Case>& cases() {
     std::vector<Case> made;
     const HexapodJoints joints = joints_at_home(machine(), Pose::Identity());
     Random random(1, "bench");
-    const auto direction = [&] {
-      return Vec3(random.normal(), random.normal(), random.normal()).normalized();
-    };
+    const auto direction = [&] { return normal_vec3(random).normalized(); };
     while (made.size() < 1024) {
       Case c;
-      const Vec3 p(random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05));
+      const Vec3 p = uniform_vec3(random, 0.05);
       c.X = tilted(p, random.uniform(0, from_deg(15)), random.uniform(0, 2 * std::numbers::pi));
       if (!within_limits(machine(), joints, limits_g4(), c.X)) continue;
       c.X_neighbour = make_pose(Mat3(exp_rotation(from_deg(1) * direction()) * c.X.linear()),

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "machine/optics_mounting.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/as_built/calibrated_draw.h"
@@ -12,17 +12,12 @@
 namespace understudy::sim {
 namespace {
 
-Vec3 normal_vector(Random& random, double sigma) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return sigma * Vec3(x, y, z);
-}
-
 void add_strut_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
   for (int i = 0; i < kinematics::kStruts; ++i) {
     const auto s = static_cast<std::size_t>(i);
     Random random(built.seed, fmt::format("as-built/{}/strut {}", built.source, i + 1));
-    built.hexapod.base_joint[s] += normal_vector(random, tolerance.joint_position);
-    built.hexapod.platform_joint[s] += normal_vector(random, tolerance.joint_position);
+    built.hexapod.base_joint[s] += tolerance.joint_position * normal_vec3(random);
+    built.hexapod.platform_joint[s] += tolerance.joint_position * normal_vec3(random);
     built.hexapod.length_offset[s] += tolerance.length_offset * random.normal();
   }
 }
@@ -33,12 +28,12 @@ void add_axis_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
     Random random(built.seed, fmt::format("as-built/{}/axis {}", built.source, axis.name));
     // The part of a tilt along the axis itself is a turn about it: nothing.
     axis.direction =
-        (exp_rotation(normal_vector(random, tolerance.axis_direction)) * axis.direction).normalized();
-    axis.point += normal_vector(random, tolerance.axis_position);
+        (exp_rotation(tolerance.axis_direction * normal_vec3(random)) * axis.direction).normalized();
+    axis.point += tolerance.axis_position * normal_vec3(random);
     built.axis_zero[i] = (axis.angle ? tolerance.zero_angle : tolerance.zero_length) * random.normal();
   }
   Random random(built.seed, fmt::format("as-built/{}/tool", built.source));
-  built.chain.X_OT_zero.translation() += normal_vector(random, tolerance.axis_position);
+  built.chain.X_OT_zero.translation() += tolerance.axis_position * normal_vec3(random);
 }
 
 void add_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "machine/optics_mounting.h"
 
 namespace understudy::sim {
@@ -26,8 +26,7 @@ class Draws {
   double phase(const std::string& truth) const { return stream(truth).uniform(0, 2 * std::numbers::pi); }
   Vec3 vector(const std::string& truth, double sigma) const {
     Random random = stream(truth);
-    const double x = random.normal(), y = random.normal(), z = random.normal();
-    return sigma * Vec3(x, y, z);
+    return sigma * normal_vec3(random);
   }
   /// `value` times what may not turn it round.
   void scale(const std::string& truth, double share, double& value) const {

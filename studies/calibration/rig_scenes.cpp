@@ -2,18 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 
 namespace understudy::studies {
-namespace {
-
-Vec3 normal_vector(Random& random, double sigma) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return sigma * Vec3(x, y, z);
-}
-
-}  // namespace
-
 BuiltRig built_as_designed(const vision::CalibrationRig& designed) {
   BuiltRig built;
   built.cameras = designed.cameras;
@@ -28,12 +19,12 @@ BuiltRig sample_built_rig(const vision::CalibrationRig& designed, const vision::
     Random random(seed, fmt::format("measuring stand/camera {}", i + 1));
     Camera& camera = built.cameras[i].camera;
     camera.focal_px *= 1 + 3e-3 * random.normal();
-    camera.centre_px += principal_px * Vec2(random.normal(), random.normal());
+    camera.centre_px += principal_px * normal_vec2(random);
     camera.k1 = random.uniform(-0.12, 0.12);
     camera.k2 = random.uniform(-0.15, 0.15);
     camera.p1 = random.uniform(-5e-4, 5e-4);
     camera.p2 = random.uniform(-5e-4, 5e-4);
-    const Vec3 turn = normal_vector(random, 2e-3), shift = normal_vector(random, 0.3e-3);
+    const Vec3 turn = 2e-3 * normal_vec3(random), shift = 0.3e-3 * normal_vec3(random);
     built.cameras[i].X_WC = built.cameras[i].X_WC * make_pose(exp_rotation(turn), shift);
     for (std::size_t layer = 0; layer < built.boards[i].size(); ++layer) {
       Random of_board(seed, fmt::format("measuring stand/board {}/{}", i + 1, layer + 1));

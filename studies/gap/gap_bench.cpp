@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/error.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/fixture.h"
@@ -179,7 +180,7 @@ void GapScene::glow(Image& image) {
   const auto local = control::local_surface(*surface.part, surface.X_WT_S);
   if (!at || !control::predict_spread(lit_, local, lit_.gap.aim, spread)) return;
   const Eigen::Matrix2d inverse = spread.inverse();
-  const Vec2 centre = *at + kFlicker * Vec2(random_.normal(), random_.normal());
+  const Vec2 centre = *at + kFlicker * normal_vec2(random_);
   const double noise = 255 / lit_.microscope.full_well * lit_.microscope.read_noise;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
@@ -210,7 +211,7 @@ class ErringMachine {
     Random random(seed, "gap benchmark machine");
     error_ = kError * random.normal();
     slope_ = kSlope * random.normal();
-    turn_ = 2e-3 * Vec3(random.normal(), random.normal(), random.normal());
+    turn_ = 2e-3 * normal_vec3(random);
   }
   machine::LoopbackPort& port() { return port_; }
 

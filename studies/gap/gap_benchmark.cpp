@@ -85,7 +85,8 @@ std::vector<DetectorRow> measure_detectors(const Cell& cell) {
   for (int i = 0; i < kFramesPerTrial * cell.trials; ++i) {
     stop_if_interrupted();
     Pose X_WT = cell.surface.X_WT_S;
-    X_WT.translation() += X_WT.linear() * Vec3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), 0);
+    const Vec2 beside = uniform_vec2(random, 1e-3);
+    X_WT.translation() += X_WT.linear() * Vec3(beside.x(), beside.y(), 0);
     const double target = random.uniform(0.08e-3, 0.25e-3);
     X_WT.translation() += (target - scene.true_gap(X_WT)) * tool_axis(X_WT);
     const auto surface = control::local_surface(*cell.surface.part, X_WT);

@@ -16,7 +16,7 @@
 #include "control/gap/gap_reading.h"
 #include "control/gap/sensor_uncertainty.h"
 #include "control/motion/motion_planner.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "machine/description.h"
 #include "machine/loopback_port.h"
@@ -40,8 +40,8 @@ class CycleOf : public testing::TestWithParam<const char*> {
 
   Pose near_home(Random& random, double shift, double turn) const {
     Pose X = mechanism_->home();
-    const Vec3 a(random.uniform(-turn, turn), random.uniform(-turn, turn), random.uniform(-turn, turn));
-    const Vec3 p(random.uniform(-shift, shift), random.uniform(-shift, shift), random.uniform(-shift, shift));
+    const Vec3 a = uniform_vec3(random, turn);
+    const Vec3 p = uniform_vec3(random, shift);
     X.linear() = exp_rotation(a) * X.linear();
     X.translation() += p;
     return X;

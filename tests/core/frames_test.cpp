@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 
 namespace understudy {
 namespace {
 
-Vec3 random_vector(Random& random) { return Vec3(random.normal(), random.normal(), random.normal()); }
+Vec3 random_vector(Random& random) { return normal_vec3(random); }
 
 TEST(Frames, LogInvertsExpUpToHalfATurn) {
   Random random(1, "log-exp");

@@ -4,7 +4,7 @@
 #include <optional>
 #include <thread>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
 #include "tests/geometry/test_solids.h"
@@ -14,13 +14,9 @@ namespace {
 
 Mesh mesh_of(const Triangles& t) { return {t.vertices, t.triangles}; }
 
-Vec3 random_point(Random& random, double half) {
-  return {random.uniform(-half, half), random.uniform(-half, half), random.uniform(-half, half)};
-}
+Vec3 random_point(Random& random, double half) { return uniform_vec3(random, half); }
 
-Vec3 random_direction(Random& random) {
-  return Vec3(random.normal(), random.normal(), random.normal()).normalized();
-}
+Vec3 random_direction(Random& random) { return normal_vec3(random).normalized(); }
 
 // Triangles thrown into a box: no shared edges, all sizes, many crossings.
 Triangles random_soup(Random& random, int count) {

@@ -5,16 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 
 namespace understudy::geometry {
 namespace {
 
 const Vec3 kA(0, 0, 0), kB(4, 0, 0), kC(0, 3, 0);
 
-Vec3 random_vector(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
+Vec3 random_vector(Random& random, double size) { return uniform_vec3(random, size); }
 
 Vec3 point_of(const Vec3& barycentric, const Vec3& a, const Vec3& b, const Vec3& c) {
   return barycentric.x() * a + barycentric.y() * b + barycentric.z() * c;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 
 namespace understudy::machine {
@@ -20,9 +20,9 @@ std::vector<Pose> poses_about_home(const MachineDescription& machine, std::size_
   Random random(1, "pose table");
   std::vector<Pose> poses;
   for (std::size_t n = 0; n < count; ++n) {
-    const Vec3 turn(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+    const Vec3 turn = uniform_vec3(random, 0.3);
     const double far = n % 20 == 3 ? 5.0 : 0.05;  // [m]
-    const Vec3 way(random.uniform(-far, far), random.uniform(-far, far), random.uniform(-far, far));
+    const Vec3 way = uniform_vec3(random, far);
     Pose X = machine.X_BT_home * make_pose(exp_rotation(turn), way);
     if (n % 20 == 7) X.linear()(1, 2) = std::numeric_limits<double>::quiet_NaN();
     poses.push_back(X);
@@ -92,7 +92,7 @@ TEST(PoseTableOfAHexapod, FarRowsAreSolvedWhereHomeAloneIsNoSeed) {
   std::vector<AxisVector> far;
   for (int n = 0; n < 40'000; ++n) {
     const Vec3 turn(random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7), random.uniform(-1.2, 1.2));
-    const Vec3 way(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+    const Vec3 way = uniform_vec3(random, 0.1);
     const Pose X = machine.X_BT_home * make_pose(exp_rotation(turn), way);
     AxisVector axes{};
     Pose near;

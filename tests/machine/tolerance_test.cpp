@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/quantile.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "machine/description.h"
 
@@ -23,7 +23,7 @@ std::vector<Pose> workspace_poses(const MachineDescription& m, int count) {
   std::vector<kinematics::LimitViolation> violations;
   while (static_cast<int>(poses.size()) < count) {
     const double tilt = random.uniform(0, from_deg(20)), azimuth = random.uniform(0, 2 * M_PI);
-    const Vec3 shift(random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05));
+    const Vec3 shift = uniform_vec3(random, 0.05);
     const Mat3 R = exp_rotation(tilt * Vec3(std::cos(azimuth), std::sin(azimuth), 0));
     const Pose X = make_pose(R, Vec3(m.X_BT_home.translation() + shift));
     violations.clear();

@@ -2,16 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "geometry/mesh.h"
 #include "renderer/tessellate.h"
 
 namespace understudy::renderer {
 namespace {
 
-Vec3 random_direction(Random& random) {
-  return Vec3(random.normal(), random.normal(), random.normal()).normalized();
-}
+Vec3 random_direction(Random& random) { return normal_vec3(random).normalized(); }
 
 TEST(RayShape, AgreesWithTheShapesTriangles) {
   const std::vector<geometry::Shape> shapes = {{"sphere", geometry::Sphere{8e-3}},

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/random_vector.h"
 #include "vision/boards/view_ray_models.h"
 
 namespace understudy::vision {
@@ -56,8 +57,7 @@ LayerViewRays::LayerViewRays(const CameraLayers& layers, const CalibrationUncert
         continue;
       }
       database.push_back(table_of(board_, layer, sample_placement(uncertainty.boards, random)));
-      for (Vec2& p : database.back().pixel)
-        p += uncertainty.corner_px * Vec2(random.normal(), random.normal());
+      for (Vec2& p : database.back().pixel) p += uncertainty.corner_px * normal_vec2(random);
     }
     databases_.push_back(std::move(database));
   }

@@ -7,7 +7,7 @@
 
 #include "calibration/estimators/chain_calibration.h"
 #include "calibration/synthetic.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "machine/description.h"
 
@@ -58,9 +58,7 @@ struct ArmCase {
 
   /// `count` poses off by 1 to 5 mm and 1 to 5 degrees.
   void spoil(std::size_t count) {
-    const auto direction = [this] {
-      return Vec3(random.normal(), random.normal(), random.normal()).normalized();
-    };
+    const auto direction = [this] { return normal_vec3(random).normalized(); };
     while (count > 0) {
       const auto j = static_cast<std::size_t>(random.uniform() * static_cast<double>(good.size()));
       if (!good[j]) continue;

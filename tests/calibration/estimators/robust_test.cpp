@@ -1,6 +1,7 @@
 // Outlying poses: a target taken for another shifts and turns a whole pose.
 #include <gmock/gmock.h>
 
+#include "core/random_vector.h"
 #include "tests/calibration/calibration_rig.h"
 
 namespace understudy::calibration {
@@ -16,9 +17,7 @@ std::vector<bool> spoil(Problem& problem, std::size_t count, Random& random) {
     if (!good[j]) continue;
     good[j] = false;
     --count;
-    const auto direction = [&random] {
-      return Vec3(random.normal(), random.normal(), random.normal()).normalized();
-    };
+    const auto direction = [&random] { return normal_vec3(random).normalized(); };
     Pose& X = problem.samples[j].X_BT;
     X.translation() += random.uniform(0.3e-3, 2e-3) * direction();
     X.linear() = exp_rotation(random.uniform(3e-3, 20e-3) * direction()) * X.linear();

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "tests/control/gap/gap_stage.h"
 
@@ -22,7 +23,7 @@ void approach_from_everywhere(int first, int machines) {
     const double error = random.uniform(-1.5e-3, 1.5e-3);
     const Vec3 sideways = 0.2e-3 * Vec3(random.normal(), random.normal(), 0);
     // On a slope a sideways error is a gap error too; it must leave room for S'.
-    const Vec3 turn = 2e-3 * Vec3(random.normal(), random.normal(), random.normal());
+    const Vec3 turn = 2e-3 * normal_vec3(random);
     if (i < first) continue;
     Stage stage(start, error, i % 2 ? sideways : Vec3::Zero(), turn, static_cast<std::uint64_t>(i));
     const GapOutcome outcome = stage.run();

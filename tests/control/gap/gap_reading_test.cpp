@@ -7,7 +7,7 @@
 
 #include "control/gap/gap_sensor.h"
 #include "core/error.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
 #include "tests/control/gap/dot_world.h"
@@ -118,7 +118,7 @@ TEST(GapReading, InvertsExactDotsOverTheWholeRange) {
   for (int i = 0; i < 20000; ++i) {
     const double gap = random.uniform(-0.9e-3, 7.9e-3);
     LocalSurface surface;
-    surface.slope = 0.5 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
+    surface.slope = 0.5 * uniform_vec2(random, 1);
     surface.curvature(0, 0) = random.uniform(-100, 100);
     surface.curvature(1, 1) = random.uniform(-100, 100);
     surface.curvature(0, 1) = surface.curvature(1, 0) = random.uniform(-50, 50);
@@ -183,7 +183,7 @@ TEST(GapReading, SigmaIsTheScatterOfNoisyDots) {
   double squares = 0, sigma = 0;
   constexpr int kDraws = 4000;
   for (int i = 0; i < kDraws; ++i) {
-    vision::DotMeasurement dot = dot_at(exact + factor * Vec2(random.normal(), random.normal()));
+    vision::DotMeasurement dot = dot_at(exact + factor * normal_vec2(random));
     dot.covariance_px2 = factor * factor.transpose();
     GapReading reading;
     ASSERT_TRUE(read_gap(hexapod(), surface, dot, reading));

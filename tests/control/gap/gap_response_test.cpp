@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "control/print.h"
+#include "core/random_vector.h"
 #include "tests/control/gap/bead_program.h"
 #include "tests/control/gap/follower_loop.h"
 
@@ -48,7 +49,7 @@ Led approach_a_ghost(const Ghost& ghost, double error, std::uint64_t seed) {
     Pose seen = rig.truth(X);
     seen.translation().z() += ghost.offset;
     if (!at) at = exact_dot(hexapod(), flat_part(), seen);
-    rig.draw_spot(*at + ghost.flicker * Vec2(random.normal(), random.normal()), 190, image);
+    rig.draw_spot(*at + ghost.flicker * normal_vec2(random), 190, image);
     return true;
   });
   Led led{close_gap(hexapod(), {}, X_WT_S, kStandoff, motion, {}), 1};
@@ -129,7 +130,7 @@ TEST(Ghost, InTheMicroscopeStopsThePrintAboveTheFloor) {
     Pose seen = rig.truth(X);
     seen.translation().z() += 45e-6;
     if (!at) at = exact_dot(hexapod(), flat_part(), seen);
-    rig.draw_spot(*at + kSpeckle * Vec2(random.normal(), random.normal()), 190, image);
+    rig.draw_spot(*at + kSpeckle * normal_vec2(random), 190, image);
     return true;
   });
   PrintOptions options;

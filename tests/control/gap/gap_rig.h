@@ -13,7 +13,7 @@
 
 #include "control/cycle.h"
 #include "control/gap/gap_controller.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "machine/loopback_port.h"
 #include "tests/control/gap/dot_world.h"
 
@@ -101,8 +101,7 @@ class GapRig {
     const auto spread = exact_spread(machine_, options_.world, truth(X));
     if (!dot || !spread) return false;
     spread_ = *spread;
-    draw_spot(*dot + options_.jitter_px * Vec2(random_.normal(), random_.normal()), machine_.laser.peak_level,
-              image);
+    draw_spot(*dot + options_.jitter_px * normal_vec2(random_), machine_.laser.peak_level, image);
     return !frame_fault_ || frame_fault_(X, image);
   }
 

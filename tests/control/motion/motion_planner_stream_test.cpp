@@ -4,7 +4,7 @@
 #include <ctime>
 
 #include "control/motion/speed_profile.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "tests/control/motion/planning_for_test.h"
 
 namespace understudy::control {
@@ -90,7 +90,7 @@ TEST(MotionPlannerStream, TakingLateOrEarlyGivesTheSameMotion) {
   Random random(31, "zigzag");
   std::vector<Step> steps;
   for (int n = 1; n <= 400; ++n) {
-    const Vec3 p(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01));
+    const Vec3 p = uniform_vec3(random, 0.01);
     steps.push_back(hexapod.print_to(hexapod.at(p), 0.05, n, 1e-4));
   }
   MotionPlanner early = hexapod.planner(), late = hexapod.planner();

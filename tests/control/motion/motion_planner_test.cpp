@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "tests/control/motion/planning_for_test.h"
 
 namespace understudy::control {
@@ -79,7 +79,7 @@ std::vector<Step> random_program(const HexapodForTest& hexapod, Random& random, 
   std::vector<Step> steps;
   for (int n = 1; n <= count; ++n) {
     const double size = std::pow(10.0, random.uniform(-4.0, -1.9));  // [m], 0.1 to 12 mm between the points
-    Vec3 p(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+    Vec3 p = uniform_vec3(random, size);
     Vec3 turn(random.uniform(-8, 8) * size, random.uniform(-8, 8) * size, random.uniform(-8, 8) * size);
     steps.push_back(hexapod.print_to(hexapod.at(p, turn), random.uniform(0.002, 0.15), n, 1e-4));
     if (n % 17 == 0) steps.back().kind = StepKind::travel;

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "tests/geometry/test_solids.h"
 
@@ -59,10 +59,7 @@ std::vector<MeasuredPoint> measured(const std::vector<Spot>& spots, const Pose& 
 
 /// As the tolerance says.
 Pose drawn_pose(Random& random) {
-  const auto vector = [&](double sigma) -> Vec3 {
-    const double x = random.normal(), y = random.normal(), z = random.normal();
-    return sigma * Vec3(x, y, z);
-  };
+  const auto vector = [&](double sigma) -> Vec3 { return sigma * normal_vec3(random); };
   const Vec3 turn = vector(kTolerance.rotation);
   return make_pose(exp_rotation(turn), vector(kTolerance.position));
 }

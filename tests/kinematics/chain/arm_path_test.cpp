@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/random_vector.h"
 #include "tests/kinematics/chain/arm_machines.h"
 
 namespace understudy::kinematics {
@@ -96,9 +97,7 @@ TEST(ArmPath, StraightLinesWithATiltingToolHaveNoJump) {
   const ArmAxes home{0, 0.35, 0.17, 0.1, 1.05, 0};
   const Pose X_home = pose_of(*arm, home);
   for (int n = 0; n < 40; ++n) {
-    const auto small = [&](double size) {
-      return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
-    };
+    const auto small = [&](double size) { return uniform_vec3(random, size); };
     const Pose to =
         make_pose(Mat3(exp_rotation(small(0.4)) * X_home.linear()), X_home.translation() + small(0.06));
     expect_no_jump(X_home, to, home, 500);

@@ -6,17 +6,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "tests/kinematics/chain/arm_machines.h"
 
 namespace understudy::kinematics {
 namespace {
 
-Vec3 some(Random& random, double sigma) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return sigma * Vec3(x, y, z);
-}
+Vec3 some(Random& random, double sigma) { return sigma * normal_vec3(random); }
 
 ChainDescription measured_arm(std::uint64_t seed) {
   ChainDescription description = sv3x();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "core/random_vector.h"
 #include "kinematics/chain/chain_mechanism.h"
 #include "tests/guard/cycle_guard.h"
 #include "tests/kinematics/chain/arm_machines.h"
@@ -17,9 +18,7 @@ using Eigen::Matrix4d;
 using Axes = AxisVector;
 using Rates = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-Vec3 random_vector(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
+Vec3 random_vector(Random& random, double size) { return uniform_vec3(random, size); }
 
 /// Slides and turns in any direction, some of them under the work; all of it by chance.
 Chain random_chain(Random& random, int size) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "kinematics/hexapod/hexapod.h"
 #include "tests/kinematics/hexapod/g4.h"
 
@@ -93,7 +93,7 @@ TEST(HexapodLimits, JointsKeepTheDistancesOfTheReference) {
     }
   }
   for (int n = 0; n < 10'000; ++n) {
-    const Vec3 p(random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05));
+    const Vec3 p = uniform_vec3(random, 0.05);
     const Pose X = tilted(p, random.uniform(0, from_deg(25)), random.uniform(0, 2 * std::numbers::pi));
     if (!within_limits(g, joints, limits_g4(), X)) continue;
     for (int i = 0; i < kStruts; ++i)
@@ -113,8 +113,8 @@ TEST(HexapodLimits, ScrewDistanceIsTheLeastOverAllPairsOfPoints) {
   for (int n = 0; n < 60; ++n) {
     HexapodGeometry g = nominal_g4();
     for (const std::size_t i : {0u, 1u}) {
-      g.base_joint[i] = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-      g.platform_joint[i] = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      g.base_joint[i] = uniform_vec3(random, 1);
+      g.platform_joint[i] = uniform_vec3(random, 1);
     }
     const auto point = [&](std::size_t i, int k) -> Vec3 {
       return g.base_joint[i] + k / double(kPoints) * (g.platform_joint[i] - g.base_joint[i]);

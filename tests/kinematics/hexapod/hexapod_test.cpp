@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "tests/guard/cycle_guard.h"
 #include "tests/kinematics/hexapod/g4.h"
 
@@ -18,7 +18,7 @@ constexpr double kRounding = 1e-15;
 
 Pose random_pose(Random& random) {
   const Vec3 p(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), random.uniform(-0.02, 0.02));
-  const Vec3 turn(random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25));
+  const Vec3 turn = uniform_vec3(random, 0.25);
   return make_pose(exp_rotation(turn), p);
 }
 

@@ -1,4 +1,5 @@
 #include "tests/sim/beads/beads_for_tests.h"
+#include "core/random_vector.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -45,9 +46,7 @@ Bead moved(const Bead& bead, const Pose& X) {
   return result;
 }
 
-Vec3 random_vector(Random& random, double size) {
-  return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-}
+Vec3 random_vector(Random& random, double size) { return size * uniform_vec3(random, 1); }
 
 std::vector<Bead> random_beads(Random& random, int count, double size) {
   std::vector<Bead> beads;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "sim/collision/collision.h"
 #include "sim/collision/fcl_world.h"
 #include "sim/distance/mesh_clearance.h"
@@ -24,9 +24,7 @@ struct Motion {
   geometry::Shape part;
 };
 
-Vec3 random_vector(Random& random, double size) {
-  return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-}
+Vec3 random_vector(Random& random, double size) { return size * uniform_vec3(random, 1); }
 
 // A box, often a thin one, near the nozzle, the block or the platform; the tool passes over or through it.
 Motion random_motion(Random& random) {

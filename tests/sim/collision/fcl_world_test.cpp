@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "sim/distance/penetration.h"
 #include "tests/sim/collision/bodies_for_tests.h"
@@ -13,9 +13,7 @@
 namespace understudy::sim {
 namespace {
 
-Vec3 random_vector(Random& random, double size) {
-  return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-}
+Vec3 random_vector(Random& random, double size) { return size * uniform_vec3(random, 1); }
 
 // Distance of two segments by brute force over one and projection on the other, refined.
 double segment_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 
 namespace understudy::sim {
 namespace {
@@ -39,8 +39,8 @@ TEST(BeadCore, FarthestPointIsInTheCoreAndNoOtherIsFarther) {
   Random random(1, "bead support");
   for (const BeadCore& bead : {straight(), blob()})
     for (int n = 0; n < 500; ++n) {
-      const Vec3 direction(random.normal(), random.normal(), random.normal());
-      const Vec3 p(random.normal(), random.normal(), random.normal());
+      const Vec3 direction = normal_vec3(random);
+      const Vec3 p = normal_vec3(random);
       const Vec3 farthest = bead.farthest(direction);
       EXPECT_LE((bead.nearest(farthest) - farthest).norm(), 1e-15);
       EXPECT_LE(direction.dot(bead.nearest(p)), direction.dot(farthest) + 1e-14);
@@ -70,7 +70,7 @@ TEST(BeadCore, RandomRaysStayOutsideUntilTheyGoIn) {
   Random random(2, "rays on beads");
   for (const BeadCore& bead : {straight(), blob()})
     for (int n = 0; n < 300; ++n) {
-      const Vec3 origin = 4 * Vec3(random.normal(), random.normal(), random.normal());
+      const Vec3 origin = 4 * normal_vec3(random);
       const Vec3 target(random.uniform(-0.3, 0.3), random.uniform(-0.2, 0.2), random.uniform(-0.1, 0.1));
       if (signed_distance(bead, origin) <= 0) continue;
       const Vec3 direction = (target - origin).normalized();

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 
 namespace understudy::sim {
 namespace {
@@ -20,9 +20,7 @@ std::vector<ConvexSolid> solids() {
           solid_of({"", geometry::Box{Vec3(6, 4, 3)}, kHere})};
 }
 
-Vec3 random_vector(Random& random, double size) {
-  return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-}
+Vec3 random_vector(Random& random, double size) { return size * uniform_vec3(random, 1); }
 
 TEST(ConvexSolid, SignedDistancesAreThoseOfTheClosedForms) {
   const auto ball = solid_of({"", geometry::Sphere{2}, kHere});

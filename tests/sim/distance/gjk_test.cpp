@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "sim/distance/bead_core.h"
 #include "sim/distance/convex_solid.h"
 
@@ -18,9 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kStated = 2e-9;
 const Triangle kFloor = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(0, 2, 0)};
 
-Vec3 random_vector(Random& random, double size) {
-  return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-}
+Vec3 random_vector(Random& random, double size) { return size * uniform_vec3(random, 1); }
 
 template <typename F>
 double least_on_unit_interval(const F& f) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "sim/collision/fcl_world.h"
 #include "sim/distance/gjk.h"
@@ -19,9 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The stated accuracy: twice GJK's duality gap of 1 nm.
 constexpr double kStated = 2e-9;
 
-Vec3 random_vector(Random& random, double size) {
-  return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-}
+Vec3 random_vector(Random& random, double size) { return size * uniform_vec3(random, 1); }
 
 Mat3 random_rotation(Random& random) {
   return Quat(random.normal(), random.normal(), random.normal(), random.normal())

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "geometry/mesh.h"
 #include "sim/beads/bead_shape.h"
 
@@ -30,9 +30,7 @@ Bead bead_between(const Vec3& from, const Vec3& to, const Vec3& up, double width
   return bead;
 }
 
-Vec3 any_direction(Random& random) {
-  return Vec3(random.normal(), random.normal(), random.normal()).normalized();
-}
+Vec3 any_direction(Random& random) { return normal_vec3(random).normalized(); }
 
 // Every kind in every posture: flat or round, long or a blob, the normal askew or along the path.
 Bead any_bead(Random& random, int kind) {

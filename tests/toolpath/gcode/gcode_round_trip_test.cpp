@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
 
@@ -28,7 +28,7 @@ Program random_program(std::uint64_t seed) {
     step.kind = n == 0 ? StepKind::travel : static_cast<StepKind>(pick(7));  // all but end
     if (step.kind == StepKind::home) at = kOptions.X_WT_home;
     if (step.kind == StepKind::travel || step.kind == StepKind::move || step.kind == StepKind::print) {
-      if (pick(4) > 0) at.translation() = Vec3(random.normal(), random.normal(), random.normal()) * 0.1;
+      if (pick(4) > 0) at.translation() = normal_vec3(random) * 0.1;
       if (pick(3) > 0) at.linear() = random_turn(random).toRotationMatrix();
     }
     step.X_WT = at;

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "toolpath/lattice/lattice_fill.h"
 #include "toolpath/lattice/lattice_json.h"
@@ -217,7 +217,7 @@ TEST(LatticeSequence, RandomFramesKeepEveryRule) {
     Lattice lattice = cubes(16e-3, 16e-3, 16e-3, 8e-3);
     for (LatticeNode& n : lattice.nodes) {
       const double z = n.position.z();
-      n.position += 1e-3 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      n.position += 1e-3 * uniform_vec3(random, 1);
       if (n.grounded) n.position.z() = z;
     }
     for (int k = 0; k < 14; ++k) {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 
 namespace understudy::toolpath {
@@ -38,9 +38,7 @@ TEST(ToolEnvelope, DistancesAreThoseOfTheConeAndTheHeater) {
 TEST(ToolEnvelope, SweepsAgreeWithSampling) {
   Random random(7, "struts and motions");
   const ToolEnvelope tool(tool_bodies());
-  const auto point = [&](double size) {
-    return Vec3(size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
-  };
+  const auto point = [&](double size) { return Vec3(size * uniform_vec3(random, 1)); };
   for (int trial = 0; trial < 60; ++trial) {
     const StrutBody strut{point(0.03), point(0.03), 0.24e-3};
     const ToolMotion motion{point(0.02), point(0.02), point(1).normalized()};

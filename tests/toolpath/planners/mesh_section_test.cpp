@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "tests/geometry/test_solids.h"
 
 namespace understudy::toolpath {
@@ -49,7 +49,7 @@ TEST(MeshSection, OfASphereHasTheAreaOfItsCircle) {
   const Mesh ball = mesh_of(geometry::sphere(1, 90, 180));
   Random random(5, "sections");
   for (int n = 0; n < 50; ++n) {
-    const Vec3 normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    const Vec3 normal = normal_vec3(random).normalized();
     const double height = random.uniform(-0.9, 0.9);
     const auto lines = section_lines(ball, height * normal, normal);
     ASSERT_EQ(lines.size(), 1u);

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <limits>
 
+#include "core/random_vector.h"
 #include "tests/vision/boards/two_cameras.h"
 #include "vision/boards/rigid_fit.h"
 
@@ -32,9 +33,7 @@ std::array<std::array<PixelPoint, 3>, 2> observed_targets(const CalibrationRig& 
 }
 
 Pose random_pose(Random& random) {
-  const auto within = [&](double a) {
-    return Vec3(random.uniform(-a, a), random.uniform(-a, a), random.uniform(-a, a));
-  };
+  const auto within = [&](double a) { return uniform_vec3(random, a); };
   return make_pose(exp_rotation(within(0.25)), Vec3(within(10e-3) + Vec3(0, 0, 0.1)));
 }
 
@@ -59,9 +58,8 @@ TEST(RigidFit, IsExactForExactPointsAndNeverAReflection) {
   const CalibrationRig rig = reference_rig();
   Random random(5, "rigid fit");
   for (int i = 0; i < 200; ++i) {
-    const Pose X =
-        make_pose(exp_rotation(Vec3(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3))),
-                  Vec3(random.uniform(), random.uniform(), random.uniform()));
+    const Pose X = make_pose(exp_rotation(uniform_vec3(random, 3)),
+                             Vec3(random.uniform(), random.uniform(), random.uniform()));
     std::array<Vec3, 3> p_W;
     for (std::size_t k = 0; k < 3; ++k) p_W[k] = X * rig.targets[k];
     const auto fit = fit_rigid(rig.targets, p_W);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/random_vector.h"
 #include "vision/boards/calibration_rig.h"
 #include "vision/boards/stereo_pose.h"
 
@@ -28,8 +29,7 @@ inline std::array<CameraLayers, 2> observed_layers(const CalibrationRig& nominal
       for (int k = 0; k < nominal.board.corners(); ++k) {
         const Vec3 p_G = nominal.board.corner(k % nominal.board.columns, k / nominal.board.columns);
         const Vec3 p_C = truth[i].X_WC.inverse() * seen.X_WG * placement.moved(p_G);
-        seen.corners_px.push_back(truth[i].camera.project(p_C).value() +
-                                  corner_px * Vec2(random.normal(), random.normal()));
+        seen.corners_px.push_back(truth[i].camera.project(p_C).value() + corner_px * normal_vec2(random));
       }
       all[i].layers.push_back(seen);
     }
@@ -42,8 +42,8 @@ inline std::array<PixelPoint, 2> observed_point(const std::array<MountedCamera, 
                                                 double sigma_px, Random& random) {
   std::array<PixelPoint, 2> seen;
   for (std::size_t i = 0; i < 2; ++i) {
-    seen[i].pixel = truth[i].camera.project(truth[i].X_WC.inverse() * p_W).value() +
-                    sigma_px * Vec2(random.normal(), random.normal());
+    seen[i].pixel =
+        truth[i].camera.project(truth[i].X_WC.inverse() * p_W).value() + sigma_px * normal_vec2(random);
     seen[i].covariance = sigma_px * sigma_px * Eigen::Matrix2d::Identity();
   }
   return seen;

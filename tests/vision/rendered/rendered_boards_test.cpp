@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/random_vector.h"
 #include "renderer/calibration_view.h"
 #include "studies/calibration/rig_scenes.h"
 #include "vision/boards/chessboard.h"
@@ -46,9 +47,7 @@ BoardScene misplaced_board(const CalibrationRig& rig, int layer, const BoardPlac
 }
 
 Pose random_pose(Random& random) {
-  const auto within = [&](double a) {
-    return Vec3(random.uniform(-a, a), random.uniform(-a, a), random.uniform(-a, a));
-  };
+  const auto within = [&](double a) { return uniform_vec3(random, a); };
   return make_pose(exp_rotation(within(0.25)), Vec3(within(8e-3) + Vec3(0, 0, 0.1)));
 }
 
