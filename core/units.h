@@ -18,5 +18,6 @@ constexpr double to_mm(double v) { return v * 1e3; }
 constexpr double to_um(double v) { return v * 1e6; }
 constexpr double from_deg(double v) { return v * kDegree; }
 constexpr double to_deg(double v) { return v / kDegree; }
+constexpr double to_mrad(double v) { return v * 1e3; }
 
 }  // namespace understudy

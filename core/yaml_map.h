@@ -17,7 +17,7 @@
 #include "core/frames.h"
 #include "core/map_schema.h"
 
-namespace YAML {
+namespace YAML {  // NOLINT(readability-identifier-naming): the library's
 class Node;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "calibration/strut_model.h"
+#include "control/gap/gap_controller.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -14,7 +15,7 @@ using control::GapControl;
 using control::GapSample;
 
 constexpr double kUnstated = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFrameGap = 0.25;  // [s]: an older frame counts as stale (GapControllerOptions)
+constexpr double kFrameAgeMax = control::GapControllerOptions{}.frame_age_max;  // [s]
 
 using Rows = Eigen::RowVectorXd;
 
@@ -75,12 +76,13 @@ class Beliefs {
     if (frame_ == 0 || frames_[frame_ - 1]->time < bead_began) return std::nullopt;
     const GapSample& before = *frames_[frame_ - 1];
     if (frame_ == frames_.size())
-      return GapBelief{before.believed, time - before.time < kFrameGap ? before.believed_sigma : kUnstated};
+      return GapBelief{before.believed,
+                       time - before.time < kFrameAgeMax ? before.believed_sigma : kUnstated};
     const GapSample& after = *frames_[frame_];
     const double span = after.time - before.time, share = (time - before.time) / span;
     const auto between = [&](double a, double b) { return a + share * (b - a); };
     return GapBelief{between(before.believed, after.believed),
-                     span < kFrameGap ? between(before.believed_sigma, after.believed_sigma) : kUnstated};
+                     span < kFrameAgeMax ? between(before.believed_sigma, after.believed_sigma) : kUnstated};
   }
 
   GapBelief from_start(const control::GapOutcome& start, const Pose& X_WT) const {

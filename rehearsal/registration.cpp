@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "control/gap/local_surface.h"
 #include "control/registration/moved_program.h"
+#include "control/registration/registration_tolerance.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/built_tolerances.h"
@@ -15,43 +15,6 @@
 
 namespace understudy::rehearsal {
 namespace {
-
-// Of a machine file that does not state how a part is clamped: by hand, against stops or in a vice.
-constexpr double kPosition = 0.5e-3;     // [m]
-constexpr double kRotation = 5e-3;       // [rad]
-constexpr double kRepeatability = 4e-6;  // [m]: microsteps, a screw's error over a turn
-// Spread of places over which what differs between them is all there (docs/registration.md#the-fit).
-constexpr double kWaveShown = 20e-3;  // [m], a wave's length
-constexpr double kPlayShown =
-    80e-3;  // [m], as its square: play changes sides, never more than a quarter counts
-constexpr double kTipShown = 100e-3;  // [m], half of a workspace
-
-control::PartTolerance part_tolerance(const machine::BuiltTolerances& stated) {
-  return {stated.part_position > 0 ? stated.part_position : kPosition,
-          stated.part_rotation > 0 ? stated.part_rotation : kRotation, stated.part_size};
-}
-
-/// [m], RMS from their middle.
-double spread_of(const std::vector<control::ProbingPlace>& places) {
-  Vec3 middle = Vec3::Zero();
-  for (const auto& place : places) middle += place.p_W / static_cast<double>(places.size());
-  double squares = 0;
-  for (const auto& place : places) squares += (place.p_W - middle).squaredNorm();
-  return std::sqrt(squares / static_cast<double>(places.size()));
-}
-
-/// What the machine and the part's waves do alike at all places goes into the pose. What differs from place
-/// to place grows with the distance between them, up to all of it.
-double place_sigma(const machine::BuiltTolerances& stated, const machine::MachineDescription& machine,
-                   double spread) {
-  const double wave = std::min(1.0, spread / kWaveShown) * stated.part_ripple / std::numbers::sqrt2;
-  const double play = std::min(0.25, std::pow(spread / kPlayShown, 2)) * machine.tip_play();
-  const double tip =
-      machine.calibration && std::isfinite(machine.calibration->tip_sigma)
-          ? std::min(1.0, spread / kTipShown) * machine.calibration->tip_sigma / std::numbers::sqrt3
-          : 0;
-  return std::hypot(std::hypot(wave, tip), std::hypot(play, kRepeatability));
-}
 
 bool breaks_limits(const control::ConstraintReport& report) {
   const auto findings = findings_of(report);
@@ -76,9 +39,9 @@ void fill_fit(const control::PartFit& fit, RegistrationFigures& figures) {
     const auto k = static_cast<Eigen::Index>(i);
     figures.reference_mm[i] = to_mm(fit.reference_W[k]);
     figures.shift_um[i] = to_um(shift[k]);
-    figures.turn_mrad[i] = 1e3 * turn[k];
+    figures.turn_mrad[i] = to_mrad(turn[k]);
     figures.shift_sigma_um[i] = to_um(std::sqrt(fit.covariance(k, k)));
-    figures.turn_sigma_mrad[i] = 1e3 * std::sqrt(fit.covariance(k + 3, k + 3));
+    figures.turn_sigma_mrad[i] = to_mrad(std::sqrt(fit.covariance(k + 3, k + 3));
   }
   figures.seen = fit.seen;
   for (const auto& freedom : fit.unseen) figures.unseen.push_back(to_string(freedom));
@@ -127,7 +90,7 @@ std::optional<control::RegistrationTask> registration_task(const RehearsalReques
   const auto stated = machine::load_built_tolerances(request.machine);
   control::RegistrationTask task;
   task.part = part;
-  task.tolerance = part_tolerance(stated);
+  task.tolerance = control::part_tolerance(stated);
   const control::ProbingCheck check(machine, *part, control::largest_shift(*part, task.tolerance));
   if (!request.registration.pattern.empty()) {
     task.places = control::read_pattern(request.registration.pattern, *part, check);
@@ -137,7 +100,7 @@ std::optional<control::RegistrationTask> registration_task(const RehearsalReques
     task.places = control::choose_places(*part, task.tolerance, check, control::printed_region(program),
                                          task.wanted + task.wanted / 2);
   }
-  task.place_sigma = place_sigma(stated, machine, spread_of(task.places));
+  task.place_sigma = control::place_sigma(stated, machine, task.places);
   return task;
 }
 

@@ -156,7 +156,7 @@ std::string budget_json(const ErrorBudget& budget) {
   json["samples"] = budget.samples;
   json["rehearsals"] = budget.plan.rehearsals;
   json["stopped_early"] = budget.stopped;
-  json["interval"] = 0.95;
+  json["interval"] = studies::Bootstrap{}.level;
   json["groups"] = Json::array();
   for (const TruthGroup group : budget.plan.groups) json["groups"].push_back(to_string(group));
   json["quantities"] = Json::array();

@@ -60,7 +60,6 @@ class ExcitationTest {
     double scatter = 0;   ///< [m^2], mean square of what the better one leaves
   };
   Result result(double slope, double slope_sigma) const;  ///< prior [m/m]
-  std::size_t size() const { return filled_; }
 
  private:
   double misfit(bool follows, double slope, double slope_sigma) const;

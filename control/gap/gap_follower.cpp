@@ -34,29 +34,27 @@ GapFollowerOptions gap_follower_options(const machine::MachineDescription& machi
 }
 
 GapFollower::GapFollower(const GapFollowerOptions& options)
-    : options_(options), excitation_(excitation_options(options)) {}
+    : options_(options), line_(options.line), excitation_(excitation_options(options)) {}
 
 void GapFollower::aim_at(double aim, double calibration_sigma) {
   options_.aim = aim;
   calibration_sigma_ = calibration_sigma;
 }
 
-double GapFollower::sigma() const { return std::sqrt(std::max(0.0, p_ee_)); }
+double GapFollower::sigma() const { return std::sqrt(std::max(0.0, line_.covariance().height)); }
 
 void GapFollower::start(double time, double path, double gap, double sigma) {
   start_unknown(time, path);
   known_ = true;
-  error_ = gap;
-  p_ee_ = sigma * sigma + options_.unmodelled * options_.unmodelled;
+  line_.set_height(time, path, gap, sigma * sigma + options_.unmodelled * options_.unmodelled);
 }
 
 void GapFollower::start_unknown(double time, double path) {
   const GapFollowerOptions options = options_;
   *this = GapFollower(options);
-  time_ = time;
-  path_ = advanced_path_ = path;
+  line_.begin(time, path);
+  advanced_path_ = path;
   used_path_ = path - options_.speckle_length;
-  p_ss_ = options_.slope_sigma * options_.slope_sigma;
   resume(time, path);
 }
 
@@ -67,46 +65,17 @@ void GapFollower::resume(double time, double path) {
   reasons_.fill(0);
 }
 
-/// The error's line, no farther beyond the last good reading than it can be trusted.
-double GapFollower::predicted_error(double path) const {
-  return error_ + slope_ * std::max(0.0, std::min(path, used_path_ + options_.extrapolated_max) - path_);
-}
-
-double GapFollower::predicted_variance(double dt, double s) const {
-  const double q = options_.slope_walk;
-  return p_ee_ + s * (2 * p_es_ + s * p_ss_) + q * s * s * s / 3 + options_.drift * options_.drift * dt;
-}
+/// No farther beyond the last good reading than the line can be trusted.
+double GapFollower::predicted_error(double path) const { return line_.height_at(path, line_end()); }
 
 double GapFollower::predicted_sigma(double time, double path) const {
-  return std::sqrt(
-      std::max(0.0, predicted_variance(std::max(0.0, time - time_), std::max(0.0, path - path_))));
-}
-
-/// Its slope walks over the path, and its height with time.
-void GapFollower::predict(double time, double path) {
-  const double s = std::max(0.0, path - path_), dt = std::max(0.0, time - time_);
-  const double q = options_.slope_walk;
-  error_ = predicted_error(path);
-  p_ee_ = predicted_variance(dt, s);
-  p_es_ += s * p_ss_ + q * s * s / 2;
-  p_ss_ += q * s;
-  path_ = std::max(path_, path);
-  time_ = std::max(time_, time);
-}
-
-void GapFollower::correct(double innovation, double variance) {
-  const double total = p_ee_ + variance;
-  const double k_e = p_ee_ / total, k_s = p_es_ / total;
-  error_ += k_e * innovation;
-  slope_ += k_s * innovation;
-  p_ss_ -= k_s * p_es_;
-  p_es_ *= 1 - k_e;
-  p_ee_ *= 1 - k_e;
+  return std::sqrt(std::max(0.0, line_.variance_at(time, path)));
 }
 
 GapVerdict GapFollower::observe(const GapObservation& o) {
   if (!std::isfinite(o.gap) || !(o.sigma >= 0) || !std::isfinite(o.correction + o.path + o.time + o.sigma)) {
-    miss(time_, path_, GapStop::implausible);
+    const bool placed = std::isfinite(o.time + o.path);
+    miss(placed ? o.time : seen_time_, placed ? o.path : seen_path_, GapStop::implausible);
     return GapVerdict::jump;
   }
   same_readings_ = o.gap == last_reading_ ? same_readings_ + 1 : 0;
@@ -121,13 +90,13 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
     judge(o);
     return known_ ? GapVerdict::used : GapVerdict::not_yet;
   }
-  predict(o.time, o.path);
+  line_.predict(o.time, o.path, line_end());
   // From the same place the same speckle: such samples hardly add.
   const double fresh = std::clamp((o.path - used_path_) / options_.speckle_length, kSpeckleShare, 1.0);
   const double variance = o.sigma * o.sigma / fresh + options_.unmodelled * options_.unmodelled;
-  const double innovation = o.gap - o.correction - error_;
+  const double innovation = o.gap - o.correction - line_.height();
   if (o.path - used_path_ > options_.extrapolated_max) response_.forget();
-  const double spread = std::sqrt(p_ee_ + o.sigma * o.sigma) + options_.unmodelled;
+  const double spread = std::sqrt(line_.covariance().height + o.sigma * o.sigma) + options_.unmodelled;
   if (std::abs(innovation) > options_.gate * spread && !lasting_step(innovation, o.sigma * o.sigma)) {
     miss(o.time, o.path, GapStop::implausible);
     return GapVerdict::jump;
@@ -135,8 +104,9 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
   if (steps_ >= options_.step_samples) {
     response_.forget();
   } else {
-    const bool follows = response_.observe(o.gap - o.still, variance, innovation, p_ee_ + variance);
-    correct(innovation, variance);
+    const bool follows =
+        response_.observe(o.gap - o.still, variance, innovation, line_.covariance().height + variance);
+    line_.correct(innovation, variance);
     if (follows) prove(o);
   }
   steps_ = 0;
@@ -165,8 +135,7 @@ bool GapFollower::lasting_step(double innovation, double variance) {
     step_sum_ = step_squares_ = 0;
     return false;
   }
-  error_ += mean;
-  p_ee_ += variance / steps_;
+  line_.step(mean, variance / steps_);
   return true;
 }
 
@@ -178,15 +147,15 @@ void GapFollower::begin(const GapObservation& o) {
     steps_ = 0;
     step_sum_ = 0;
   }
-  if (steps_ == 0) path_ = o.path;
+  if (steps_ == 0) begun_path_ = o.path;
   ++steps_;
   step_sum_ += error;
   if (steps_ < options_.step_samples) return;
   known_ = true;
-  error_ = step_sum_ / steps_;
-  p_ee_ = o.sigma * o.sigma / steps_ + std::pow(options_.slope_sigma * (o.path - path_), 2);
-  path_ = used_path_ = o.path;
-  time_ = o.time;
+  const double variance =
+      o.sigma * o.sigma / steps_ + std::pow(options_.line.slope_sigma * (o.path - begun_path_), 2);
+  line_.set_height(o.time, o.path, step_sum_ / steps_, variance);
+  used_path_ = o.path;
   steps_ = 0;
   step_sum_ = 0;
   resume(o.time, o.path);
@@ -239,9 +208,8 @@ double GapFollower::lowest() const {
 /// The line as it was when readings last followed says where the gap may be by now.
 bool GapFollower::excitation_due(double path) const {
   if (!proved_) return true;
-  const double s = std::max(0.0, path - proved_path_);
   const double variance =
-      proved_ee_ + s * (2 * proved_es_ + s * proved_ss_) + options_.slope_walk * s * s * s / 3;
+      proved_line_.height_ahead(std::max(0.0, path - proved_path_), options_.line.slope_walk);
   return kSafeSigmas * std::sqrt(std::max(0.0, variance)) > options_.aim - options_.floor;
 }
 
@@ -250,9 +218,7 @@ void GapFollower::prove(const GapObservation& o) {
   proved_ = true;
   asked_ = false;
   proved_path_ = o.path;
-  proved_ee_ = p_ee_;
-  proved_es_ = p_es_;
-  proved_ss_ = p_ss_;
+  proved_line_ = line_.covariance();
 }
 
 void GapFollower::judge_excitation(const GapObservation& o) {
@@ -285,11 +251,11 @@ void GapFollower::excite(double dt, double path, bool follow) {
   if (!excitation_.available()) return;
   const bool may = follow && known_ && stop_ == GapStop::none;
   if (!follow) asked_ = false;
-  if (!follow && excitation_.rate() != 0) excitation_.abandon();
+  if (!follow && (excitation_.running() || excitation_.rate() != 0)) excitation_.abandon();
   const bool slow = std::abs(correction_.rate) <= (1 - kExcitedShare) * options_.rate_max;
   if (may && slow && !excitation_.running() && excitation_.rate() == 0) {
     if (excitation_due(path)) {
-      excitation_.begin(slope_, std::sqrt(std::max(0.0, p_ss_)));
+      excitation_.begin(line_.slope(), std::sqrt(std::max(0.0, line_.covariance().slope)));
     } else if (!excitation_.lowered())
       excitation_.lower();
   }
@@ -310,8 +276,8 @@ GapFollower::Correction GapFollower::advance(double dt, double path, bool follow
     const double wanted = options_.aim - predicted_error(path);
     const double target = std::clamp(wanted, lowest(), options_.travel_max);
     const double left = target - correction_.value;
-    const bool on_line = path > path_ && path < used_path_ + options_.extrapolated_max && wanted == target;
-    const double line_rate = on_line ? -slope_ * climb / dt : 0;
+    const bool on_line = path > line_.path() && path < line_end() && wanted == target;
+    const double line_rate = on_line ? -line_.slope() * climb / dt : 0;
     // Half of the acceleration: the other half is there for the target to move meanwhile.
     const double reach =
         std::min(std::abs(left) / options_.settle_time, std::sqrt(acceleration_max * std::abs(left)));

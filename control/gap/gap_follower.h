@@ -15,6 +15,7 @@
 #include "control/gap/confidence.h"
 #include "control/gap/gap_controller.h"
 #include "control/gap/gap_excitation.h"
+#include "control/gap/gap_line.h"
 #include "control/gap/gap_response.h"
 
 namespace understudy::control {
@@ -27,12 +28,10 @@ struct GapFollowerOptions {
   /// [m], of the correction towards the part until readings show that they follow it: a spot that stands
   /// still in the picture leads no farther.
   double unproved_max = 40e-6;
-  double settle_time = 0.03;        ///< [s], in which a small step of the estimate is taken over
-  double gate = kPlausibleSigmas;   ///< standard deviations that a reading may be off
-  double unmodelled = 2e-6;         ///< [m], a reading may be off besides: facets and roughness
-  double slope_sigma = 0.025;       ///< [m/m], of the error over the path before it was measured
-  double slope_walk = 0.04;         ///< [1/m], variance of that slope's change over a metre
-  double drift = 2e-6;              ///< [m/sqrt(s)], of the error of a tool at rest
+  double settle_time = 0.03;       ///< [s], in which a small step of the estimate is taken over
+  double gate = kPlausibleSigmas;  ///< standard deviations that a reading may be off
+  double unmodelled = 2e-6;        ///< [m], a reading may be off besides: facets and roughness
+  GapLineOptions line;
   double speckle_length = 0.15e-3;  ///< [m] of path after which speckle is new
   double step_max = 50e-6;          ///< [m], a lasting step of the machine; a bead is at least twice as high
   int step_samples = 4;             ///< in a row that show the same step
@@ -98,8 +97,10 @@ class GapFollower {
   /// The correction a cycle later, where the path will be then. `follow` false: it comes to rest.
   Correction advance(double dt, double path, bool follow);
 
-  double gap(double correction) const { return error_ + correction; }  ///< [m], at the last good reading
-  double sigma() const;                                                ///< [m]
+  double gap(double correction) const {
+    return line_.height() + correction;
+  }                      ///< [m], at the last good reading
+  double sigma() const;  ///< [m]
   /// What the gap will be at a place of the path with a correction.
   double predicted_gap(double path, double correction) const { return predicted_error(path) + correction; }
   double predicted_sigma(double time, double path) const;  ///< [m], of it then
@@ -111,13 +112,13 @@ class GapFollower {
   int missed() const { return missed_; }             ///< frames since then
   /// Its stop is that of a reading that has not followed the tool, which rose by this [m]; else 0.
   double unanswered() const { return unanswered_; }
-  double wanted() const { return options_.aim - error_; }  ///< [m], the correction that would reach the aim
+  double wanted() const {
+    return options_.aim - line_.height();
+  }  ///< [m], the correction that would reach the aim
 
  private:
   double predicted_error(double path) const;
-  double predicted_variance(double dt, double s) const;
-  void predict(double time, double path);
-  void correct(double innovation, double variance);
+  double line_end() const { return used_path_ + options_.extrapolated_max; }  // [m] of path
   bool lasting_step(double innovation, double variance);
   void begin(const GapObservation& o);
   void judge(const GapObservation& o);
@@ -133,10 +134,9 @@ class GapFollower {
   GapFollowerOptions options_;
   double calibration_sigma_ = 0;  // [m]
   bool known_ = false;
-  double time_ = 0, path_ = 0;             // of the estimate
-  double error_ = 0, slope_ = 0;           // [m], [m/m]: gap without correction, and over the path
-  double p_ee_ = 0, p_es_ = 0, p_ss_ = 0;  // covariance
-  double used_path_ = 0;                   // of the last reading that was used
+  GapLine line_;
+  double begun_path_ = 0;  // of the first reading that counts
+  double used_path_ = 0;   // of the last reading that was used
   double last_reading_ = -1;
   int same_readings_ = 0;  // in a row, to the last bit
   int steps_ = 0;          // readings in a row that are off to one side
@@ -154,7 +154,7 @@ class GapFollower {
   double asked_time_ = 0;  // [s], readings since then have not answered
   bool asked_ = false;
   double proved_path_ = 0;  // [m], where, and the line's covariance there
-  double proved_ee_ = 0, proved_es_ = 0, proved_ss_ = 0;
+  GapLineCovariance proved_line_;
   double unanswered_ = 0;
   double advanced_path_ = 0;
 };

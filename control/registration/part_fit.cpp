@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <boost/math/distributions/chi_squared.hpp>
 
 #include "core/assert.h"
 #include "core/units.h"
@@ -18,10 +19,10 @@ namespace {
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 constexpr int kIterations = 50;
-constexpr double kConverged = 1e-6;    // of the tolerance: nanometres
-constexpr double kSeenAbove = 1;       // information in units of the tolerance
-constexpr double kTurnShare = 0.2;     // of a motion at the part's size: less is a shift
-constexpr double kRareNormal = 3.719;  // one in 10 000, of a standard normal
+constexpr double kConverged = 1e-6;  // of the tolerance: nanometres
+constexpr double kSeenAbove = 1;     // information in units of the tolerance
+constexpr double kTurnShare = 0.2;   // of a motion at the part's size: less is a shift
+constexpr double kRare = 1e-4;       // right parts that are refused
 
 /// Distances of the points from the drawn part, with the part at X_W, and how they change.
 struct Linearised {
@@ -185,11 +186,9 @@ std::vector<UnseenFreedom> name_unseen(const Freedoms& freedoms, const Vec3& ref
   return unseen;
 }
 
-/// Wilson and Hilferty (1931).
 double rare_chi_square(int degrees_of_freedom) {
   if (degrees_of_freedom <= 0) return 0;
-  const double n = degrees_of_freedom, spread = 2 / (9 * n);
-  return n * std::pow(1 - spread + kRareNormal * std::sqrt(spread), 3);
+  return quantile(complement(boost::math::chi_squared(degrees_of_freedom), kRare));
 }
 
 /// Of what the best pose leaves. What a part of another size leaves is no sign of another part.

@@ -55,9 +55,9 @@ TEST(GapFollower, TakesItsNumbersFromTheMachine) {
 TEST(GapFollower, WhatItStatesOfAPlaceAheadIsLessSureTheFartherItLies) {
   GapFollowerOptions o;
   o.unmodelled = 4e-6;
-  o.slope_sigma = 0.01;
-  o.slope_walk = 0.3;
-  o.drift = 2e-6;
+  o.line.slope_sigma = 0.01;
+  o.line.slope_walk = 0.3;
+  o.line.drift = 2e-6;
   GapFollower follower(o);
   follower.start(0, 0, kAim, 3e-6);
   EXPECT_NEAR(follower.predicted_sigma(0, 0), 5e-6, 1e-12);
@@ -111,8 +111,8 @@ TEST(GapFollower, ARampAwayFromTheToolIsFollowedInProvedStages) {
 
 TEST(GapFollower, WithoutASlopeTheErrorIsRateTimesDelay) {
   GapFollowerOptions options = options_of_hexapod();
-  options.slope_sigma = options.slope_walk = 0;
-  options.drift = 1e-3;  // the newest reading is believed whole
+  options.line.slope_sigma = options.line.slope_walk = 0;
+  options.line.drift = 1e-3;  // the newest reading is believed whole
   options.unproved_max = options.travel_max;
   constexpr double kRate = 0.1e-3;
   auto loop = loop_with([&](double t, double) { return kAim + kRate * t; }, 0, 1, options);
