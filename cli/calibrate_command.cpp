@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 #include "report/calibration_summary.h"
 #include "report/page/calibration_page.h"
 

@@ -9,8 +9,8 @@
 #include "cli/machine_option.h"
 #include "core/interrupt.h"
 #include "machine/default_machine.h"
-#include "machine/gap_sensor_section.h"
-#include "machine/section_text.h"
+#include "machine/file/gap_sensor_section.h"
+#include "machine/file/section_text.h"
 #include "report/gap_sensor_summary.h"
 
 namespace understudy::cli {

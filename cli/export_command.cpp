@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/output_file.h"
 #include "machine/description.h"
-#include "machine/urdf_writer.h"
+#include "machine/file/urdf_writer.h"
 
 namespace understudy::cli {
 namespace {

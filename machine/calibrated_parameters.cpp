@@ -6,8 +6,8 @@
 
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
-#include "machine/calibration_section.h"
-#include "machine/covariance_key.h"
+#include "machine/file/calibration_section.h"
+#include "machine/file/covariance_key.h"
 
 namespace understudy::machine {
 namespace {

@@ -10,13 +10,13 @@
 #include "machine/accepted_errors.h"
 #include "machine/built_tolerances.h"
 #include "machine/calibrated_parameters.h"
-#include "machine/calibration_section.h"
-#include "machine/chain_section.h"
-#include "machine/gap_sensor_section.h"
-#include "machine/hexapod_section.h"
+#include "machine/file/calibration_section.h"
+#include "machine/file/chain_section.h"
+#include "machine/file/gap_sensor_section.h"
+#include "machine/file/hexapod_section.h"
+#include "machine/file/optics_section.h"
+#include "machine/file/tool_section.h"
 #include "machine/model_files.h"
-#include "machine/optics_section.h"
-#include "machine/tool_section.h"
 
 namespace understudy::machine {
 namespace {

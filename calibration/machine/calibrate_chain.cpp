@@ -12,7 +12,7 @@
 #include "calibration/machine/tip_map.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 
 namespace understudy::calibration {
 namespace {

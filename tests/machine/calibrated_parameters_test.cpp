@@ -4,7 +4,7 @@
 #include "core/output_file.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 #include "tests/machine/edited_file.h"
 
 namespace understudy::machine {

@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/units.h"
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 #include "tests/calibration/machine/measured_machine.h"
 
 namespace understudy::calibration {

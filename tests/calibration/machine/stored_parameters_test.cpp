@@ -10,7 +10,7 @@
 #include "calibration/absorb_zeros.h"
 #include "calibration/estimators/estimator.h"
 #include "calibration/machine/tip_map.h"
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 #include "tests/calibration/machine/measured_machine.h"
 
 namespace understudy::calibration {

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/random.h"
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 #include "sim/as_built/as_built_file.h"
 
 namespace understudy::sim {

@@ -1,4 +1,4 @@
-#include "machine/mount_key.h"
+#include "machine/file/mount_key.h"
 
 #include <cmath>
 

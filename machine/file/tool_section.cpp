@@ -1,4 +1,4 @@
-#include "machine/tool_section.h"
+#include "machine/file/tool_section.h"
 
 #include <fmt/format.h>
 

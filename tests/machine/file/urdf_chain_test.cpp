@@ -1,4 +1,4 @@
-#include "machine/urdf_chain.h"
+#include "machine/file/urdf_chain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "kinematics/chain/chain.h"
-#include "machine/urdf_writer.h"
+#include "machine/file/urdf_writer.h"
 
 namespace understudy::machine {
 namespace {
@@ -246,9 +246,7 @@ TEST_F(UrdfFile, MoreAxesThanAMachineHasAreRefused) {
               HasSubstr("joint 'j8' is axis 9"));
 }
 
-Vec3 random_vector(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
+Vec3 random_vector(Random& random, double size) { return uniform_vec3(random, size); }
 
 /// Axes of both kinds under tool and work.
 Chain random_chain(Random& random) {

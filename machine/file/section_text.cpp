@@ -1,4 +1,4 @@
-#include "machine/section_text.h"
+#include "machine/file/section_text.h"
 
 #include <cctype>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
-#include "machine/mount_key.h"
+#include "machine/file/mount_key.h"
 
 namespace understudy::machine {
 namespace {

@@ -1,12 +1,12 @@
 // The section `gap_sensor`: what the controller then knows of laser and microscope, and what is refused.
-#include "machine/gap_sensor_section.h"
+#include "machine/file/gap_sensor_section.h"
 
 #include <cmath>
 
 #include "core/output_file.h"
 #include "core/random.h"
+#include "machine/file/section_text.h"
 #include "machine/optics_mounting.h"
-#include "machine/section_text.h"
 #include "tests/machine/edited_file.h"
 
 namespace understudy::machine {

@@ -1,4 +1,4 @@
-#include "machine/hexapod_section.h"
+#include "machine/file/hexapod_section.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
-#include "machine/tool_section.h"
+#include "machine/file/tool_section.h"
 
 namespace understudy::machine {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "machine/urdf_chain.h"
+#include "machine/file/urdf_chain.h"
 
 namespace understudy::machine {
 

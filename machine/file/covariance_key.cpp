@@ -1,4 +1,4 @@
-#include "machine/covariance_key.h"
+#include "machine/file/covariance_key.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

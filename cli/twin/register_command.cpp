@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
-#include "cli/registration_options.h"
+#include "cli/twin/registration_options.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
@@ -24,38 +25,38 @@ struct RegisterCall {
   std::string output;
 };
 
-/// Units of the covariance: um and mrad.
-double in_report_units(const Mat6& covariance, Eigen::Index i, Eigen::Index j) {
-  const auto factor = [](Eigen::Index k) { return k < 3 ? 1e6 : 1e3; };
-  return factor(i) * factor(j) * covariance(i, j);
+/// Shifts in um and turns in mrad.
+std::string covariance_text(const Mat6& covariance) {
+  Eigen::Matrix<double, 6, 1> factor;
+  factor << Vec3::Constant(to_um(1)), Vec3::Constant(to_mrad(1));
+  const Mat6 scaled = factor.asDiagonal() * covariance * factor.asDiagonal();
+  std::string text;
+  for (const auto& row : scaled.rowwise()) text += fmt::format("  - [{:.6g}]\n", fmt::join(row, ", "));
+  return text;
+}
+
+std::string quoted(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", word);
+  return text;
 }
 
 std::string pose_text(const rehearsal::Record& record, const rehearsal::RegistrationFigures& figures) {
   const control::PartFit& fit = *figures.fit;
-  const Vec3 p = 1e3 * fit.X_W.translation();
+  const Vec3 p = fit.X_W.translation();
   const Quat q(fit.X_W.linear());
-  std::string text = fmt::format(
-      "# Where the part stands: a point of the drawn part is at R p + position, in W. By: {}\n"
-      "part: {}\nmachine: {}\nposition_mm: [{:.6f}, {:.6f}, {:.6f}]\n"
-      "quaternion: [{:.9f}, {:.9f}, {:.9f}, {:.9f}]   # w, x, y, z\nreference_mm: [{:.3f}]\n"
-      "# Of the shift of the reference point in um and the turn about it in mrad, along x, y, z of W.\n"
-      "covariance:\n",
-      command_line(), record.fixture_name, record.machine_word, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
-      q.z(), fmt::join(figures.reference_mm, ", "));
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    text += "  - [";
-    for (Eigen::Index j = 0; j < 6; ++j)
-      text += fmt::format("{}{:.6g}", j == 0 ? "" : ", ", in_report_units(fit.covariance, i, j));
-    text += "]\n";
-  }
-  text += fmt::format("unseen: [{}]\n", fmt::join(figures.unseen.begin(), figures.unseen.end(), "\", \""));
-  if (!figures.unseen.empty()) {
-    const auto open = text.rfind("unseen: [") + 9;
-    text.insert(open, "\"");
-    text.insert(text.rfind(']'), "\"");
-  }
-  return text + fmt::format("chi_square: {:.3f}\ndegrees_of_freedom: {}\nplaces: {}\n", fit.chi_square,
-                            fit.degrees_of_freedom, figures.places);
+  return fmt::format(
+             "# Where the part stands: a point of the drawn part is at R p + position, in W. By: {}\n"
+             "part: {}\nmachine: {}\nposition_mm: [{:.6f}, {:.6f}, {:.6f}]\n"
+             "quaternion: [{:.9f}, {:.9f}, {:.9f}, {:.9f}]   # w, x, y, z\nreference_mm: [{:.3f}]\n"
+             "# Of the shift of the reference point in um and the turn about it in mrad, along x, y, z of "
+             "W.\n"
+             "covariance:\n",
+             command_line(), record.fixture_name, record.machine_word, to_mm(p.x()), to_mm(p.y()),
+             to_mm(p.z()), q.w(), q.x(), q.y(), q.z(), fmt::join(figures.reference_mm, ", ")) +
+         covariance_text(fit.covariance) +
+         fmt::format("unseen: [{}]\nchi_square: {:.3f}\ndegrees_of_freedom: {}\nplaces: {}\n",
+                     quoted(figures.unseen), fit.chi_square, fit.degrees_of_freedom, figures.places);
 }
 
 int run_register(const RegisterCall& call) {

@@ -1,4 +1,4 @@
-#include "cli/plan_options.h"
+#include "cli/plan/plan_options.h"
 
 namespace understudy::cli {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/plan_options.h"
+#include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"

@@ -1,4 +1,4 @@
-#include "machine/urdf_writer.h"
+#include "machine/file/urdf_writer.h"
 
 #include <algorithm>
 #include <cmath>

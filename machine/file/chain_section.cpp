@@ -1,4 +1,4 @@
-#include "machine/chain_section.h"
+#include "machine/file/chain_section.h"
 
 #include <cctype>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "core/output_file.h"
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
-#include "machine/tool_section.h"
-#include "machine/urdf_chain.h"
+#include "machine/file/tool_section.h"
+#include "machine/file/urdf_chain.h"
 
 namespace understudy::machine {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/registration_options.h"
+#include "cli/twin/registration_options.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

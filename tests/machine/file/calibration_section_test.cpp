@@ -1,10 +1,10 @@
 // The section `calibration`: what the controller then knows, what it does not touch, and what is refused.
-#include "machine/calibration_section.h"
+#include "machine/file/calibration_section.h"
 
 #include <regex>
 
 #include "core/output_file.h"
-#include "core/random.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "tests/machine/edited_file.h"
 
@@ -17,10 +17,7 @@ using ::testing::StartsWith;
 
 constexpr double kDigits = 1e-12;  // [m]: the file has 9 decimals of a millimetre
 
-Vec3 some(Random& random, double sigma) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return sigma * Vec3(x, y, z);
-}
+Vec3 some(Random& random, double sigma) { return sigma * normal_vec3(random); }
 
 /// The shipped hexapod as a calibration may have found it.
 MachineDescription calibrated_hexapod() {

@@ -1,4 +1,4 @@
-#include "machine/optics_section.h"
+#include "machine/file/optics_section.h"
 
 #include <cmath>
 

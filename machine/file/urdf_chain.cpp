@@ -1,4 +1,4 @@
-#include "machine/urdf_chain.h"
+#include "machine/file/urdf_chain.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -7,7 +7,7 @@
 #include "core/yaml_map.h"
 #include "machine/calibrated_parameters.h"
 #include "machine/description.h"
-#include "machine/section_text.h"
+#include "machine/file/section_text.h"
 
 namespace understudy::machine {
 

@@ -9,7 +9,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
-#include "cli/registration_options.h"
+#include "cli/twin/registration_options.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "rehearsal/finding_groups.h"

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
-#include "machine/calibration_section.h"
-#include "machine/mount_key.h"
-#include "machine/section_text.h"
+#include "machine/file/calibration_section.h"
+#include "machine/file/mount_key.h"
+#include "machine/file/section_text.h"
 
 namespace understudy::machine {
 namespace {

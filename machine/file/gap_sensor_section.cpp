@@ -1,14 +1,14 @@
-#include "machine/gap_sensor_section.h"
+#include "machine/file/gap_sensor_section.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/units.h"
-#include "machine/covariance_key.h"
-#include "machine/mount_key.h"
+#include "machine/file/covariance_key.h"
+#include "machine/file/mount_key.h"
+#include "machine/file/section_text.h"
 #include "machine/optics_mounting.h"
-#include "machine/section_text.h"
 
 namespace understudy::machine {
 namespace {
