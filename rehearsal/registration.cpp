@@ -41,7 +41,7 @@ void fill_fit(const control::PartFit& fit, RegistrationFigures& figures) {
     figures.shift_um[i] = to_um(shift[k]);
     figures.turn_mrad[i] = to_mrad(turn[k]);
     figures.shift_sigma_um[i] = to_um(std::sqrt(fit.covariance(k, k)));
-    figures.turn_sigma_mrad[i] = to_mrad(std::sqrt(fit.covariance(k + 3, k + 3));
+    figures.turn_sigma_mrad[i] = to_mrad(std::sqrt(fit.covariance(k + 3, k + 3)));
   }
   figures.seen = fit.seen;
   for (const auto& freedom : fit.unseen) figures.unseen.push_back(to_string(freedom));

@@ -11,6 +11,7 @@
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
+#include "core/random_vector.h"
 #include "core/units.h"
 #include "machine/model_files.h"
 #include "rehearsal/rehearse.h"
