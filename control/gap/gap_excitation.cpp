@@ -17,21 +17,32 @@ constexpr double kChanged = 2.0 / 3;  // of the amplitude, root mean square
 }  // namespace
 
 void ExcitationMotion::go_to(double height, double rate_max, double acceleration_max) {
-  const double way = height - value_, length = std::abs(way);
   target_ = height;
+  rate_max_ = rate_max;
+  acceleration_max_ = acceleration_max;
+  brake(acceleration_max);
+  turning_ = rate_ != 0;
+  if (!turning_) start();
+}
+
+void ExcitationMotion::start() {
+  const double way = target_ - value_, length = std::abs(way);
   time_ = braking_ = 0;
+  turning_ = false;
   // The peaks of half a cosine over `length` in T: pi length / 2 T, and pi^2 length / 2 T^2.
   duration_ =
-      std::numbers::pi * std::max(length / (2 * rate_max), std::sqrt(length / (2 * acceleration_max)));
+      std::numbers::pi * std::max(length / (2 * rate_max_), std::sqrt(length / (2 * acceleration_max_)));
   peak_ = length > 0 ? std::numbers::pi * way / (2 * duration_) : 0;
 }
 
 void ExcitationMotion::brake(double acceleration_max) {
   braking_ = acceleration_max;
+  turning_ = false;
   duration_ = 0;
 }
 
 void ExcitationMotion::advance(double dt) {
+  if (turning_ && rate_ == 0) start();
   time_ = std::min(time_ + dt, duration_);
   double next = arrived() ? 0 : peak_ * std::sin(std::numbers::pi * time_ / duration_);
   if (braking_ > 0) next = std::copysign(std::max(0.0, std::abs(rate_) - braking_ * dt), rate_);

@@ -20,21 +20,25 @@ struct GapExcitationOptions {
 /// Half a cosine between two heights. The value is the integral of the rate, cycle by cycle.
 class ExcitationMotion {
  public:
-  /// To `height` [m] from where it is, in the time that the limits ask for.
+  /// To `height` [m] from where it is, in the time that the limits ask for; from a motion by way of a rest.
   void go_to(double height, double rate_max, double acceleration_max);
   /// To rest, wherever that is.
   void brake(double acceleration_max);
   void advance(double dt);
   double value() const { return value_; }  ///< [m]
   double rate() const { return rate_; }    ///< [m/s]
-  bool arrived() const { return time_ >= duration_; }
-  bool braked() const { return braking_ > 0; }
+  bool arrived() const { return time_ >= duration_ && !turning_; }
+  bool braked() const { return braking_ > 0 && !turning_; }
   double target() const { return target_; }  ///< [m]
 
  private:
-  double target_ = 0, peak_ = 0;    // [m], [m/s]
-  double time_ = 0, duration_ = 0;  // [s]
-  double braking_ = 0;              // [m/s^2]
+  void start();
+
+  double target_ = 0, peak_ = 0;                // [m], [m/s]
+  double rate_max_ = 0, acceleration_max_ = 0;  // of the motion to the target
+  double time_ = 0, duration_ = 0;              // [s]
+  double braking_ = 0;                          // [m/s^2]
+  bool turning_ = false;                        // brakes, and starts to the target from there
   double value_ = 0, rate_ = 0;
 };
 

@@ -267,8 +267,9 @@ void GapFollower::excite(double dt, double path, bool follow) {
 GapFollower::Correction GapFollower::advance(double dt, double path, bool follow) {
   const double climb = std::max(0.0, path - advanced_path_);
   advanced_path_ = std::max(advanced_path_, path);
+  const bool moved = excitation_.rate() != 0;  // the share of the cycle in which it comes to rest, too
   excite(dt, path, follow);
-  const bool excited = excitation_.running() || excitation_.rate() != 0;
+  const bool excited = moved || excitation_.running() || excitation_.rate() != 0;
   const double rate_max = options_.rate_max * (excited ? 1 - kExcitedShare : 1);
   const double acceleration_max = options_.acceleration_max * (excited ? 1 - kExcitedShare : 1);
   double rate = 0;

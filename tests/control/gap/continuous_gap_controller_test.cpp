@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "control/print.h"
+#include "core/quantile.h"
 #include "core/units.h"
 #include "tests/control/gap/bead_program.h"
 
@@ -252,14 +253,12 @@ TEST(ContinuousPrint, WithoutAnApproachItBeginsWhenReadingsAgree) {
   const PrintResult result = print(program, hexapod(), rig.port(), continuous());
   ASSERT_TRUE(result.completed) << result.stop.why;
   EXPECT_TRUE(result.approaches.empty());
-  double late = 0;
-  int n = 0;
+  std::vector<double> late;
   for (const auto& s : rig.port().history())
-    if (s.line == 7) {
-      late += rig.gap_at(rig.commanded(s.position)) - 0.13e-3;
-      ++n;
-    }
-  EXPECT_NEAR(late / n, 0, 4e-6);
+    if (s.line == 7) late.push_back(rig.gap_at(rig.commanded(s.position)) - 0.13e-3);
+  // For up to two fifths of the bead the tool is lifted, to see whether the readings follow it: the median of
+  // the rest.
+  EXPECT_NEAR(quantile(late, 0.3), 0, 4e-6);
 }
 
 TEST(ContinuousPrint, TheSameRunTwiceGivesTheSameSetpoints) {

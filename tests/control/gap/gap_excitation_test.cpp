@@ -61,6 +61,22 @@ TEST(ExcitationMotion, BrakesWhereItIsAndReturnsFromThere) {
   EXPECT_NEAR(motion.value(), 0, 1e-8);
 }
 
+TEST(ExcitationMotion, TurnsRoundWithinItsLimits) {
+  for (const int cycles : {5, 20, 60, 90}) {
+    ExcitationMotion motion;
+    motion.go_to(23e-6, 0.3e-3, 12e-3);
+    double before = 0;
+    for (int i = 0; i < 600; ++i) {
+      if (i == cycles) motion.go_to(i == 20 ? 46e-6 : 0, 0.3e-3, 12e-3);
+      motion.advance(kStep);
+      ASSERT_LE(std::abs(motion.rate() - before), 12e-3 * kStep * (1 + 1e-9)) << cycles << ' ' << i;
+      before = motion.rate();
+    }
+    EXPECT_TRUE(motion.arrived());
+    EXPECT_NEAR(motion.value(), cycles == 20 ? 46e-6 : 0, 1e-8);
+  }
+}
+
 /// Readings every 25 ms at 5 mm/s while the tool rises and comes back within 0.2 s.
 struct Excited {
   double slope = 0;     // [m/m], of the machine's own error
@@ -176,6 +192,40 @@ TEST(GapExcitation, FindsAThreadThatHidesTheMachinesOwnError) {
       }
   // Without it the reading is trusted while the gap closes to nothing.
   EXPECT_LT(least_gap(thread_on_the_nozzle(0, -0.015, 0, 1)), 0);
+}
+
+// Readings of 25 um: all that 32 of them hold of a motion of 23 um is 2 nats of the 10 that decide.
+TEST(GapExcitation, ReadingsThatAnswerNothingForASecondStopThePrint) {
+  GapFollowerOptions options = gap_follower_options(machine::load_machine("hexapod"));
+  for (const bool watched : {true, false}) {
+    options.silent_time_max = watched ? 1 : 100;
+    FollowerLoop loop(
+        options, [](double, double) { return kAim; }, 25e-6, 3);
+    loop.follower.start(0, 0, kAim, 5e-6);
+    loop.run(2);
+    EXPECT_EQ(loop.follower.stop(), watched ? GapStop::no_progress : GapStop::none);
+    if (watched) {
+      EXPECT_NEAR(loop.points.back().time - kQueueLead, 1.05, 0.06);
+    }
+  }
+}
+
+// A spot that scatters four times as much as it states: no reading far off proves that it is the part's dot.
+TEST(GapExcitation, AThreadThatScattersMoreThanItStatesIsFoundToo) {
+  const GapFollowerOptions options = gap_follower_options(machine::load_machine("hexapod"));
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    FollowerLoop loop(
+        options, [](double, double path) { return kAim - 0.015 * path; }, 1.5e-6, seed);
+    loop.follower.start(0, 0, kAim, 5e-6);
+    Random random(seed, "flicker");
+    loop.set_camera([&random](double, double, double) -> FollowerLoop::Look {
+      return {GapStop::none, kAim + 40e-6 + 6e-6 * random.normal()};
+    });
+    loop.run(4);
+    EXPECT_NE(loop.follower.stop(), GapStop::none) << seed;
+    EXPECT_GT(least_gap(loop) - 0.5e-3 * 0.015, 0) << seed;
+    EXPECT_LT(loop.points.back().time, 1.2) << seed << ": within 6 mm";
+  }
 }
 
 TEST(GapExcitation, APartIsNeverTakenForAThread) {

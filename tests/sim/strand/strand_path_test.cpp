@@ -1,8 +1,10 @@
 #include "sim/strand/strand_path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -217,26 +219,32 @@ TEST(StrandPath, EveryCellOfTheTableIsThatOfTheDocs) {
   }
 }
 
-/// The same spiral that was never hot, released by the nozzle at its end: by the unit-load integral.
-double cold_drop(const machine::Material& material) {
-  const double d = from_mm(0.4), E = material.youngs_modulus, G = E / (2 + 2 * material.poisson_ratio);
-  auto s = section(d, E, G);
-  s.load_W = Vec3(0, 0, -material.density * kPi / 4 * d * d * 9.80665);
-  const Stiffness k = stiffness(d);
-  return -to_mm(end_by_unit_load(helix(from_mm(10), from_mm(10), 2, 400), s, 1 / (E * k.bending),
-                                 1 / (G * k.torsion), 1 / (E * k.area), Vec3::UnitZ()));
+/// Largest elastic displacement [mm] of the same spiral that was never hot.
+double cold_sag(const machine::Material& material) {
+  const double d = from_mm(0.4), E = material.youngs_modulus;
+  auto s = section(d, E, E / (2 + 2 * material.poisson_ratio));
+  s.load_W = Vec3(0, 0, -material.density * kPi / 4 * d * d * kGravity);
+  const auto points = helix(from_mm(10), from_mm(10), 2, 100);
+  StrandFrame frame = cantilever(points, s);
+  frame.step(std::vector<double>(points.size() - 1, 0.0));
+  double most = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    most = std::max(most, to_mm(frame.displacement_W(i).norm()));
+  return most;
 }
 
-// Why more air is not always less sag. A strand that hardens at once has the elastic sag of the whole spiral,
-// which no cooling can take away. Where hardening takes longer, coils have dropped before the next is laid in
-// its right place.
-TEST(StrandPath, AStrandThatHardensAtOnceHasTheElasticSagOfTheWholeSpiral) {
-  for (const Cell& cell : {kTable[0], kTable[3]}) {
-    const machine::Material material = machine::load_material(cell.material);
-    AirPath path = spiral(material, from_mm(0.02), 1, 100);  // 1 s to harden: 0.02 mm
-    const double drop = to_mm(compute_sag(material, path).drop_max), cold = cold_drop(material);
-    EXPECT_NEAR(drop / cold, 1, 0.02) << cell.material;
-    EXPECT_LT(cell.still, 0.6 * cold) << cell.material;
+// Why more air is not always less sag: however short the hot piece, it is a hinge at the nozzle, and the
+// slope that the cold part has there is printed in. So the limit of much air lies above the elastic sag of
+// the spiral.
+TEST(SlowStrandPath, WithMuchAirTheSagTendsToALimitAboveTheElasticSag) {
+  for (const auto& [name, limit, elastic] : {std::tuple{"abs", 0.98, 0.69}, {"pla", 0.75, 0.52}}) {
+    const machine::Material material = machine::load_material(name);
+    AirPath path = spiral(material, from_mm(5), 0, 100);
+    path.surroundings.coefficient = 2e4;  // W/m2K: some 10 ms to harden
+    EXPECT_NEAR(to_mm(compute_sag(material, path).sag_max) / limit, 1, 0.02) << name;
+    path.surroundings.coefficient = 1e4;
+    EXPECT_NEAR(to_mm(compute_sag(material, path).sag_max) / limit, 1, 0.05) << name;
+    EXPECT_NEAR(cold_sag(material) / elastic, 1, 0.02) << name;
   }
 }
 
@@ -247,8 +255,9 @@ TEST(SlowStrandPath, EveryCellOfTheTableConverges) {
   fine.elements_of_hot_length = 32;
   fine.cooling_steps = 160;
   for (const Cell& cell : kTable) {
-    if (cell.still < 1)
+    if (cell.still < 1) {
       EXPECT_NEAR(sag_of(cell, 0, 397, fine) / sag_of(cell, 0), 1, 0.02) << cell.material << cell.speed;
+    }
     EXPECT_NEAR(sag_of(cell, 1, 397, fine) / sag_of(cell, 1), 1, 0.02) << cell.material << cell.speed;
   }
 }

@@ -110,7 +110,7 @@ TEST_F(BottleBudget, OneGroupWithTolerancesIsAllThereIs) {
 TEST_F(BottleBudget, WhereTheCameraLooksItsNoiseAndItsMountsAreGroups) {
   request_.print.gap_control = "start";
   EXPECT_THAT(plan_budget(request_).groups, testing::ElementsAreArray(sim::all_truth_groups()));
-  EXPECT_EQ(plan_budget(request_).rehearsals, 8 * 13);
+  EXPECT_EQ(plan_budget(request_).rehearsals, 8 * 14);
   request_.print.as_built = "sampled";
   EXPECT_THAT(plan_budget(request_).groups, ElementsAre(TruthGroup::geometry, TruthGroup::noise));
 }
