@@ -32,6 +32,7 @@ std::vector<std::vector<double>> truths(const AsBuilt& b) {
           {b.laser.peak_level, b.laser.waist_diameter, b.microscope.ambient_level},
           {b.part.X_WF.translation().y(), b.part.X_WF.linear()(0, 1)},
           {b.part.size, b.part.ripple, b.part.phase},
+          {b.table.height, b.table.slope.y(), b.table.bow},
           {b.filament_diameter, b.extruder_lag, b.nozzle_offset}};
 }
 
