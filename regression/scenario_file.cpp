@@ -210,7 +210,7 @@ void read_registration(YamlMap& map, const fs::path& folder, RegistrationRequest
     if (!keys.has("pattern")) return;
     registration.pattern =
         existing_file(keys, "pattern", folder, "CSV x_mm,y_mm,z_mm of points on the drawn part").string();
-    if (keys.has("places"))
+    if (keys.has("places") && !keys.recording())
       keys.fail("places", "places is for places that are chosen; the pattern has its own");
   });
 }

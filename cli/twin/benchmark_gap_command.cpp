@@ -77,6 +77,8 @@ void add_benchmark_gap(CLI::App& benchmark, Action& action) {
                    "answers are compared with the first")
       ->delimiter(',')
       ->capture_default_str();
+  command->add_option("--fault", request.faults, "of faulted approaches and prints; else all take turns")
+      ->delimiter(',');
   command->add_option("--seed", request.seed, "of the machines and of all noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -80,9 +80,11 @@ bool in_play(const FaultType& type, const InjectedFault& fault, const TwinRun& r
   return !type.machine || fault.time < looked_at;
 }
 
-Judgement judge_stop(const FaultType& type, GapStop stop, bool played) {
+/// Too close is also right where it is true: whatever led the tool there.
+Judgement judge_stop(const FaultType& type, GapStop stop, bool played, bool truly_close) {
   const bool names_it = std::find(type.right.begin(), type.right.end(), stop) != type.right.end();
-  return played && names_it ? Judgement::right : Judgement::wrong_reason;
+  const bool is_true = stop == GapStop::too_close && truly_close;
+  return played && !type.right.empty() && (names_it || is_true) ? Judgement::right : Judgement::wrong_reason;
 }
 
 Judgement judge_end(const machine::GapLimits& limits, double gap, bool played) {
@@ -146,8 +148,8 @@ void judge(const FaultType& type, const InjectedFault& fault, FaultedTask task,
   // A stop answers what has happened until then; who goes on can know what he saw.
   const bool played = in_play(type, fault, run, trial.stopped ? run.result.duration : looked_at);
   trial.judgement = trial.least_gap <= 0 ? Judgement::touched
-                    : trial.stopped      ? judge_stop(type, stop, played)
-                                         : judge_end(limits, trial.last_gap, played);
+                    : trial.stopped ? judge_stop(type, stop, played, trial.last_gap < limits.accepted_min)
+                                    : judge_end(limits, trial.last_gap, played);
 }
 
 void prove_sound(FaultedTask task, FaultWorld& world) {
@@ -170,10 +172,8 @@ void prove_sound(FaultedTask task, FaultWorld& world) {
   }
 }
 
-FaultedTrial run_faulted_trial(const FaultWorld& world, FaultedTask task, const PlantChoice& plant,
-                               std::uint64_t seed, int number) {
-  const auto& types = fault_types();
-  const FaultType& type = types[static_cast<std::size_t>(number) % types.size()];
+FaultedTrial run_faulted_trial(const FaultWorld& world, FaultedTask task, const FaultType& type,
+                               const PlantChoice& plant, std::uint64_t seed, int number) {
   Random random(seed, fmt::format("faulted trial {}", number));
   const InjectedFault fault = draw_fault(type, world.window, world.setup.machine, random);
   rehearsal::TwinSetup setup = world.setup;

@@ -56,9 +56,9 @@ struct FaultWorld {
 /// Runs it without a fault, which tells when one may strike.
 void prove_sound(FaultedTask task, FaultWorld& world);
 
-/// The fault is drawn from seed and number, and is of the type whose turn it is.
-FaultedTrial run_faulted_trial(const FaultWorld& world, FaultedTask task, const PlantChoice& plant,
-                               std::uint64_t seed, int number);
+/// The fault is drawn from seed and number.
+FaultedTrial run_faulted_trial(const FaultWorld& world, FaultedTask task, const FaultType& type,
+                               const PlantChoice& plant, std::uint64_t seed, int number);
 
 /// What became of a run under a fault; `trial` gets its answer, gaps and judgement.
 void judge(const FaultType& type, const InjectedFault& fault, FaultedTask task,

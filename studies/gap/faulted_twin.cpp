@@ -5,6 +5,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -63,6 +64,22 @@ PlantDifference difference(const std::vector<FaultedTrial>& first, const std::ve
   return difference;
 }
 
+/// Those that are asked for, in the order of fault_types().
+std::vector<FaultType> types_of(const FaultedTwinRequest& request) {
+  std::vector<FaultType> types;
+  std::vector<std::string> known;
+  for (const FaultType& type : fault_types()) {
+    known.emplace_back(type.name);
+    const bool asked =
+        std::find(request.faults.begin(), request.faults.end(), type.name) != request.faults.end();
+    if (request.faults.empty() || asked) types.push_back(type);
+  }
+  for (const std::string& name : request.faults)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw InputError(fmt::format("--fault '{}': one of {}", name, fmt::join(known, ", ")));
+  return types;
+}
+
 void require(const FaultedTwinRequest& request) {
   if (request.trials < 1 || request.trials > 1'000'000)
     throw InputError(fmt::format("--trials {} is outside 1..1000000", request.trials));
@@ -105,6 +122,7 @@ std::vector<ConfusionCell> confusion(const std::vector<FaultedTrial>& trials) {
 
 FaultedTwin run_faulted_twin(const FaultedTwinRequest& request, const Progress& progress) {
   require(request);
+  const std::vector<FaultType> types = types_of(request);
   const auto drawn = machine::load_machine(request.machine);
   FaultedTwin result;
   result.task = request.task;
@@ -135,10 +153,11 @@ FaultedTwin run_faulted_twin(const FaultedTwinRequest& request, const Progress& 
       [&](std::size_t job) {
         stop_if_interrupted();
         const std::size_t trial = job % trials;
-        const FaultWorld& world = worlds[trial / fault_types().size() % worlds.size()];
+        const FaultType& type = types[trial % types.size()];
+        const FaultWorld& world = worlds[trial / types.size() % worlds.size()];
         PlantTrials& on = result.plants[job / trials];
         on.trials[trial] =
-            run_faulted_trial(world, request.task, on.plant, request.seed, static_cast<int>(trial));
+            run_faulted_trial(world, request.task, type, on.plant, request.seed, static_cast<int>(trial));
       },
       [&](std::size_t, std::size_t done) {
         if (progress)

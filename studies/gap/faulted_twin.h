@@ -18,8 +18,9 @@ struct FaultedTwinRequest {
   std::string machine = machine::kDefaultMachine;  ///< as drawn
   std::string program;                             ///< of the bottle's line
   FaultedTask task = FaultedTask::approach;
-  int trials = 100;  ///< the faults take turns
-  int worlds = 20;   ///< built machines, each on the bottle and on a plate
+  std::vector<std::string> faults;  ///< names of fault_types(); empty: all
+  int trials = 100;                 ///< the faults take turns
+  int worlds = 20;                  ///< built machines, each on the bottle and on a plate
   std::uint64_t seed = 1;
   std::vector<PlantChoice> plants{PlantChoice{}};  ///< every trial on each
   int threads = 1;                                 ///< the result does not depend on it

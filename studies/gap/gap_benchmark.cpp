@@ -195,6 +195,7 @@ FaultedTwinRequest faulted_request(const GapBenchmarkRequest& request, FaultedTa
   faulted.machine = request.machine;
   faulted.program = request.program;
   faulted.task = task;
+  faulted.faults = request.faults;
   faulted.trials = request.trials;
   faulted.worlds = request.machines;
   faulted.seed = request.seed;

@@ -21,6 +21,7 @@ struct GapBenchmarkRequest {
   int trials = 10;
   int machines = 20;  ///< as-built, of the bottle; built and calibrated, of faulted approaches and prints
   std::vector<PlantChoice> plants{PlantChoice{}};  ///< of faulted approaches and prints
+  std::vector<std::string> faults;                 ///< of them; empty: all
   std::uint64_t seed = 1;
   int threads = 1;
   std::string program;  ///< of the bottle: scenarios/song-bottle.gcode unless given

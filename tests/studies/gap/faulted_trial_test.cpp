@@ -60,6 +60,17 @@ TEST(FaultedTrial, AStopIsRightWhereItsReasonNamesTheFault) {
   }
 }
 
+TEST(FaultedTrial, TooCloseIsRightWhereItIsTrue) {
+  for (const FaultedTask task : {FaultedTask::approach, FaultedTask::print}) {
+    auto near = run_with(GapStop::too_close, 0.07e-3), far = run_with(GapStop::too_close, 0.12e-3);
+    near.altered_frames = far.altered_frames = 1;
+    EXPECT_EQ(judged("frozen", task, near), Judgement::right);
+    EXPECT_EQ(judged("frozen", task, far), Judgement::wrong_reason);
+    EXPECT_EQ(judged("none", task, run_with(GapStop::too_close, 0.07e-3)), Judgement::wrong_reason)
+        << "nothing is to lead a sound machine there";
+  }
+}
+
 TEST(FaultedTrial, AStopBeforeTheFaultIsAFalseOne) {
   const auto run = run_with(GapStop::no_dot, 0.5e-3);
   EXPECT_EQ(judged("dark", FaultedTask::approach, run), Judgement::wrong_reason) << "no frame was altered";
