@@ -51,6 +51,7 @@ struct Scenario {
   rehearsal::SurfaceRequest surface;                                  ///< what is asked about the surface
   rehearsal::RegistrationRequest registration;                        ///< of the part, before the print
   std::vector<rehearsal::FaultRequest> faults;
+  std::vector<rehearsal::CameraFaultRequest> camera_faults;
   std::vector<Expectation> expect;  ///< of the run with `seed`
   std::optional<MachineSeries> machines;
 };

@@ -1,5 +1,7 @@
 #include "regression/scenario_faults.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/units.h"
@@ -60,7 +62,57 @@ FaultRequest read_fault(YamlMap& map) {
   return request;
 }
 
+sim::CameraFaultKind read_camera_kind(YamlMap& map) {
+  std::vector<std::string> words;
+  for (int k = 0; k < sim::kCameraFaultKinds; ++k)
+    words.emplace_back(to_string(static_cast<sim::CameraFaultKind>(k)));
+  const std::string word = map.word("fault", words, "what goes wrong");
+  map.require("fault");
+  const auto found = std::find(words.begin(), words.end(), word) - words.begin();
+  return static_cast<sim::CameraFaultKind>(found);
+}
+
+CameraFaultRequest read_camera_fault(YamlMap& map) {
+  constexpr Bounds kOffset{-1000, 1000}, kTurn{-360, 360};
+  CameraFaultRequest request;
+  request.place = map.place();
+  sim::CameraFaultEvent& event = request.event;
+  event.kind = read_camera_kind(map);
+  event.time = map.number("at_s", kNotNegative, "time of the print, from which on");
+  if (map.has("share")) event.share = map.number("share", {0, 1}, "of the frames; else all");
+  switch (event.kind) {
+    case sim::CameraFaultKind::dim:
+    case sim::CameraFaultKind::saturated:
+      event.power = map.number("power", {0, 100}, "of the laser, of what it has by itself");
+      break;
+    case sim::CameraFaultKind::ghost:
+      event.gap_offset =
+          kMicrometre * map.number("gap_offset_um", {-5000, 5000}, "that it shows beyond the gap");
+      break;
+    case sim::CameraFaultKind::cut_beam:
+    case sim::CameraFaultKind::strip:
+      event.offset_px = map.number("offset_px", kOffset, "from the dot's centre to the edge");
+      event.direction =
+          from_deg(map.number("direction_deg", kTurn, "in which it is hidden, from the picture's x"));
+      break;
+    case sim::CameraFaultKind::displaced:
+      event.offset_px = map.number("offset_px", kOffset, "along the picture's x");
+      break;
+    default:
+      break;
+  }
+  return request;
+}
+
 }  // namespace
+
+std::vector<CameraFaultRequest> read_camera_faults(YamlMap& scenario) {
+  std::vector<CameraFaultRequest> requests;
+  if (!scenario.has("camera_faults")) return requests;
+  scenario.list("camera_faults", 0, "what goes wrong with the gap sensor",
+                [&](YamlMap& map, std::size_t) { requests.push_back(read_camera_fault(map)); });
+  return requests;
+}
 
 std::vector<FaultRequest> read_faults(YamlMap& scenario) {
   std::vector<FaultRequest> requests;

@@ -236,6 +236,7 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   read_surface(map, folder, scenario.surface);
   read_registration(map, folder, scenario.registration);
   scenario.faults = read_faults(map);
+  scenario.camera_faults = read_camera_faults(map);
   scenario.expect = read_expectations(map, false);
   if (!map.has("machines")) return;
   map.section("machines", "the same program on machines of many seeds", [&](YamlMap& machines) {

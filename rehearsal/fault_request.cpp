@@ -36,4 +36,21 @@ std::vector<sim::FaultEvent> resolve_faults(const std::vector<FaultRequest>& req
   return events;
 }
 
+std::vector<sim::CameraFaultEvent> resolve_camera_faults(const std::vector<CameraFaultRequest>& requests,
+                                                         const machine::MachineDescription& machine) {
+  std::vector<sim::CameraFaultEvent> events;
+  for (const CameraFaultRequest& request : requests) {
+    if (!machine.has_microscope)
+      throw InputError(request.place, fmt::format("camera fault {}: {} has no camera",
+                                                  to_string(request.event.kind), machine.name));
+    try {
+      sim::check_camera_faults({request.event});
+    } catch (const InputError& error) {
+      throw InputError(request.place, error.what());
+    }
+    events.push_back(request.event);
+  }
+  return events;
+}
+
 }  // namespace understudy::rehearsal

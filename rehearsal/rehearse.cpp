@@ -103,6 +103,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
   setup.engine = request.engine;
   setup.seed = seeds[sim::TruthGroup::noise];
   setup.faults = resolve_faults(request.faults, setup.machine);
+  setup.camera_faults = resolve_camera_faults(request.camera_faults, setup.machine);
   return setup;
 }
 
@@ -139,6 +140,8 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
                        request.seed, setup.as_built.source, request.command};
   for (const sim::FaultEvent& event : setup.faults)
     record.provenance.faults.push_back(describe(event, setup.machine));
+  for (const sim::CameraFaultEvent& event : setup.camera_faults)
+    record.provenance.faults.push_back(describe(event));
   return record;
 }
 

@@ -49,7 +49,8 @@ struct RehearsalRequest {
   std::string gap_control;  ///< off, start, continuous; empty: start on a machine that sees, else off
   /// Largest true errors of a print that is good; without one, the machine file's.
   std::optional<double> tip_tolerance_mm, orientation_tolerance_deg;
-  std::vector<FaultRequest> faults;  ///< what goes wrong on the way
+  std::vector<FaultRequest> faults;               ///< what goes wrong with the machine on the way
+  std::vector<CameraFaultRequest> camera_faults;  ///< and with its gap sensor
   DialectRequest dialect;
   SurfaceRequest surface;
   RegistrationRequest registration;

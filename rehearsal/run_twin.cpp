@@ -68,10 +68,21 @@ std::vector<FrameRecord> pair_with_truth(const control::PrintResult& result,
   return frames;
 }
 
+template <typename Options>
+Options with_timestep(const TwinSetup& setup) {
+  Options options;
+  if (setup.timestep > 0) options.timestep = setup.timestep;
+  return options;
+}
+
 std::unique_ptr<sim::Plant> make_engine(const TwinSetup& setup) {
-  if (setup.engine == "mujoco") return sim::make_mujoco_plant(setup.truth, setup.as_built);
-  if (setup.engine == "bullet") return sim::make_bullet_plant(setup.truth, setup.as_built);
-  if (setup.engine == "quasistatic") return sim::make_quasistatic_plant(setup.truth, setup.as_built);
+  if (setup.engine == "mujoco")
+    return sim::make_mujoco_plant(setup.truth, setup.as_built, with_timestep<sim::MujocoOptions>(setup));
+  if (setup.engine == "bullet")
+    return sim::make_bullet_plant(setup.truth, setup.as_built, with_timestep<sim::BulletOptions>(setup));
+  if (setup.engine == "quasistatic")
+    return sim::make_quasistatic_plant(setup.truth, setup.as_built,
+                                       with_timestep<sim::QuasistaticOptions>(setup));
   throw InputError(
       fmt::format("unknown engine {}: one of {}", setup.engine, fmt::join(engine_names(), ", ")));
 }
@@ -181,14 +192,17 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
     microscope.emplace(setup.truth, setup.built_part, setup.seed, view);
   }
   std::map<std::uint64_t, ExposureTruth> truth;
-  const auto expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
-    watch.thread.drain();  // the laser sees what has been printed by now
-    microscope->set_printed(sim::beads_near(watch.workpiece->beads(), X_WT.translation(), kLaserSees));
-    truth[number] = {watch.gap(X_WT), microscope->true_dot(X_WT)};
-    return microscope->expose(X_WT, region, number);
+  const auto expose = [&](const sim::Shot& shot) {
+    watch.thread.drain();                  // the laser sees what has been printed by now
+    const Pose X_WT = plant->tool_pose();  // the shot may be one that only a faulty camera shows
+    microscope->set_printed(sim::beads_near(watch.workpiece->beads(), shot.X_WT.translation(), kLaserSees));
+    truth[shot.number] = {watch.gap(X_WT), microscope->true_dot(X_WT)};
+    return microscope->expose(shot);
   };
   sim::TwinOptions twin;
   twin.faults = setup.faults;
+  twin.camera_faults = setup.camera_faults;
+  twin.seed = setup.seed;
   twin.nozzle_offset = setup.as_built.nozzle_offset;
   twin.hold_at_limits = options.beyond_limits;
   sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
@@ -235,6 +249,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
     run.near_collisions = watch.collision.near_collisions();
     run.collision = collision_figures(watch.collision);
   }
+  run.altered_frames = port.altered_frames();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
   run.engine = engine_of(*plant, port, wall.count());
   return run;

@@ -18,6 +18,7 @@
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
 #include "sim/deposition/deposition.h"
+#include "sim/faults/camera_faults.h"
 #include "sim/faults/faults.h"
 #include "sim/strand/air_strands.h"
 #include "toolpath/program.h"
@@ -38,7 +39,9 @@ struct TwinSetup {
   sim::AsBuilt as_built;
   std::string engine;
   std::uint64_t seed = 0;
+  double timestep = 0;  ///< [s], of the plant; 0: the engine's own
   std::vector<sim::FaultEvent> faults;
+  std::vector<sim::CameraFaultEvent> camera_faults;
   std::optional<control::RegistrationTask> registration;  ///< before the print
 };
 
@@ -52,6 +55,7 @@ struct TwinRun {
   std::vector<FrameRecord> frames;
   std::vector<sim::Contact> collisions, near_collisions;
   CollisionFigures collision;
+  int altered_frames = 0;  ///< by the camera's faults (sim::FaultyCamera)
   sim::DepositionSummary deposition;
   std::vector<sim::UnsupportedStretch> loose;
   std::vector<FlowStretch> flow;

@@ -20,11 +20,14 @@ namespace {
 struct GapCall {
   studies::GapBenchmarkRequest request;
   std::string folder = "out/gap-benchmark";
+  std::vector<std::string> plants{"quasistatic"};
 };
 
 int run_gap(const GapCall& call) {
   studies::GapBenchmarkRequest request = call.request;
   check_jobs(request.threads);
+  request.plants.clear();
+  for (const std::string& words : call.plants) request.plants.push_back(studies::plant_choice(words));
   request.command = command_line();
   if (request.program.empty())
     request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
@@ -42,7 +45,7 @@ int run_gap(const GapCall& call) {
   const std::filesystem::path written(call.folder);
   fmt::print("{}\n{}\n{}\n", report::gap_benchmark_table(benchmark), (written / "gap.json").string(),
              (written / "gap.html").string());
-  return kGood;
+  return benchmark.good() ? kGood : kNo;
 }
 
 }  // namespace
@@ -53,21 +56,40 @@ void add_benchmark_gap(CLI::App& benchmark, Action& action) {
   auto* command = benchmark.add_subcommand(
       "gap", "How well the gap is measured, closed and followed over surfaces, light and faults");
   add_machine_option(*command, request.machine);
-  command->add_option("--part", request.parts, "detectors, approach, following, bottle; all unless given")
+  command
+      ->add_option("--part", request.parts,
+                   "detectors, approach, following, bottle: these unless given; "
+                   "faulted-approaches, faulted-prints")
       ->delimiter(',');
   command
       ->add_option("--trials", request.trials,
-                   "approaches and followed beads for each surface and condition; ten times the frames")
+                   "approaches and followed beads for each surface and condition; ten times the frames; "
+                   "faulted approaches, and faulted prints, in all")
       ->capture_default_str();
-  command->add_option("--machines", request.machines, "as-built machines that print the bottle's line")
+  command
+      ->add_option("--machines", request.machines,
+                   "as-built machines that print the bottle's line; built and calibrated ones "
+                   "of faulted approaches and prints")
       ->capture_default_str();
+  command
+      ->add_option("--plant", call->plants,
+                   "ENGINE or ENGINE:STEP_MS of faulted approaches and prints; each trial runs on all, and "
+                   "answers are compared with the first")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--fault", request.faults, "of faulted approaches and prints; else all take turns")
+      ->delimiter(',');
   command->add_option("--seed", request.seed, "of the machines and of all noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--program", request.program, "of the bottle's line; else scenarios/song-bottle.gcode");
   add_jobs(*command, request.threads);
   command->add_option("--out", call->folder, "folder of results")->capture_default_str();
-  command->footer("Writes gap.json and gap.html (docs/gap-control.md).");
+  command->footer(
+      "Writes gap.json and gap.html (docs/gap-control.md). Exit status 1: a faulted trial touched, or was "
+      "answered wrongly.\n"
+      "Example: understudy benchmark gap --part faulted-approaches --trials 200 --plant "
+      "quasistatic,mujoco:0.5");
   command->callback([=, &action] { action = [=] { return run_gap(*call); }; });
 }
 

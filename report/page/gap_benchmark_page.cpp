@@ -12,7 +12,9 @@
 #include "report/chart/gap_benchmark_charts.h"
 #include "report/json_text.h"
 #include "report/markup.h"
+#include "report/page/faulted_twin_tables.h"
 #include "report/page/page_parts.h"
+#include "report/page/word_table.h"
 
 namespace understudy::report {
 namespace {
@@ -108,22 +110,12 @@ Json bottle_value(const GapBenchmark& b) {
   return rows;
 }
 
-/// A table as rows of words: for a terminal and for the page alike.
-struct WordTable {
-  std::string title, note;
-  std::vector<std::string> head;
-  std::size_t words = 0;  ///< first columns that are no numbers
-  std::vector<std::vector<std::string>> rows;
-};
-
 std::string stops_text(const std::map<std::string, int>& stops) {
   std::string text;
   for (const auto& [reason, count] : stops)
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, reason);
   return text;
 }
-
-std::string digits(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
 
 WordTable detector_table(const GapBenchmark& b) {
   WordTable t{
@@ -196,48 +188,11 @@ WordTable bottle_table(const GapBenchmark& b) {
 
 std::vector<WordTable> tables_of(const GapBenchmark& b) {
   std::vector<WordTable> all;
+  for (const studies::FaultedTwin& faulted : b.faulted)
+    for (WordTable& table : faulted_twin_tables(faulted)) all.push_back(std::move(table));
   for (WordTable table : {bottle_table(b), following_table(b), approach_table(b), detector_table(b)})
     if (!table.rows.empty()) all.push_back(std::move(table));
   return all;
-}
-
-bool last_is_words(const WordTable& t) { return t.head.back() == "stops"; }
-bool is_words(const WordTable& t, std::size_t column) {
-  return column < t.words || (last_is_words(t) && column + 1 == t.head.size());
-}
-
-std::string plain(const WordTable& t) {
-  std::vector<std::size_t> width;
-  for (std::size_t c = 0; c < t.head.size(); ++c) {
-    width.push_back(t.head[c].size());
-    for (const auto& row : t.rows) width[c] = std::max(width[c], row[c].size());
-  }
-  const auto line = [&](const std::vector<std::string>& cells) {
-    std::string text;
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      text += is_words(t, c) ? fmt::format("{:<{}}  ", cells[c], width[c])
-                             : fmt::format("{:>{}}  ", cells[c], width[c]);
-    text.erase(text.find_last_not_of(' ') + 1);
-    return text + "\n";
-  };
-  std::string text = t.title + "\n" + line(t.head);
-  for (const auto& row : t.rows) text += line(row);
-  return text;
-}
-
-std::string as_html(const WordTable& t) {
-  std::string html = fmt::format("<section><h2>{}</h2><p class=\"note\">{}</p><table><thead><tr>",
-                                 html_text(t.title), html_text(t.note));
-  for (std::size_t c = 0; c < t.head.size(); ++c)
-    html += fmt::format("<th{}>{}</th>", is_words(t, c) ? "" : " class=\"number\"", html_text(t.head[c]));
-  html += "</tr></thead><tbody>\n";
-  for (const auto& row : t.rows) {
-    html += "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c)
-      html += fmt::format("<td{}>{}</td>", is_words(t, c) ? "" : " class=\"number\"", html_text(row[c]));
-    html += "</tr>\n";
-  }
-  return html + "</tbody></table></section>\n";
 }
 
 }  // namespace
@@ -254,6 +209,9 @@ std::string gap_benchmark_json(const GapBenchmark& b) {
   if (!b.approaches.empty()) json["approaches"] = approaches_value(b);
   if (!b.followings.empty()) json["followings"] = followings_value(b);
   if (!b.bottle.empty()) json["bottle"] = bottle_value(b);
+  for (const studies::FaultedTwin& faulted : b.faulted)
+    json[faulted.task == studies::FaultedTask::approach ? "faulted_approaches" : "faulted_prints"] =
+        faulted_twin_value(faulted);
   json["provenance"] = {
       {"version", kVersion}, {"machine_sha256", b.machine_sha256}, {"command", b.request.command}};
   return to_text(json, 2) + "\n";
@@ -261,7 +219,7 @@ std::string gap_benchmark_json(const GapBenchmark& b) {
 
 std::string gap_benchmark_table(const GapBenchmark& b) {
   std::string text;
-  for (const WordTable& table : tables_of(b)) text += (text.empty() ? "" : "\n") + plain(table);
+  for (const WordTable& table : tables_of(b)) text += (text.empty() ? "" : "\n") + plain_text(table);
   return text;
 }
 
@@ -276,7 +234,7 @@ std::string gap_benchmark_html(const GapBenchmark& b) {
       html_text(kVersion), html_text(b.request.machine), b.aim_mm, b.band_min_mm, b.band_max_mm,
       b.request.seed, html_text(b.request.command));
   html += gap_benchmark_charts(b);
-  for (const WordTable& table : tables_of(b)) html += as_html(table);
+  for (const WordTable& table : tables_of(b)) html += html_section(table);
   return html + "</main></body></html>\n";
 }
 

@@ -1,5 +1,6 @@
 #include "sim/sensors/microscope.h"
 
+#include "core/random.h"
 #include "renderer/laser_view.h"
 
 namespace understudy::sim {
@@ -33,6 +34,8 @@ renderer::LaserScene scene_of(const machine::MachineDescription& machine,
 
 struct Microscope::State {
   renderer::LaserScene scene;
+  double peak_level = 0;   ///< of the laser's own power
+  std::uint64_t seed = 0;  ///< of the part's roughness
   renderer::LaserView view;
 };
 
@@ -40,6 +43,8 @@ Microscope::Microscope(const machine::MachineDescription& machine, std::shared_p
                        std::uint64_t seed, const MicroscopeOptions& options)
     : state_(std::make_unique<State>()) {
   state_->scene = scene_of(machine, std::move(part), seed, options);
+  state_->peak_level = state_->scene.peak_level;
+  state_->seed = seed;
 }
 
 Microscope::~Microscope() = default;
@@ -48,10 +53,13 @@ void Microscope::set_printed(std::shared_ptr<const geometry::Mesh> beads) {
   state_->scene.printed = std::move(beads);
 }
 
-Image Microscope::expose(const Pose& X_WT_true, const Region& region, std::uint64_t frame_number) {
-  state_->scene.X_WT = X_WT_true;
-  state_->scene.frame = frame_number;
-  return state_->view.render(state_->scene, region);
+Image Microscope::expose(const Shot& shot) {
+  renderer::LaserScene& scene = state_->scene;
+  scene.X_WT = shot.X_WT;
+  scene.frame = shot.number;
+  scene.peak_level = shot.laser * state_->peak_level;
+  scene.seed = shot.surface == 0 ? state_->seed : hash_bits(state_->seed, shot.surface);
+  return state_->view.render(scene, shot.region);
 }
 
 std::optional<Vec2> Microscope::true_dot(const Pose& X_WT_true) const {

@@ -9,6 +9,7 @@
 #include "geometry/mesh.h"
 #include "geometry/table_surface.h"
 #include "machine/description.h"
+#include "sim/exposure.h"
 
 namespace understudy::sim {
 
@@ -32,7 +33,10 @@ class Microscope {
 
   /// One exposure with the tool at its true pose. `region` is clipped to the sensor. Equal arguments, equal
   /// bytes. Throws MachineError when the renderer fails.
-  Image expose(const Pose& X_WT_true, const Region& region, std::uint64_t frame_number);
+  Image expose(const Shot& shot);
+  Image expose(const Pose& X_WT_true, const Region& region, std::uint64_t frame_number) {
+    return expose({X_WT_true, region, frame_number});
+  }
 
   /// Where the centre of the dot truly is [px]; nothing when it is hidden or out of view. For observers only.
   std::optional<Vec2> true_dot(const Pose& X_WT_true) const;

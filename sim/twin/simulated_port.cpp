@@ -55,6 +55,7 @@ SimulatedPort::SimulatedPort(const machine::MachineDescription& machine, Plant& 
       options_(options),
       drive_zero_(machine.drive_zero()),
       drives_(machine, options.faults),
+      camera_(machine.microscope.camera, options.camera_faults, options.seed),
       queue_(queue_options(machine, *mechanism_, options), axes_at_home(machine, *mechanism_), plant.time()),
       X_BT_commanded_(machine.X_BT_home) {
   AxisVector displacement = queue_.target().position;
@@ -209,21 +210,34 @@ Status SimulatedPort::set_outputs(const machine::Outputs& outputs, double deadli
   return Status::ok;
 }
 
+/// In the middle of its exposure. Without pixels: it is lost.
+machine::Frame SimulatedPort::expose(const Region& region) {
+  camera_.ask(now());
+  if (camera_.repeats_former() && !former_frame_.image.pixels.empty()) {
+    camera_.count_former();
+    return former_frame_;
+  }
+  machine::Frame frame;
+  frame.image = camera_.expose({plant_.tool_pose(), region, frame_number_}, exposure_);
+  frame.exposed_at = now();
+  frame.number = frame_number_;
+  return frame;
+}
+
 Status SimulatedPort::capture(const Region& region, machine::Frame& frame, double deadline) {
   const auto& microscope = machine_.microscope;
   const double start = now();
   if (start + microscope.exposure + microscope.transfer > deadline) return Status::deadline_exceeded;
   if (!exposure_) return Status::no_frame;
   if (const Status s = wait_until(start + 0.5 * microscope.exposure); s != Status::ok) return s;
-  const double exposed_at = now();
-  Image image = exposure_(plant_.tool_pose(), region, frame_number_);
+  machine::Frame exposed = expose(region);
   if (const Status s = wait_until(start + microscope.exposure + microscope.transfer); s != Status::ok)
     return s;
-  if (image.pixels.empty()) return Status::no_frame;
-  frame.image = std::move(image);
-  frame.exposed_at = exposed_at;
+  if (exposed.image.pixels.empty()) return Status::no_frame;
+  frame = std::move(exposed);
   frame.received_at = now();
-  frame.number = frame_number_++;
+  if (frame.number == frame_number_) ++frame_number_;
+  if (!camera_.sound()) former_frame_ = frame;
   return Status::ok;
 }
 

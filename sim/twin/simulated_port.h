@@ -1,21 +1,20 @@
 // The twin behind MachinePort: drives with their quantisation, the plant, the microscope, observers.
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "machine/description.h"
 #include "machine/setpoint_queue.h"
+#include "sim/exposure.h"
+#include "sim/faults/camera_faults.h"
 #include "sim/faults/faults.h"
 #include "sim/observer.h"
 #include "sim/plant/plant.h"
 
 namespace understudy::sim {
-
-/// Takes a picture of the truth; `number` counts exposures. An empty image is a lost frame.
-using Exposure = std::function<Image(const Pose& X_WT, const Region& region, std::uint64_t number)>;
 
 struct TwinOptions {
   double observation_period = 2e-3;  ///< [s], between snapshots
@@ -25,6 +24,8 @@ struct TwinOptions {
   std::size_t queue_capacity = 4096;
   double nozzle_offset = 0;  ///< [K], of a heated nozzle beyond what was asked for
   std::vector<FaultEvent> faults;
+  std::vector<CameraFaultEvent> camera_faults;
+  std::uint64_t seed = 0;  ///< of what the camera's faults draw
 };
 
 /// Converts strut lengths of the controller's geometry to drive displacements (length minus nominal l_i0):
@@ -49,6 +50,8 @@ class SimulatedPort : public machine::MachinePort {
   const std::string& engine_failure() const { return engine_failure_; }
   std::uint64_t steps() const { return steps_; }
   double closure_max() const { return closure_max_; }  ///< [m]
+  /// Frames that the camera's faults have changed visibly, or withheld.
+  int altered_frames() const { return camera_.altered(); }
 
  private:
   using Target = machine::SetpointQueue::Target;  ///< by the controller's own geometry
@@ -57,6 +60,7 @@ class SimulatedPort : public machine::MachinePort {
   void coast(const Target& target, DriveCommand command);
   void observe(const Target& target);
   void raise(machine::Fault fault);
+  machine::Frame expose(const Region& region);
 
   const machine::MachineDescription& machine_;
   std::unique_ptr<kinematics::Mechanism> mechanism_;
@@ -66,6 +70,8 @@ class SimulatedPort : public machine::MachinePort {
   TwinOptions options_;
   kinematics::AxisVector drive_zero_;
   FaultyDrives drives_;
+  FaultyCamera camera_;
+  machine::Frame former_frame_;     ///< of a camera with faults
   kinematics::AxisVector asked_{};  ///< [m] or [rad], axis positions that the drives were last asked for
 
   machine::SetpointQueue queue_;

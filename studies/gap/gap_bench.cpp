@@ -20,13 +20,13 @@ using toolpath::StepKind;
 
 namespace {
 
-constexpr double kBead = 6e-3;        // [m]
-constexpr double kFeed = 5e-3;        // [m/s]
-constexpr double kStandoff = 2e-3;    // [m]
-constexpr double kOften = 1.0 / 3;    // of the frames that are stale or lost
-constexpr double kUnderHome = 10e-3;  // [m]
-constexpr double kSlope = 0.015;      // [m/m], 1 sigma of the error's change along the path
-constexpr double kError = 0.2e-3;     // [m], 1 sigma of the error at the start
+constexpr double kFeed = 5e-3;          // [m/s]
+constexpr double kFilament = 1.0 / 60;  // [m/m], of bead
+constexpr double kStandoff = 2e-3;      // [m]
+constexpr double kOften = 1.0 / 3;      // of the frames that are stale or lost
+constexpr double kUnderHome = 10e-3;    // [m]
+constexpr double kSlope = 0.015;        // [m/m], 1 sigma of the error's change along the path
+constexpr double kError = 0.2e-3;       // [m], 1 sigma of the error at the start
 
 /// A plate of 60 mm whose top passes through `p`, leaning towards the laser by `tilt`.
 std::shared_ptr<const geometry::Mesh> plate(const Vec3& p, double tilt) {
@@ -59,19 +59,20 @@ Pose along(Pose X_WT, double x, double z) {
   return X_WT;
 }
 
-toolpath::Program bead_program(const Pose& X_WT_S) {
+toolpath::Program bead_program(const Pose& X_WT_S, double bead) {
   toolpath::Program program;
   program.file = "gap-benchmark";
   program.steps = {step_to(StepKind::travel, along(X_WT_S, 0, kStandoff), 1),
                    step_to(StepKind::move, X_WT_S, 2),
-                   step_to(StepKind::print, along(X_WT_S, kBead, 0), 3, 1e-4),
-                   step_to(StepKind::move, along(X_WT_S, kBead, kStandoff), 4)};
+                   step_to(StepKind::print, along(X_WT_S, bead, 0), 3, kFilament * bead),
+                   step_to(StepKind::move, along(X_WT_S, bead, kStandoff), 4)};
   return program;
 }
 
 }  // namespace
 
-std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine, const std::string& program) {
+std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine, const std::string& program,
+                                     double bead) {
   std::vector<GapSurface> surfaces;
   const Pose X_WT_home = machine.X_WB * machine.X_BT_home;
   Pose X_WT_plate = X_WT_home;  // well below: the machine begins clear of it, whatever its error
@@ -81,7 +82,7 @@ std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine,
     surface.name = degrees == 0 ? "flat" : "tilted " + std::to_string(static_cast<int>(degrees)) + " deg";
     surface.part = plate(X_WT_plate.translation(), from_deg(degrees));
     surface.X_WT_S = along(X_WT_plate, 0, machine.gap.aim);
-    surface.program = bead_program(surface.X_WT_S);
+    surface.program = bead_program(surface.X_WT_S, bead);
     surfaces.push_back(std::move(surface));
   }
   GapSurface bottle;
@@ -254,22 +255,22 @@ class ErringMachine {
   machine::LoopbackPort port_;
 };
 
-/// Up to the last approach, for a trial of approaches alone.
+}  // namespace
+
 toolpath::Program until_bead(const toolpath::Program& program) {
+  constexpr double kShortest = 1e-5;  // [m]; without a bead there is nothing to approach for
   toolpath::Program short_one = program;
   const auto first = std::find_if(short_one.steps.begin(), short_one.steps.end(),
                                   [](const Step& s) { return s.kind == StepKind::print; });
-  // A bead of a hundredth of a millimetre: without one there is nothing to approach for.
   Step touch = *first;
   touch.X_WT = std::prev(first)->X_WT;
-  touch.X_WT.translation() += 1e-5 * touch.X_WT.linear().col(0);
+  touch.filament *= kShortest / (first->X_WT.translation() - touch.X_WT.translation()).norm();
+  touch.X_WT.translation() += kShortest * touch.X_WT.linear().col(0);
   touch.rotary.reset();
   short_one.steps.erase(first, short_one.steps.end());
   short_one.steps.push_back(touch);
   return short_one;
 }
-
-}  // namespace
 
 GapTrial run_gap_trial(const machine::MachineDescription& machine, GapScene& scene, control::GapControl mode,
                        std::uint64_t seed) {

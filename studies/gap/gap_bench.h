@@ -34,7 +34,15 @@ struct GapCondition {
   bool of_detectors = true;  ///< of one picture; the others need several
 };
 
-std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine, const std::string& program);
+constexpr double kBenchBead = 6e-3;  ///< [m], on the plates
+
+/// Plates that lean by 0, 10, 20 and 30 degrees, with a bead of `bead` [m], and the bottle with its program.
+std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine, const std::string& program,
+                                     double bead = kBenchBead);
+
+/// Up to the last approach, and the shortest of beads: for a trial of approaches alone.
+toolpath::Program until_bead(const toolpath::Program& program);
+
 const std::vector<GapCondition>& gap_conditions();
 
 /// From when on the condition holds; before, the light is good.

@@ -13,8 +13,7 @@
 #include "core/quantile.h"
 #include "core/random_vector.h"
 #include "core/units.h"
-#include "machine/model_files.h"
-#include "rehearsal/rehearse.h"
+#include "studies/gap/bottle_prints.h"
 #include "studies/gap/gap_bench.h"
 
 namespace understudy::studies {
@@ -22,13 +21,8 @@ namespace {
 
 using control::GapControl;
 using control::GapStop;
-using rehearsal::Finding;
-using rehearsal::Record;
-using rehearsal::RehearsalRequest;
-using rehearsal::TracePoint;
 
-constexpr int kFramesPerTrial = 10;    // of detectors
-constexpr std::size_t kStations = 45;  // along the bottle's line: one in 0.25 mm
+constexpr int kFramesPerTrial = 10;  // of detectors
 
 Spread spread_of(const std::vector<double>& values) {
   if (values.empty()) return {};
@@ -183,75 +177,6 @@ FollowingRow measure_followings(const Cell& cell) {
   return row;
 }
 
-/// One machine with one mode.
-struct BottleRun {
-  bool printed = false, touched = false;
-  std::vector<double> gaps_mm;
-  double in_band = 0;
-  std::string stop;
-};
-
-BottleRun print_bottle(const RehearsalRequest& request) {
-  const Record record = rehearsal::rehearse(request);
-  BottleRun run;
-  run.touched =
-      std::any_of(record.trace.begin(), record.trace.end(), [](const TracePoint& p) { return p.gap <= 0; }) ||
-      std::any_of(record.findings.begin(), record.findings.end(),
-                  [](const Finding& f) { return f.kind == "collision"; });
-  int inside = 0;
-  for (const TracePoint& p : record.trace) {
-    if (!p.extruding) continue;
-    const double gap = to_mm(p.gap);
-    run.gaps_mm.push_back(gap);
-    inside += gap >= record.gap_accepted_min_mm && gap <= record.gap_accepted_max_mm;
-  }
-  run.printed = !run.gaps_mm.empty();
-  run.in_band = run.printed ? inside / static_cast<double>(run.gaps_mm.size()) : 0;
-  for (const Finding& f : record.findings)
-    if (f.message.starts_with("gap control stopped")) run.stop = f.message.substr(0, f.message.find(':'));
-  return run;
-}
-
-/// A print that a stop has cut short has no place for its points.
-std::vector<GapStation> gap_along(const std::vector<BottleRun>& runs) {
-  std::vector<GapStation> along;
-  for (std::size_t s = 0; s < kStations; ++s) {
-    std::vector<double> here;
-    for (const BottleRun& run : runs)
-      if (run.printed && run.stop.empty())
-        here.push_back(run.gaps_mm[(run.gaps_mm.size() - 1) * s / (kStations - 1)]);
-    if (here.empty()) return {};
-    along.push_back({quantile(here, 0.05), quantile(here, 0.5), quantile(here, 0.95)});
-  }
-  return along;
-}
-
-BottleRow bottle_row(const std::string& mode, const std::vector<BottleRun>& runs) {
-  BottleRow row;
-  row.mode = mode;
-  row.in_band_worst = 1;
-  std::vector<double> gaps;
-  double inside = 0;
-  for (const BottleRun& run : runs) {
-    ++row.machines;
-    row.touched += run.touched;
-    if (!run.stop.empty()) ++row.stops[run.stop];
-    if (!run.printed) continue;
-    ++row.printed;
-    row.kept += run.in_band >= 0.99;
-    row.in_band_worst = std::min(row.in_band_worst, run.in_band);
-    inside += run.in_band * static_cast<double>(run.gaps_mm.size());
-    gaps.insert(gaps.end(), run.gaps_mm.begin(), run.gaps_mm.end());
-  }
-  if (gaps.empty()) return row;
-  row.in_band_fraction = inside / static_cast<double>(gaps.size());
-  row.gap_p01_mm = quantile(gaps, 0.01);
-  row.gap_median_mm = quantile(gaps, 0.5);
-  row.gap_p99_mm = quantile(gaps, 0.99);
-  row.along = gap_along(runs);
-  return row;
-}
-
 void require(const GapBenchmarkRequest& request) {
   const auto& known = gap_benchmark_parts();
   for (const std::string& part : request.parts)
@@ -265,10 +190,25 @@ void require(const GapBenchmarkRequest& request) {
     throw InputError(fmt::format("-j {} is outside 1..1024", request.threads));
 }
 
+FaultedTwinRequest faulted_request(const GapBenchmarkRequest& request, FaultedTask task) {
+  FaultedTwinRequest faulted;
+  faulted.machine = request.machine;
+  faulted.program = request.program;
+  faulted.task = task;
+  faulted.faults = request.faults;
+  faulted.trials = request.trials;
+  faulted.worlds = request.machines;
+  faulted.seed = request.seed;
+  faulted.plants = request.plants;
+  faulted.threads = request.threads;
+  return faulted;
+}
+
 }  // namespace
 
 const std::vector<std::string>& gap_benchmark_parts() {
-  static const std::vector<std::string> parts{"detectors", "approach", "following", "bottle"};
+  static const std::vector<std::string> parts{"detectors", "approach",           "following",
+                                              "bottle",    "faulted-approaches", "faulted-prints"};
   return parts;
 }
 
@@ -295,8 +235,8 @@ GapBenchmark run_gap_benchmark(const GapBenchmarkRequest& request, const Progres
   std::vector<ApproachRow> approaches(cells.size());
   std::vector<FollowingRow> followings(cells.size());
   const std::vector<std::string> modes{"off", "start", "continuous"};
-  std::vector<std::vector<BottleRun>> bottle(
-      modes.size(), std::vector<BottleRun>(static_cast<std::size_t>(request.machines)));
+  std::vector<std::vector<BottlePrint>> bottle(
+      modes.size(), std::vector<BottlePrint>(static_cast<std::size_t>(request.machines)));
 
   Jobs jobs;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -309,18 +249,13 @@ GapBenchmark run_gap_benchmark(const GapBenchmarkRequest& request, const Progres
   if (wants("bottle"))
     for (std::size_t k = 0; k < bottle.front().size(); ++k)
       for (std::size_t m = 0; m < modes.size(); ++m)
-        jobs.add(fmt::format("bottle, machine {}, {}", k + 1, modes[m]), [&, k, m] {
-          RehearsalRequest one;
-          one.program = request.program;
-          one.machine = request.machine;
-          one.fixture = "bottle";
-          one.engine = "quasistatic";
-          one.gap_control = modes[m];
-          one.seed = request.seed + k;
-          one.keep_scene = one.compare_without_gap_control = false;
-          bottle[m][k] = print_bottle(one);
-        });
+        jobs.add(fmt::format("bottle, machine {}, {}", k + 1, modes[m]),
+                 [&, k, m] { bottle[m][k] = print_bottle(request, modes[m], request.seed + k); });
   jobs.run(request.threads, progress);
+  if (wants("faulted-approaches"))
+    benchmark.faulted.push_back(run_faulted_twin(faulted_request(request, FaultedTask::approach), progress));
+  if (wants("faulted-prints"))
+    benchmark.faulted.push_back(run_faulted_twin(faulted_request(request, FaultedTask::print), progress));
 
   for (const auto& rows : detectors)
     benchmark.detectors.insert(benchmark.detectors.end(), rows.begin(), rows.end());
@@ -330,6 +265,13 @@ GapBenchmark run_gap_benchmark(const GapBenchmarkRequest& request, const Progres
     for (std::size_t m = 0; m < modes.size(); ++m)
       benchmark.bottle.push_back(bottle_row(modes[m], bottle[m]));
   return benchmark;
+}
+
+bool GapBenchmark::good() const {
+  for (const FaultedTwin& twin : faulted)
+    for (const PlantTrials& on : twin.plants)
+      if (!on.good()) return false;
+  return true;
 }
 
 }  // namespace understudy::studies

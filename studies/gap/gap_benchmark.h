@@ -9,22 +9,26 @@
 
 #include "core/progress.h"
 #include "machine/default_machine.h"
+#include "studies/gap/faulted_twin.h"
 
 namespace understudy::studies {
 
 struct GapBenchmarkRequest {
   std::string machine = machine::kDefaultMachine;
   std::vector<std::string> parts{"detectors", "approach", "following", "bottle"};
-  int trials =
-      10;  ///< of approaches and of prints that are followed, a surface and condition; frames tenfold
-  int machines = 20;  ///< as-built, of the bottle
+  /// Of approaches and of prints that are followed, a surface and condition; frames tenfold. Of faulted
+  /// approaches, and of faulted prints, in all.
+  int trials = 10;
+  int machines = 20;  ///< as-built, of the bottle; built and calibrated, of faulted approaches and prints
+  std::vector<PlantChoice> plants{PlantChoice{}};  ///< of faulted approaches and prints
+  std::vector<std::string> faults;                 ///< of them; empty: all
   std::uint64_t seed = 1;
   int threads = 1;
   std::string program;  ///< of the bottle: scenarios/song-bottle.gcode unless given
   std::string command;  ///< for the record
 };
 
-/// Words of `parts`.
+/// Words of `parts`: the four that are run unless told otherwise, then faulted-approaches, faulted-prints.
 const std::vector<std::string>& gap_benchmark_parts();
 
 struct Spread {
@@ -82,6 +86,10 @@ struct GapBenchmark {
   std::vector<ApproachRow> approaches;
   std::vector<FollowingRow> followings;
   std::vector<BottleRow> bottle;
+  std::vector<FaultedTwin> faulted;  ///< approaches, prints
+
+  /// Of the faulted trials: no touch, and no answer that is wrong.
+  bool good() const;
 };
 
 /// The result does not depend on the number of threads. Throws InputError, MachineError, Interrupted.

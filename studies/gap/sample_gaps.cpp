@@ -37,6 +37,11 @@ std::vector<Tilt> tilts(double wedge) {
   return {{}, {wedge, 0}, {wedge, from_deg(90)}};
 }
 
+/// As calibration::Flat::slope.
+Vec2 tilt_slope(const Tilt& tilt) {
+  return -std::tan(tilt.angle) * Vec2(std::cos(tilt.azimuth), std::sin(tilt.azimuth));
+}
+
 /// The tip, at a gap along the tool axis from the middle of the table.
 Pose tool_over(const Tilt& tilt, double gap) {
   const Vec3 normal_T(std::sin(tilt.angle) * std::cos(tilt.azimuth),
@@ -63,17 +68,21 @@ SampledGaps sample_gaps(const SampleGapsRequest& request, const machine::Machine
   sample.table = "height_mm,height_sigma_um,picture,gap_mm,gap_sigma_um,tilt_deg,azimuth_deg\n";
   sample.truth = "picture,gap_mm\n";
   for (const Tilt& tilt : tilts(request.wedge)) {
+    const auto number = static_cast<int>(sample.rows.slopes.size());
+    sample.rows.slopes.push_back(tilt_slope(tilt));
     const double zero = random.uniform(0, kZeroMax);
     const std::string flat = fmt::format("{:g},{:g}", to_deg(tilt.angle), to_deg(tilt.azimuth));
-    sample.table += fmt::format("{:.6f},,,{:g},{:g},{}\n",
-                                to_mm(request.feeler + request.feeler_sigma * random.normal() - zero),
-                                to_mm(request.feeler), to_um(request.feeler_sigma), flat);
+    const double touched = request.feeler + request.feeler_sigma * random.normal() - zero;
+    sample.rows.known.push_back({number, touched, request.feeler, request.feeler_sigma});
+    sample.table += fmt::format("{:.6f},,,{:g},{:g},{}\n", to_mm(touched), to_mm(request.feeler),
+                                to_um(request.feeler_sigma), flat);
     for (const double height : request.heights) {
       stop_if_interrupted();
       const double gap = height + zero + request.height_sigma * random.normal();
       const std::string name = fmt::format("dot-{:03}.png", ++sample.pictures);
       keep(name,
            microscope.expose(tool_over(tilt, gap), sensor, static_cast<std::uint64_t>(sample.pictures)));
+      sample.rows.rows.push_back({0, number, height, request.height_sigma, name, ""});
       sample.table +=
           fmt::format("{:.6f},{:g},{},,,{}\n", to_mm(height), to_um(request.height_sigma), name, flat);
       sample.truth += fmt::format("{},{:.6f}\n", name, to_mm(gap));

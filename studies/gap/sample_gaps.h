@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/gap_sensor/gap_picture_table.h"
 #include "core/image.h"
 #include "machine/description.h"
 
@@ -27,6 +28,7 @@ struct SampledGaps {
   std::string truth;     ///< CSV: the gap of each picture
   std::string as_built;  ///< the machine that stood there, as sim::read_as_built() takes it
   int pictures = 0;
+  calibration::GapPictureTable rows;  ///< the same as read: without file, lines and files of pictures
 };
 
 /// `keep` is given each picture and the name that the table has for it. Throws InputError for heights that

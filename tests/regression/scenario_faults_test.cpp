@@ -60,5 +60,28 @@ TEST(ScenarioFaults, AreReadStrictly) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(ScenarioCameraFaults, AreReadStrictly) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "scenario_camera_faults";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "line.gcode") << "G21\n";
+  const auto error_of = [&](const std::string& fault) {
+    return error_of_faults(folder, "camera_faults:\n  - {" + fault + "}\n");
+  };
+  for (const char* fault :
+       {"fault: dark, at_s: 1", "fault: lost, at_s: 1, share: 0.3", "fault: dim, at_s: 0, power: 0.05",
+        "fault: saturated, at_s: 0, power: 4", "fault: ghost, at_s: 1, gap_offset_um: 40",
+        "fault: cut_beam, at_s: 1, offset_px: 2, direction_deg: 90",
+        "fault: strip, at_s: 1, offset_px: -10, direction_deg: 0", "fault: displaced, at_s: 1, offset_px: 8"})
+    EXPECT_EQ(error_of(fault), "accepted") << fault;
+  EXPECT_THAT(error_of("fault: drak, at_s: 1"),
+              AllOf(HasSubstr("scenario.yaml:13"), HasSubstr("did you mean 'dark'?")));
+  EXPECT_THAT(error_of("fault: dark, at_s: -1"), HasSubstr("at_s is -1 s, below 0 s"));
+  EXPECT_THAT(error_of("fault: lost, at_s: 1, share: 1.5"), HasSubstr("share is 1.5"));
+  EXPECT_THAT(error_of("fault: dim, at_s: 1"), HasSubstr("power' is missing"));
+  EXPECT_THAT(error_of("fault: dark, at_s: 1, power: 0.5"),
+              HasSubstr("unknown key 'camera_faults[1].power'"));
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace understudy::regression

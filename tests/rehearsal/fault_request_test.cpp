@@ -20,6 +20,26 @@ FaultRequest request(FaultKind kind, const std::string& axis) {
   return r;
 }
 
+std::string camera_refusal(sim::CameraFaultKind kind, double share, const std::string& machine) {
+  CameraFaultRequest r{{}, {"s.yaml", 9, 5}};
+  r.event.kind = kind;
+  r.event.share = share;
+  try {
+    (void)resolve_camera_faults({r}, machine::load_machine(machine));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CameraFaultRequests, NameTheirPlaceAndNeedACamera) {
+  EXPECT_EQ(camera_refusal(sim::CameraFaultKind::dark, 1, "hexapod"), "accepted");
+  EXPECT_THAT(camera_refusal(sim::CameraFaultKind::dark, 0, "hexapod"),
+              AllOf(HasSubstr("s.yaml:9"), HasSubstr("share 0 is not above 0")));
+  EXPECT_THAT(camera_refusal(sim::CameraFaultKind::dark, 1, "finishing"),
+              AllOf(HasSubstr("s.yaml:9"), HasSubstr("camera fault dark"), HasSubstr("has no camera")));
+}
+
 std::string refusal(const FaultRequest& r, const std::string& machine) {
   try {
     (void)resolve_faults({r}, machine::load_machine(machine));

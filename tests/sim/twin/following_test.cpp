@@ -44,9 +44,9 @@ struct Print {
 Print follow(Plant& plant, double dark_from = HUGE_VAL) {
   const auto part = slab();
   Microscope microscope(hexapod(), part, 1);
-  const Exposure expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
-    Image image = microscope.expose(X_WT, region, number);
-    if (X_WT.translation().x() > dark_from)
+  const Exposure expose = [&](const Shot& shot) {
+    Image image = microscope.expose(shot);
+    if (shot.X_WT.translation().x() > dark_from)
       std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{12});
     return image;
   };

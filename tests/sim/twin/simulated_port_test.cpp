@@ -54,10 +54,10 @@ class TwinOnTrial : public machine::PortOnTrial {
   TwinOnTrial()
       : machine_(machine::load_machine("hexapod")),
         port_(machine_, plant_,
-              [this](const Pose&, const Region& region, std::uint64_t) {
+              [this](const Shot& shot) {
                 if (lost_) return Image{};
-                return Image{region, std::vector<std::uint8_t>(
-                                         static_cast<std::size_t>(region.width * region.height))};
+                const auto pixels = static_cast<std::size_t>(shot.region.width * shot.region.height);
+                return Image{shot.region, std::vector<std::uint8_t>(pixels)};
               },
               {}) {
     range = machine_.make_mechanism()->axis_range(0);
@@ -82,10 +82,10 @@ class SimulatedPortTest : public ::testing::Test {
   }
 
   Exposure exposure() {
-    return [this](const Pose& X_WT, const Region& region, std::uint64_t) {
-      exposed_at_ = X_WT.translation().x();
-      return Image{region,
-                   std::vector<std::uint8_t>(static_cast<std::size_t>(region.width * region.height), 7)};
+    return [this](const Shot& shot) {
+      exposed_at_ = shot.X_WT.translation().x();
+      const auto pixels = static_cast<std::size_t>(shot.region.width * shot.region.height);
+      return Image{shot.region, std::vector<std::uint8_t>(pixels, 7)};
     };
   }
 

@@ -1,0 +1,25 @@
+// A machine as a lab has it before its first print: built within its manufacturing tolerances, then its
+// geometry calibrated from measured poses and its gap sensor from pictures over a flat.
+#pragma once
+
+#include <cstdint>
+
+#include "machine/calibrated_parameters.h"
+#include "machine/description.h"
+#include "sim/as_built/as_built.h"
+
+namespace understudy::studies {
+
+struct LabMachine {
+  machine::MachineDescription machine;  ///< calibrated: what the controller holds
+  machine::CalibratedParameters calibrated;
+  sim::AsBuilt built;                 ///< what stands there, with its clamped part
+  machine::MachineDescription truth;  ///< sim::true_description() of both
+};
+
+/// The drawn machine built with this seed and calibrated with the defaults of `sample-poses`, `calibrate`,
+/// `sample-gaps` and `calibrate gap-sensor` (bench/print/built_machines.sh), with no file between them.
+/// Throws InputError for a machine without tolerances, microscope or mounting tolerances.
+LabMachine make_lab_machine(const machine::MachineDescription& drawn, std::uint64_t seed);
+
+}  // namespace understudy::studies

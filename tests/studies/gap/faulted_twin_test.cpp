@@ -1,0 +1,137 @@
+// Faults of picture and machine on the whole twin. The loopback suite of the same faults, by the thousand, is
+// tests/control/gap/faulted_approach_test.cpp.
+#include "studies/gap/faulted_twin.h"
+
+#include <set>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/units.h"
+#include "machine/description.h"
+
+namespace understudy::studies {
+namespace {
+
+FaultedTwinRequest request_for(FaultedTask task, int trials, int worlds) {
+  FaultedTwinRequest request;
+  request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
+  request.task = task;
+  request.trials = trials;
+  request.worlds = worlds;
+  request.threads = hardware_threads();
+  return request;
+}
+
+std::string words(const FaultedTrial& trial) {
+  return fmt::format("trial {}, machine {}, {}, {}: {} ({}), least gap {:.1f} um, last {:.1f} um: {}",
+                     trial.number, trial.world, trial.surface,
+                     trial.words.empty() ? trial.fault : trial.words, trial.answer,
+                     to_string(trial.judgement), to_um(trial.least_gap), to_um(trial.last_gap), trial.why);
+}
+
+struct Teeth {
+  int stops = 0;          ///< at least
+  int answers = 0;        ///< different ones, at least
+  bool led_away = false;  ///< wrong answers of this kind are borne: see led_away()
+};
+
+/// A weakness that docs/gap-control.md states: a spot that stands still and reads less than the aim leads the
+/// tool away from the part, and the stop then speaks of a surface that is not where it was programmed.
+bool led_away(const FaultedTrial& trial) {
+  return (trial.fault == "ghost" || trial.fault == "frozen") && trial.answer == "too far" &&
+         trial.judgement == Judgement::wrong_reason;
+}
+
+FaultedTwin expect_no_wrong_answer(const FaultedTwinRequest& request, const Teeth& teeth) {
+  const FaultedTwin result = run_faulted_twin(request);
+  for (const UnsoundWorld& world : result.unsound)
+    std::printf("machine %d on %s is left out: %s\n", static_cast<int>(world.world), world.surface.c_str(),
+                world.why.c_str());
+  for (const PlantTrials& on : result.plants) {
+    for (const FaultedTrial& trial : on.trials) {
+      EXPECT_GT(trial.least_gap, 0) << words(trial);
+      EXPECT_TRUE(trial.judgement == Judgement::right || trial.judgement == Judgement::not_in_play ||
+                  (teeth.led_away && led_away(trial)))
+          << to_string(on.plant) << ", " << words(trial);
+      if (trial.stopped) {
+        EXPECT_FALSE(trial.why.empty()) << words(trial);
+      }
+    }
+    // The draw is not toothless: faults come into play, and a good part of them stops.
+    int stopped = 0;
+    std::set<std::string> answers;
+    for (const FaultedTrial& trial : on.trials) {
+      stopped += trial.stopped;
+      answers.insert(trial.answer);
+    }
+    EXPECT_GE(stopped, teeth.stops);
+    EXPECT_GE(static_cast<int>(answers.size()), teeth.answers);
+    EXPECT_LE(4 * on.count(Judgement::not_in_play), static_cast<int>(on.trials.size()));
+  }
+  return result;
+}
+
+TEST(FaultedTwin, AnApproachUnderEachFaultDoesNotTouchAndItsStopNamesTheFault) {
+  expect_no_wrong_answer(request_for(FaultedTask::approach, 16, 1), {6, 6});
+}
+
+TEST(FaultedTwin, PrintsDoNotTouchAndTheirStopsNameTheFault) {
+  FaultedTwinRequest request = request_for(FaultedTask::print, 3, 1);
+  request.faults = {"saturated", "stale", "growth"};
+  expect_no_wrong_answer(request, {1, 2});
+}
+
+TEST(FaultedTwin, ResultsDoNotDependOnThreads) {
+  FaultedTwinRequest request = request_for(FaultedTask::approach, 3, 1);
+  request.threads = 1;
+  const FaultedTwin one = run_faulted_twin(request);
+  request.threads = 3;
+  const FaultedTwin three = run_faulted_twin(request);
+  for (std::size_t i = 0; i < one.plants[0].trials.size(); ++i) {
+    EXPECT_EQ(one.plants[0].trials[i].words, three.plants[0].trials[i].words);
+    EXPECT_EQ(one.plants[0].trials[i].least_gap, three.plants[0].trials[i].least_gap);
+    EXPECT_EQ(one.plants[0].trials[i].why, three.plants[0].trials[i].why);
+  }
+}
+
+TEST(FaultedTwin, CountsEveryTrialOnceInItsConfusionTable) {
+  std::vector<FaultedTrial> trials(5);
+  for (FaultedTrial& trial : trials) trial.fault = "dark", trial.answer = "no dot";
+  trials[1].judgement = Judgement::wrong_reason;
+  trials[2].judgement = Judgement::touched;
+  trials[3].answer = "reached";
+  trials[3].judgement = Judgement::not_in_play;
+  trials[4].fault = "none";
+  trials[4].answer = "reached";
+  const auto cells = confusion(trials);
+  ASSERT_EQ(cells.size(), 3u);
+  EXPECT_EQ(cells[0].fault, "none");
+  EXPECT_EQ(cells[0].right, 1);
+  EXPECT_EQ(cells[1].answer, "no dot");
+  EXPECT_EQ(cells[1].right, 1);
+  EXPECT_EQ(cells[1].wrong, 2);
+  EXPECT_EQ(cells[2].not_in_play, 1);
+}
+
+TEST(FaultedTwin, RefusesWhatItCannotRun) {
+  EXPECT_THROW(run_faulted_twin(request_for(FaultedTask::approach, 0, 1)), InputError);
+  EXPECT_THROW(run_faulted_twin(request_for(FaultedTask::approach, 1, 0)), InputError);
+  FaultedTwinRequest request = request_for(FaultedTask::approach, 1, 1);
+  request.faults = {"darkness"};
+  EXPECT_THROW(run_faulted_twin(request), InputError);
+}
+
+TEST(SlowFaultedTwin, NoneOfTwoThousandApproachesTouchesAndEachStopNamesItsFault) {
+  expect_no_wrong_answer(request_for(FaultedTask::approach, 2000, 50), {500, 7});
+}
+
+TEST(SlowFaultedTwin, NoneOfTwoHundredPrintsTouchesAndStopsNameTheFaultUnlessItLedTheToolAway) {
+  expect_no_wrong_answer(request_for(FaultedTask::print, 200, 20), {50, 7, true});
+}
+
+}  // namespace
+}  // namespace understudy::studies
