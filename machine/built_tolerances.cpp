@@ -34,6 +34,12 @@ void read_part(Keys keys, BuiltTolerances& t) {
   keys.read("ripple_um", {0, 1000}, "amplitude of waves of its surface", t.part_ripple);
 }
 
+void read_table(Keys keys, BuiltTolerances& t) {
+  keys.read("height_mm", {0, 5}, "of the table's top", t.table_height);
+  keys.read("tilt_mrad", {0, 100}, "of the table's top, about x and y of W", t.table_tilt);
+  keys.read("flatness_um", {0, 5000}, "of the table's top, middle against rim", t.table_flatness);
+}
+
 void read_process(Keys keys, BuiltTolerances& t) {
   keys.read("filament_diameter_mm", {0, 0.5}, "of the filament", t.filament_diameter);
   keys.read("extruder_lag_permille", kShare, "of the extruder's lag", t.extruder_lag);
@@ -49,6 +55,7 @@ void read_built_tolerances(YamlMap& map, BuiltTolerances& tolerances) {
   section("drives", "screws and joints", read_drives);
   section("optics", "laser and camera", read_optics);
   section("part", "what is clamped on the table", read_part);
+  section("table", "what the work stands on", read_table);
   section("process", "filament and nozzle", read_process);
 }
 

@@ -25,6 +25,10 @@ struct BuiltTolerances {
   double part_rotation = 0;  ///< [rad], about each axis of W
   double part_size = 0;      ///< share
   double part_ripple = 0;    ///< [m], amplitude of waves of its surface
+  // The table.
+  double table_height = 0;    ///< [m]
+  double table_tilt = 0;      ///< [rad], about x and y of W
+  double table_flatness = 0;  ///< [m], between its middle and its rim
   // Filament and light.
   double filament_diameter = 0;   ///< [m]
   double extruder_lag = 0;        ///< share

@@ -50,6 +50,7 @@ rehearsal::RehearsalRequest request_of(const Scenario& scenario) {
   request.material = scenario.material;
   request.dialect = scenario.dialect;
   request.surface = scenario.surface;
+  request.registration = scenario.registration;
   request.faults = scenario.faults;
   request.command = "understudy scenario run " + scenario.file.filename().string();
   return request;

@@ -49,6 +49,7 @@ struct Scenario {
   std::string material;                                               ///< empty: the machine's
   rehearsal::DialectRequest dialect;                                  ///< how the program is read
   rehearsal::SurfaceRequest surface;                                  ///< what is asked about the surface
+  rehearsal::RegistrationRequest registration;                        ///< of the part, before the print
   std::vector<rehearsal::FaultRequest> faults;
   std::vector<Expectation> expect;  ///< of the run with `seed`
   std::optional<MachineSeries> machines;

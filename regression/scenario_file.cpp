@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "control/registration/pattern.h"
 #include "core/output_file.h"
 #include "core/yaml_map.h"
 #include "regression/scenario_faults.h"
@@ -199,6 +200,21 @@ void read_surface(YamlMap& map, const fs::path& folder, SurfaceRequest& surface)
     surface.probe = map.numbers("probe", 3, {}, "direction from which the surface is felt");
 }
 
+void read_registration(YamlMap& map, const fs::path& folder, RegistrationRequest& registration) {
+  if (!map.has("register")) return;
+  map.section("register", "the gap sensor finds the part before the print", [&](YamlMap& keys) {
+    registration.wanted = true;
+    if (keys.has("places"))
+      registration.places = keys.integer("places", control::kPlacesMin, control::kPlacesMax,
+                                         "number of places that are chosen");
+    if (!keys.has("pattern")) return;
+    registration.pattern =
+        existing_file(keys, "pattern", folder, "CSV x_mm,y_mm,z_mm of points on the drawn part").string();
+    if (keys.has("places"))
+      keys.fail("places", "places is for places that are chosen; the pattern has its own");
+  });
+}
+
 void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   scenario.name = map.text("name", "of the scenario, in reports");
   scenario.description = map.text("description", "what it shows");
@@ -218,6 +234,7 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   read_tolerances(map, scenario);
   read_dialect(map, scenario.dialect);
   read_surface(map, folder, scenario.surface);
+  read_registration(map, folder, scenario.registration);
   scenario.faults = read_faults(map);
   scenario.expect = read_expectations(map, false);
   if (!map.has("machines")) return;

@@ -97,7 +97,7 @@ constexpr double kLaserSees = 6e-3;  // [m], around the tip
 /// Everything that watches a run, and what it watches.
 struct Watch {
   explicit Watch(const TwinSetup& setup, const RunOptions& options)
-      : workpiece(std::make_shared<sim::Workpiece>(setup.built_part)),
+      : workpiece(std::make_shared<sim::Workpiece>(setup.built_part, setup.as_built.table)),
         flow(setup.program, setup.machine),
         strands(setup.truth, setup.material),
         deposition(setup.truth, workpiece, deposition_options(setup, flow, strands)),
@@ -175,7 +175,11 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   const auto plant = make_plant(setup);
   Watch watch(setup, options);
   std::optional<sim::Microscope> microscope;
-  if (setup.truth.has_microscope) microscope.emplace(setup.truth, setup.built_part, setup.seed);
+  if (setup.truth.has_microscope) {
+    sim::MicroscopeOptions view;
+    view.table = setup.as_built.table;
+    microscope.emplace(setup.truth, setup.built_part, setup.seed, view);
+  }
   std::map<std::uint64_t, ExposureTruth> truth;
   const auto expose = [&](const Pose& X_WT, const Region& region, std::uint64_t number) {
     watch.thread.drain();  // the laser sees what has been printed by now

@@ -70,12 +70,18 @@ Beam beam_in(const Pose& X_FT, const Pose& X_TL) {
   return {X_FT * (X_TL.translation() + source * direction_T), X_FT.linear() * X_TL.linear(), source};
 }
 
-Surface table_around(const Vec3& p_W) {
+/// The table's tangent plane below a place: within the picture's millimetres a bow differs by nanometres.
+Surface table_around(const geometry::TableSurface& top, const Vec3& p_W) {
+  const Vec2 middle = p_W.head<2>();
+  const Vec3 normal = top.normal(middle);
   Surface s;
-  const double x = p_W.x(), y = p_W.y(), h = kTableHalf;
-  s.vertices = {{x - h, y - h, 0}, {x + h, y - h, 0}, {x + h, y + h, 0}, {x - h, y + h, 0}};
+  for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+    const Vec2 way = kTableHalf * Vec2(x, y);
+    const double rise = -normal.head<2>().dot(way) / normal.z();
+    s.vertices.push_back({middle.x() + way.x(), middle.y() + way.y(), top.z(middle) + rise});
+  }
   s.triangles = {{0, 1, 2}, {0, 2, 3}};
-  s.corner_normals.assign(2, {Vec3::UnitZ(), Vec3::UnitZ(), Vec3::UnitZ()});
+  s.corner_normals.assign(2, {normal, normal, normal});
   return s;
 }
 
@@ -195,7 +201,8 @@ void LaserView::State::gather(const LaserScene& scene, const Region& region) {
       add(tessellate(body, kSegments), X_CT, Owner::tool, scene, region);
     }
   }
-  if (scene.table) add(table_around(scene.X_WT.translation()), X_CW, Owner::scenery, scene, region);
+  if (scene.table)
+    add(table_around(scene.table_top, scene.X_WT.translation()), X_CW, Owner::scenery, scene, region);
 }
 
 void LaserView::State::draw_blockers(const LaserScene& scene) {

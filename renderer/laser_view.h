@@ -9,13 +9,15 @@
 #include "core/image.h"
 #include "geometry/mesh.h"
 #include "geometry/shape.h"
+#include "geometry/table_surface.h"
 
 namespace understudy::renderer {
 
 struct LaserScene {
   std::shared_ptr<const geometry::Mesh> part;     ///< may be null: nothing but the table
   std::shared_ptr<const geometry::Mesh> printed;  ///< beads near the tool, in W; may be null
-  bool table = true;                              ///< the plane z = 0 of W
+  bool table = true;                              ///< there is one
+  geometry::TableSurface table_top;               ///< in W; its tangent plane below the tip is drawn
   std::vector<geometry::Shape> tool_bodies;       ///< in T; they occlude beam and view
   Pose X_WT = Pose::Identity();                   ///< true pose
   Pose X_TC = Pose::Identity();

@@ -16,10 +16,8 @@ double first_hit(const LaserScene& scene, const Vec3& origin, const Vec3& direct
     if (!mesh) continue;
     if (const auto hit = mesh->ray_hit(origin, direction, nearest)) nearest = hit->distance;
   }
-  if (scene.table && direction.z() != 0) {
-    const double t = -origin.z() / direction.z();
-    if (t > 0 && t < nearest) nearest = t;
-  }
+  if (scene.table)
+    if (const auto t = scene.table_top.ray_hit(origin, direction); t && *t > 0 && *t < nearest) nearest = *t;
   const Pose X_TW = scene.X_WT.inverse();
   const Vec3 origin_T = X_TW * origin, direction_T = X_TW.linear() * direction;
   for (const auto& body : scene.tool_bodies) {

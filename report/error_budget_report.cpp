@@ -118,6 +118,8 @@ Remedy remedy_of(TruthGroup group, const std::string& as_built) {
       return {"tolerances.part.position_mm, rotation_mrad", "locate the clamped part, better stops"};
     case TruthGroup::part_shape:
       return {"tolerances.part.size_permille, ripple_um", "measure the part, or make it more exactly"};
+    case TruthGroup::table:
+      return {"tolerances.table", "level the table, or a flatter one"};
     case TruthGroup::process:
       return {"tolerances.process", "measure the filament, calibrate extruder and thermistor"};
     case TruthGroup::noise:

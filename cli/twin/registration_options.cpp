@@ -8,8 +8,6 @@
 namespace understudy::cli {
 namespace {
 
-constexpr int kPlacesMax = 100;
-
 std::string triple(const std::array<double, 3>& values, const char* format) {
   return fmt::format("{}, {}, {}", fmt::format(fmt::runtime(format), values[0]),
                      fmt::format(fmt::runtime(format), values[1]),
@@ -24,7 +22,7 @@ void add_registration_options(CLI::App& command, rehearsal::RegistrationRequest&
                   "CSV x_mm,y_mm,z_mm of six or more points on the drawn part; without it places are chosen")
       ->group("Finding the part");
   command.add_option("--places", request.places, "number of places to choose")
-      ->check(CLI::Range(control::kPlacesMin, kPlacesMax))
+      ->check(CLI::Range(control::kPlacesMin, control::kPlacesMax))
       ->capture_default_str()
       ->group("Finding the part");
 }

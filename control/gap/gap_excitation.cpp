@@ -82,14 +82,14 @@ void GapExcitation::begin(double slope, double slope_sigma) {
   slope_sigma_ = slope_sigma;
   if (!undecided_) test_.begin(kBefore);
   undecided_ = true;
-  phase_ = Phase::first;
+  phase_ = suspected_ ? Phase::second : Phase::first;
   after_ = 0;
-  go_to(options_.amplitude);
+  go_to((suspected_ ? 2 : 1) * options_.amplitude);
 }
 
 void GapExcitation::abandon() {
   phase_ = Phase::idle;
-  undecided_ = false;
+  undecided_ = suspected_ = false;
   test_.clear();
   motion_.brake(options_.acceleration_max);
 }
@@ -97,6 +97,7 @@ void GapExcitation::abandon() {
 GapExcitation::Answer GapExcitation::finish(Answer answer) {
   phase_ = Phase::idle;
   undecided_ = answer == Answer::open;
+  suspected_ = suspected_ && undecided_;
   if (answer != Answer::stands_still && !lowered()) lower();
   return answer;
 }
@@ -112,9 +113,10 @@ GapExcitation::Answer GapExcitation::observe(const ExcitedReading& reading) {
   const auto [evidence, scatter] = test_.result(slope_, slope_sigma_);
   if (scatter > std::pow(kChanged * options_.amplitude, 2)) test_.begin(kBefore);
   if (evidence >= options_.decided) return finish(Answer::follows);
-  if (phase_ == Phase::second) {
+  if (suspected_) {
     if (evidence <= -options_.decided) return finish(Answer::stands_still);
   } else if (evidence <= -options_.suspected) {
+    suspected_ = true;
     phase_ = Phase::second;
     after_ = 0;
     test_.begin(kBefore);

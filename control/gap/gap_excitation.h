@@ -105,6 +105,7 @@ class GapExcitation {
   Phase phase_ = Phase::idle;
   int after_ = 0;           // readings since the motion arrived
   bool undecided_ = false;  // the readings of the excitation before count on
+  bool suspected_ = false;  // of a spot that stands still: the tool rises farther
 };
 
 }  // namespace understudy::control

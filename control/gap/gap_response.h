@@ -108,8 +108,11 @@ class CusumTest {
       return false;
     }
     const double still = reading - level_, still_total = variance_ + variance;
+    const double standing = still * still / still_total, following = miss * miss / total;
+    // Readings that scatter more than they state fit neither, and one of them proves nothing.
+    scatter_ += (std::min(standing, following) - scatter_) / kScatterReadings;
     const double gain =
-        0.5 * (still * still / still_total + std::log(still_total) - miss * miss / total - std::log(total));
+        0.5 * ((standing - following) / std::max(1.0, scatter_) + std::log(still_total) - std::log(total));
     evidence_ = std::max(0.0, evidence_ + gain);
     level_ += variance_ / still_total * still;
     variance_ *= variance / still_total;
@@ -122,10 +125,12 @@ class CusumTest {
 
  private:
   static constexpr double kThreshold = 10;  // exp(10) samples are nine minutes
+  static constexpr double kScatterReadings = 8;
 
   double level_ = 0;
   double variance_ = std::numeric_limits<double>::infinity();
   double evidence_ = 0;
+  double scatter_ = 1;  // of the better explanation's misses, in variances, over the last readings
   double highest_ = 0;
 };
 

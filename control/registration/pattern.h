@@ -12,6 +12,7 @@ namespace understudy::control {
 
 constexpr int kPlacesMin = 6;
 constexpr int kPlacesDefault = 9;
+constexpr int kPlacesMax = 100;
 /// [m]: a place of a file that is farther from the drawn part is not on it.
 constexpr double kOffPart = 0.1e-3;
 

@@ -64,6 +64,7 @@ AsBuilt without_errors(const machine::MachineDescription& machine, Geometry geom
     machine::set_mounting(machine::drawn_mounting(machine), built.laser, built.microscope);
   built.filament_diameter = machine.tool.filament_diameter;
   built.extruder_lag = machine.process.extruder_lag;
+  built.table.radius = 0.5 * std::get<geometry::Box>(machine.table.form).size.head<2>().minCoeff();
   return built;
 }
 

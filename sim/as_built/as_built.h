@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "geometry/table_surface.h"
 #include "machine/description.h"
 #include "sim/as_built/truth_seeds.h"
 
@@ -46,6 +47,7 @@ struct AsBuilt {
   double extruder_lag = 0;         ///< [s]
   double nozzle_offset = 0;        ///< [K], the nozzle beyond what its sensor reads
   BuiltPart part;
+  geometry::TableSurface table;
 };
 
 /// A machine that is exactly what its description says, calibrated geometry included: no truth about a

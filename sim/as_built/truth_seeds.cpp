@@ -32,6 +32,8 @@ const char* to_string(TruthGroup group) {
       return "part place";
     case TruthGroup::part_shape:
       return "part shape";
+    case TruthGroup::table:
+      return "table";
     case TruthGroup::process:
       return "process";
     case TruthGroup::noise:

@@ -22,10 +22,11 @@ enum class TruthGroup {
   light,       ///< power and waist of the laser, ambient light
   part_place,  ///< where the part is clamped
   part_shape,  ///< its size and ripple
+  table,       ///< its height, tilt and bow
   process,     ///< filament diameter, extruder lag, nozzle temperature
   noise,       ///< of the camera's pictures: of the run, not of the built machine
 };
-constexpr std::size_t kTruthGroups = 11;
+constexpr std::size_t kTruthGroups = 12;
 std::array<TruthGroup, kTruthGroups> all_truth_groups();
 const char* to_string(TruthGroup group);  ///< "part place"
 

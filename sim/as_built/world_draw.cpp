@@ -83,6 +83,13 @@ void draw_part(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built
   part.phase = shape.phase("part phase");
 }
 
+void draw_table(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built) {
+  const Draws draws(seeds, TruthGroup::table, built);
+  built.table.height += draws.normal("table height", t.table_height);
+  built.table.slope += draws.vector("table tilt", t.table_tilt).head<2>();
+  built.table.bow += draws.normal("table bow", t.table_flatness);
+}
+
 void draw_process(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& built) {
   const Draws draws(seeds, TruthGroup::process, built);
   built.filament_diameter += draws.normal("filament diameter", t.filament_diameter);
@@ -111,6 +118,7 @@ void draw_world(const BuiltTolerances& tolerances, const TruthSeeds& seeds, AsBu
   draw_play(seeds, tolerances, built);
   draw_optics(seeds, tolerances, built);
   draw_part(seeds, tolerances, built);
+  draw_table(seeds, tolerances, built);
   draw_process(seeds, tolerances, built);
 }
 

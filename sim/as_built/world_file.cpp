@@ -54,6 +54,15 @@ void read_part(YamlMap& map, BuiltPart& part) {
   read_if_given(map, "phase_deg", kPhase, "of the waves", part.phase);
 }
 
+void read_table(YamlMap& map, geometry::TableSurface& table) {
+  read_if_given(map, "height_mm", {-50, 50}, "of its top at the origin of W", table.height);
+  if (map.has("slope_mrad")) {
+    const auto slope = map.quantities("slope_mrad", 2, {-100, 100}, "of its top, along x and y");
+    table.slope = {slope[0], slope[1]};
+  }
+  read_if_given(map, "bow_um", {-5000, 5000}, "by which its rim lies lower than its middle", table.bow);
+}
+
 void read_process(YamlMap& map, AsBuilt& built) {
   read_if_given(map, "filament_diameter_mm", {0.1, 20}, "of the filament that is fed",
                 built.filament_diameter);
@@ -97,6 +106,7 @@ void read_world(YamlMap& root, AsBuilt& built) {
     section("camera", "of the microscope", [&](YamlMap& map) { read_camera(map, built.microscope); });
   }
   section("part", "what is clamped on the table", [&](YamlMap& map) { read_part(map, built.part); });
+  section("table", "its top", [&](YamlMap& map) { read_table(map, built.table); });
   if (root.either("the machine prints", built.filament_diameter > 0))
     section("process", "filament and nozzle", [&](YamlMap& map) { read_process(map, built); });
 }
@@ -108,6 +118,9 @@ std::string write_world(const AsBuilt& built) {
   out += fmt::format("part: {{position_mm: {}, quaternion: {}, size: {}, ripple_um: {}, phase_deg: {}}}\n",
                      vector_text(part.X_WF.translation(), kMillimetre), rotation_text(part.X_WF), part.size,
                      to_um(part.ripple), to_deg(part.phase));
+  const geometry::TableSurface& table = built.table;
+  out += fmt::format("table: {{height_mm: {}, slope_mrad: [{}, {}], bow_um: {}}}\n", to_mm(table.height),
+                     to_mrad(table.slope.x()), to_mrad(table.slope.y()), to_um(table.bow));
   if (built.filament_diameter > 0)
     out += fmt::format("process: {{filament_diameter_mm: {}, extruder_lag_ms: {}, nozzle_offset_k: {}}}\n",
                        to_mm(built.filament_diameter), built.extruder_lag / 1e-3, built.nozzle_offset);

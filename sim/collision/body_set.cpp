@@ -21,6 +21,13 @@ double reach_of(const geometry::Shape& shape) {
   return r;
 }
 
+/// A block with the top's height and tilt. Where that is bowed, the block touches its highest place.
+Pose table_pose(const geometry::TableSurface& top) {
+  const Vec3 normal = top.normal({0, 0});
+  return make_pose(Quat::FromTwoVectors(Vec3::UnitZ(), normal),
+                   Vec3(0, 0, top.height + std::max(0.0, -top.bow)));
+}
+
 }  // namespace
 
 BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
@@ -45,6 +52,7 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
   }
   geometry::Shape table = machine.table;
   table.name = "table";
+  table.X_FS = table_pose(as_built.table) * table.X_FS;
   add_body(table, Owner::world, 0);
   add_pairs(machine.is_chain() ? 0 : machine.hexapod().strut_radius);
   if (beads_) add_bead_pairs(bodies_.size() - 1);

@@ -29,10 +29,10 @@ SurfaceGap gap_from_inside(const geometry::Mesh& part, const Vec3& tip, const Ve
 
 }  // namespace
 
-SurfaceGap table_gap(const Vec3& tip_W, const Vec3& axis_W) {
-  if (axis_W.z() <= 0) return {kInfinity};
-  const double gap = tip_W.z() / axis_W.z();
-  return {gap <= kGapReach ? gap : kInfinity};
+SurfaceGap table_gap(const geometry::TableSurface& table, const Vec3& tip_W, const Vec3& axis_W) {
+  const auto gap = table.ray_hit(tip_W, -axis_W);
+  if (!gap || *gap > kGapReach) return {kInfinity};
+  return {*gap, table.normal((tip_W - *gap * axis_W).head<2>())};
 }
 
 SurfaceGap part_gap(const geometry::Mesh& part, const Vec3& tip_W, const Vec3& axis_W) {

@@ -3,6 +3,7 @@
 
 #include "core/frames.h"
 #include "geometry/mesh.h"
+#include "geometry/table_surface.h"
 
 namespace understudy::sim {
 
@@ -14,8 +15,7 @@ struct SurfaceGap {
   double gap;  ///< [m]
   Vec3 normal_W{0, 0, 1};
 };
-/// To the plane z = 0 of W.
-SurfaceGap table_gap(const Vec3& tip_W, const Vec3& axis_W);
+SurfaceGap table_gap(const geometry::TableSurface& table, const Vec3& tip_W, const Vec3& axis_W);
 /// To a fixed mesh in W. A roof of the part above the tip is no surface to print on and does not count.
 SurfaceGap part_gap(const geometry::Mesh& part, const Vec3& tip_W, const Vec3& axis_W);
 

@@ -30,7 +30,8 @@ void require_finite(bool finite) {
 
 }  // namespace
 
-Workpiece::Workpiece(std::shared_ptr<const geometry::Mesh> insert) : insert_(std::move(insert)) {}
+Workpiece::Workpiece(std::shared_ptr<const geometry::Mesh> insert, const geometry::TableSurface& table)
+    : insert_(std::move(insert)), table_(table) {}
 
 std::optional<Hit> Workpiece::ray_hit(const Vec3& origin_W, const Vec3& direction_W, double reach,
                                       std::size_t before) const {
@@ -41,9 +42,9 @@ std::optional<Hit> Workpiece::ray_hit(const Vec3& origin_W, const Vec3& directio
     if (const auto hit = insert_->ray_hit(origin_W, direction_W, reach))
       keep_nearer(best, {Body::insert, hit->distance, hit->position, hit->normal, 0});
   }
-  if (origin_W.z() >= 0 && direction_W.z() < 0) {
-    const double t = -origin_W.z() / direction_W.z();
-    if (t <= reach) keep_nearer(best, {Body::table, t, origin_W + t * direction_W, Vec3::UnitZ(), 0});
+  if (const auto t = table_.ray_hit(origin_W, direction_W); t && *t >= 0 && *t <= reach) {
+    const Vec3 place_W = origin_W + *t * direction_W;
+    keep_nearer(best, {Body::table, *t, place_W, table_.normal(place_W.head<2>()), 0});
   }
   return best;
 }
@@ -58,8 +59,10 @@ std::optional<Hit> Workpiece::nearest(const Vec3& p_W, double cutoff, std::size_
     const double distance = inside ? -q.distance : q.distance;
     if (distance <= cutoff) keep_nearer(best, {Body::insert, distance, q.position, q.normal, 0});
   }
-  if (p_W.z() <= cutoff)
-    keep_nearer(best, {Body::table, p_W.z(), Vec3(p_W.x(), p_W.y(), 0), Vec3::UnitZ(), 0});
+  // Its slopes are a few milliradians: the distance across is that down, to parts in a million.
+  const Vec3 normal_W = table_.normal(p_W.head<2>());
+  const double above = (p_W.z() - table_.z(p_W.head<2>())) * normal_W.z();
+  if (above <= cutoff) keep_nearer(best, {Body::table, above, p_W - above * normal_W, normal_W, 0});
   return best;
 }
 
@@ -79,7 +82,7 @@ std::optional<Hit> Workpiece::top_of_heap(const Vec3& tip_W, const Vec3& axis_W,
       if (part.gap < 0 && std::isfinite(part.gap))
         keep_nearer(step, {Body::insert, part.gap, p - part.gap * axis_W, part.normal_W, 0});
     }
-    const SurfaceGap table = table_gap(p, axis_W);
+    const SurfaceGap table = table_gap(table_, p, axis_W);
     if (table.gap < 0) keep_nearer(step, {Body::table, table.gap, p - table.gap * axis_W, table.normal_W, 0});
     if (!step || (top && -step->distance <= kRounding)) return top;
     top = step;
@@ -98,7 +101,7 @@ std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before) const 
     if (std::isfinite(part.gap))
       keep_nearer(best, {Body::insert, part.gap, tip - part.gap * axis, part.normal_W, 0});
   }
-  const SurfaceGap table = table_gap(tip, axis);
+  const SurfaceGap table = table_gap(table_, tip, axis);
   if (std::isfinite(table.gap))
     keep_nearer(best, {Body::table, table.gap, tip - table.gap * axis, table.normal_W, 0});
   return best;

@@ -22,8 +22,8 @@ class Workpiece {
     std::size_t bead = 0;  ///< where it is one
   };
 
-  /// The insert may be null. The table is the plane z = 0 of W, seen from above.
-  explicit Workpiece(std::shared_ptr<const geometry::Mesh> insert);
+  /// The insert may be null. The table is seen from above.
+  explicit Workpiece(std::shared_ptr<const geometry::Mesh> insert, const geometry::TableSurface& table = {});
 
   void add(const Bead& bead) { beads_.add(bead); }
   const BeadIndex& beads() const { return beads_; }
@@ -49,6 +49,7 @@ class Workpiece {
   std::optional<Hit> top_of_heap(const Vec3& tip_W, const Vec3& axis_W, std::size_t before) const;
 
   std::shared_ptr<const geometry::Mesh> insert_;
+  geometry::TableSurface table_;
   BeadIndex beads_;
 };
 

@@ -24,6 +24,7 @@ renderer::LaserScene scene_of(const machine::MachineDescription& machine,
   scene.read_noise = machine.microscope.read_noise;
   scene.speckle = options.speckle;
   scene.noise = options.noise;
+  scene.table_top = options.table;
   scene.seed = seed;
   return scene;
 }

@@ -7,6 +7,7 @@
 
 #include "core/image.h"
 #include "geometry/mesh.h"
+#include "geometry/table_surface.h"
 #include "machine/description.h"
 
 namespace understudy::sim {
@@ -14,12 +15,14 @@ namespace understudy::sim {
 struct MicroscopeOptions {
   bool speckle = true;
   bool noise = true;
+  geometry::TableSurface table = {};  ///< in W
 };
 
 /// Owns an OSMesa context; use from the thread that made it. Several may live in several threads.
 class Microscope {
  public:
-  /// `part` may be null: nothing but the table. The seed is that of the surface's roughness and of the noise.
+  /// `part` may be null: nothing but the table of `options`. The seed is that of the surface's roughness and
+  /// of the noise.
   Microscope(const machine::MachineDescription& machine, std::shared_ptr<const geometry::Mesh> part,
              std::uint64_t seed, const MicroscopeOptions& options = {});
   ~Microscope();

@@ -83,6 +83,23 @@ using testing::AnyOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
+TEST_F(ScenarioFile, ThePartIsRegisteredWhereTheFileSaysSo) {
+  const std::string head = kHead, rest = kExpect;
+  EXPECT_FALSE(load(head + rest).registration.wanted);
+  const Scenario chosen = load(head + "register: {places: 12}\n" + rest);
+  EXPECT_TRUE(chosen.registration.wanted);
+  EXPECT_EQ(chosen.registration.places, 12);
+  EXPECT_TRUE(load(head + "register: {}\n" + rest).registration.wanted);
+  write_file(root_ / "parts/places.csv", "x_mm,y_mm,z_mm\n");
+  const Scenario given = load(head + "register: {pattern: ../parts/places.csv}\n" + rest);
+  EXPECT_EQ(given.registration.pattern, (root_ / "parts/places.csv").string());
+  EXPECT_THAT(error_of(head + "register: {places: 5}\n" + rest), testing::HasSubstr("s.yaml:11: "));
+  EXPECT_THAT(error_of(head + "register: {pattern: none.csv}\n" + rest),
+              testing::HasSubstr("does not exist"));
+  EXPECT_THAT(error_of(head + "register: {pattern: ../parts/places.csv, places: 9}\n" + rest),
+              testing::HasSubstr("the pattern has its own"));
+}
+
 TEST_F(ScenarioFile, ReadsEveryField) {
   const Scenario s = load(std::string(kHead) + kExpect + kMachines);
   EXPECT_EQ(s.name, "song-bottle");

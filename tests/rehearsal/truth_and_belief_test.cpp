@@ -1,4 +1,5 @@
 // Sensors and part of the twin against what the controller holds of them: either moves alone.
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -100,6 +101,41 @@ TEST(TruthAndBeliefOfSensors, APartThatStandsHigherIsFoundByTheLaserOnly) {
   raise(blind.as_built);
   const double raised = run(blind, control::GapControl::off).deposition.gap_min;
   EXPECT_LT(raised, run(bottle(), control::GapControl::off).deposition.gap_min - 0.2e-3);
+}
+
+/// A line of 20 mm, programmed 0.2 mm above the table.
+TwinSetup line_on_table() {
+  TwinSetup setup;
+  setup.machine = machine::load_machine("five-axis");
+  setup.material = machine::load_material(setup.machine.process.material);
+  toolpath::GcodeOptions options;
+  options.X_WT_home = setup.machine.X_WB * setup.machine.X_BT_home;
+  setup.program = toolpath::parse_gcode("M109 S230\nG0 X-10 Y0 Z5 F3000\nG1 Z0.2 F300\nG1 X10 E1 F600\n",
+                                        "line", options);
+  setup.as_built = sim::make_as_built(setup.machine, "nominal", 1);
+  setup.engine = "quasistatic";
+  setup.seed = 1;
+  return setup;
+}
+
+// Half of a play, 10 um, and a microstep may lie between the programmed and the true height.
+TEST(TruthAndBeliefOfTheTable, ATableThatStandsLowerLeansOrIsBowedChangesTheGapAsMuch) {
+  const auto gaps = [](const geometry::TableSurface& table) {
+    TwinSetup setup = line_on_table();
+    setup.as_built.table = table;
+    const TwinRun done = run(setup, control::GapControl::off);
+    return std::array{done.deposition.start_gap, done.deposition.gap_min, done.deposition.gap_max};
+  };
+  const auto expect = [&](const geometry::TableSurface& table, double start, double least, double most) {
+    static const auto plane = gaps({});
+    const auto found = gaps(table);
+    EXPECT_NEAR(found[0] - plane[0], start, 1e-6);
+    EXPECT_NEAR(found[1] - plane[1], least, 5e-6);
+    EXPECT_NEAR(found[2] - plane[2], most, 5e-6);
+  };
+  expect({-0.05e-3, {0, 0}, 0, 0.1}, 0.05e-3, 0.05e-3, 0.05e-3);
+  expect({0, {5e-3, 0}, 0, 0.1}, 0.05e-3, -0.05e-3, 0.05e-3);
+  expect({0, {0, 0}, 10e-3, 0.1}, 0.1e-3, 0, 0.1e-3);  // 10 mm of 100: a hundredth of the bow
 }
 
 TEST(TruthAndBeliefOfSensors, ThickerFilamentFeedsItsOwnVolume) {

@@ -76,6 +76,14 @@ std::vector<Truth> truths() {
        [=](const AsBuilt& b) { return std::vector<double>{b.filament_diameter - is.filament_diameter}; }},
       {"extruder lag", &T::extruder_lag,
        [=](const AsBuilt& b) { return share(b.extruder_lag, is.extruder_lag); }},
+      {"table height", &T::table_height,
+       [](const AsBuilt& b) { return std::vector<double>{b.table.height}; }},
+      {"table tilt", &T::table_tilt,
+       [](const AsBuilt& b) {
+         return std::vector<double>{b.table.slope.x(), b.table.slope.y()};
+       }},
+      {"table flatness", &T::table_flatness,
+       [](const AsBuilt& b) { return std::vector<double>{b.table.bow}; }},
       {"nozzle temperature", &T::nozzle_temperature,
        [](const AsBuilt& b) { return std::vector<double>{b.nozzle_offset}; }},
   };

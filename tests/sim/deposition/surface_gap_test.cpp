@@ -25,7 +25,7 @@ Pose over(double x, double height, double tilt = 0) {
 // To the nearer of part and table.
 double gap_below(const geometry::Mesh* part, const Pose& X_WT) {
   const Vec3 tip = X_WT.translation(), axis = tool_axis(X_WT);
-  const double table = table_gap(tip, axis).gap;
+  const double table = table_gap({}, tip, axis).gap;
   return part ? std::min(table, part_gap(*part, tip, axis).gap) : table;
 }
 

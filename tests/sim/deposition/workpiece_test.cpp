@@ -171,7 +171,7 @@ TEST(Workpiece, WithoutBeadsTheGapIsThatToPartOrTable) {
       // In the table as well as under the part, the way up goes on through the part only where it lies on it.
       const Pose X_WT = over(x, 0, z, 0.2);
       const Vec3 tip = X_WT.translation(), axis = tool_axis(X_WT);
-      const double nearer = std::min(table_gap(tip, axis).gap, part_gap(*plate, tip, axis).gap);
+      const double nearer = std::min(table_gap({}, tip, axis).gap, part_gap(*plate, tip, axis).gap);
       EXPECT_NEAR(gap(work, X_WT), nearer, 1e-15) << x << ' ' << z;
     }
   }
