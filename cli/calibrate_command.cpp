@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "calibration/machine/calibrate_machine.h"
+#include "cli/calibrate_bundle.h"
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/noise_option.h"
@@ -74,9 +75,11 @@ void add_calibrate(CLI::App& app, Action& action) {
   output->required();
   command->add_option("--report", call->report, "folder for report.html and summary.json");
   auto* gap_sensor = add_calibrate_gap_sensor(*command, action);
-  gap_sensor->preparse_callback([=](std::size_t) { output->required(false); });  // it has its own
+  auto* bundle = add_calibrate_bundle(*command, action);
+  for (CLI::App* own : {gap_sensor, bundle})  // they have their own
+    own->preparse_callback([=](std::size_t) { output->required(false); });
   command->callback([=, &action] {
-    if (gap_sensor->parsed()) return;
+    if (gap_sensor->parsed() || bundle->parsed()) return;
     // Not by required(): CLI11 would take the sub-command's name for the file.
     if (measurements->count() == 0) throw CLI::RequiredError(measurements->get_name());
     action = [=] { return run_calibrate(*call); };

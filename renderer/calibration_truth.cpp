@@ -9,7 +9,10 @@ std::vector<std::optional<Vec2>> true_corners(const BoardScene& scene) {
   std::vector<std::optional<Vec2>> pixels;
   for (int r = 0; r < scene.rows; ++r) {
     for (int c = 0; c < scene.columns; ++c) {
-      const Vec3 p_G = scene.square * Vec3(c - 0.5 * (scene.columns - 1), r - 0.5 * (scene.rows - 1), 0);
+      const double x = c - 0.5 * (scene.columns - 1), y = r - 0.5 * (scene.rows - 1);
+      const Vec2 at(2 * x / (scene.columns - 1), 2 * y / (scene.rows - 1));
+      const double up = scene.bow.dot(Vec3(at.x() * at.x(), at.x() * at.y(), at.y() * at.y()));
+      const Vec3 p_G(scene.square * x, scene.square * y, up);
       pixels.push_back(scene.camera.project(scene.X_CG * p_G));
     }
   }

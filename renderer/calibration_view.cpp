@@ -76,6 +76,11 @@ Mat3 ray_to_squares(const BoardScene& s) {
   return from_squares.inverse();
 }
 
+/// Directions of the camera to the sheet's: x and y in squares, z in metres.
+Mat3 camera_to_sheet(const BoardScene& s) {
+  return Vec3(1 / s.square, 1 / s.square, 1).asDiagonal() * s.X_CG.linear().transpose();
+}
+
 }  // namespace
 
 struct CalibrationView::State {
@@ -141,6 +146,10 @@ Image CalibrationView::render(const BoardScene& scene, const Region& region) {
   const Eigen::Matrix3f to_grid = ray_to_squares(scene).cast<float>();
   gl.Uniform1i(s.program.uniform("spheres"), 0);
   gl.UniformMatrix3fv(s.program.uniform("to_grid"), 1, GL_FALSE, to_grid.data());
+  const Eigen::Matrix3f to_sheet = camera_to_sheet(scene).cast<float>();
+  gl.UniformMatrix3fv(s.program.uniform("to_sheet"), 1, GL_FALSE, to_sheet.data());
+  gl.Uniform3f(s.program.uniform("bow"), static_cast<float>(scene.bow.x()), static_cast<float>(scene.bow.y()),
+               static_cast<float>(scene.bow.z()));
   gl.Uniform3f(s.program.uniform("sheet"), static_cast<float>(scene.columns + 1),
                static_cast<float>(scene.rows + 1), static_cast<float>(scene.margin / scene.square));
   return s.shoot(scene.camera, scene.exposure, read_out);

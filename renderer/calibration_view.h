@@ -28,9 +28,12 @@ struct Exposure {
 struct BoardScene {
   Camera camera;
   Exposure exposure;
-  int columns = 0, rows = 0;     ///< of inner corners
-  double square = 0;             ///< [m], side
-  double margin = 0;             ///< [m] of white paper around the squares
+  int columns = 0, rows = 0;  ///< of inner corners
+  double square = 0;          ///< [m], side
+  double margin = 0;          ///< [m] of white paper around the squares
+  /// [m], the sheet's z: b_0 X^2 + b_1 X Y + b_2 Y^2, X and Y 1 at the farthest corners. Small beside a
+  /// square.
+  Vec3 bow{0, 0, 0};
   Pose X_CG = Pose::Identity();  ///< of the sheet, camera frame
   double ink = 0.1;              ///< reflectance; paper has 1
   double background = 0.3;       ///< reflectance of what is behind the sheet

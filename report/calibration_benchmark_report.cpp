@@ -23,6 +23,16 @@ Json number(double value, const char* what) {
 }
 Json micrometres(double metres, const char* what) { return number(to_um(metres), what); }
 
+Json stated_value(const StatedScore& score) {
+  Json value;
+  value["median_um"] = micrometres(score.median, "median");
+  value["worst_um"] = micrometres(score.worst, "worst");
+  value["worst_machine_median_um"] = micrometres(score.median_worst, "worst machine's median");
+  value["error_over_stated"] = number(score.ratio, "error over stated");
+  value["coverage_95"] = number(score.coverage, "coverage");
+  return value;
+}
+
 Json score_value(const CalibrationBenchmark& benchmark, std::size_t entrant, const EntrantScore& score) {
   Json value;
   value["entrant"] = benchmark.entrants[entrant].name;
@@ -34,6 +44,10 @@ Json score_value(const CalibrationBenchmark& benchmark, std::size_t entrant, con
   value["rms_um"] = micrometres(score.rms, "rms");
   value["efficiency"] = number(score.efficiency, "efficiency");
   value["relative"] = number(score.relative, "relative");
+  if (benchmark.request.engine.empty()) return value;
+  value["in_frame"] = stated_value(score.in_frame);
+  value["registered"] = stated_value(score.registered);
+  if (score.misfit > 0) value["residuals_over_noise"] = number(score.misfit, "residuals over noise");
   return value;
 }
 
@@ -81,6 +95,8 @@ Json stand_value(const StandOptions& stand) {
   value["method"] = vision::to_string(stand.method);
   value["boards_offset_mm"] = stable_number(to_mm(stand.boards.offset), "boards");
   value["boards_rotation_mrad"] = stable_number(1e3 * stand.boards.rotation, "boards");
+  value["boards_print_permille"] = stable_number(1e3 * stand.boards.print_scale, "boards");
+  value["boards_flatness_um"] = stable_number(to_um(stand.boards.flatness), "boards");
   return value;
 }
 
@@ -89,6 +105,36 @@ std::string cell_text(const EntrantScore& score) {
   if (score.failures == score.runs) return "failed";
   std::string text = fmt::format("{:.1f} ({:.1f})", to_um(score.median), to_um(score.p95));
   if (score.failures > 0) text += fmt::format(" {}!", score.failures);
+  return text;
+}
+
+std::string stated_row(const std::string& name, const StatedScore& score) {
+  const auto cell = [](double value, const char* form) {
+    return std::isfinite(value) ? fmt::format(fmt::runtime(form), value) : std::string("-");
+  };
+  return fmt::format("  {:<28} {:>8} {:>8} {:>14} {:>14} {:>9}\n", name, cell(to_um(score.median), "{:.1f}"),
+                     cell(to_um(score.worst), "{:.1f}"), cell(to_um(score.median_worst), "{:.1f}"),
+                     cell(score.ratio, "{:.2f}"), cell(1e2 * score.coverage, "{:.1f} %"));
+}
+
+/// On the plant: errors in frame W as the boards have it, and where the work is registered on the machine.
+std::string stated_tables(const CalibrationBenchmark& benchmark) {
+  std::string text;
+  for (const ConditionScore& c : benchmark.conditions)
+    for (const auto& [name, which] : {std::pair{"in W as the boards have it", &EntrantScore::in_frame},
+                                      std::pair{"registered at 20 other poses", &EntrantScore::registered}}) {
+      text += fmt::format("\n{}, {} [um]\n  {:<28} {:>8} {:>8} {:>14} {:>14} {:>9}\n",
+                          to_string(c.condition, benchmark.request.from), name, "", "median", "worst",
+                          "worst machine", "error/stated", "in 95 %");
+      for (std::size_t e = 0; e < c.scores.size(); ++e)
+        text += stated_row(calibration::brief(benchmark.entrants[e].name, 25), c.scores[e].*which);
+    }
+  for (const ConditionScore& c : benchmark.conditions)
+    for (std::size_t e = 0; e < c.scores.size(); ++e)
+      if (c.scores[e].misfit > 0)
+        text += fmt::format("{}, {}: residuals are {:.2f} of their stated noise\n",
+                            to_string(c.condition, benchmark.request.from), benchmark.entrants[e].name,
+                            c.scores[e].misfit);
   return text;
 }
 
@@ -101,6 +147,7 @@ std::string benchmark_json(const CalibrationBenchmark& benchmark) {
   json["machine"] = benchmark.machine_name;
   json["from"] = request.from == MeasuredFrom::pixels ? "pixels" : "poses";
   if (request.from == MeasuredFrom::pixels) json["cameras"] = stand_value(request.stand);
+  if (!request.engine.empty()) json["engine"] = request.engine;
   json["trials"] = request.trials;
   json["seed"] = request.seed;
   json["pose_choice"] = request.choice == PoseChoice::random ? "random" : "d_optimal";
@@ -144,6 +191,7 @@ std::string benchmark_table(const CalibrationBenchmark& benchmark) {
       text += fmt::format("  {:>{}}", cell_text(c.scores[e]), columns[e]);
     text += "\n";
   }
+  if (!benchmark.request.engine.empty()) text += stated_tables(benchmark);
   text +=
       "\nranking: median tip error over the best one's, geometric mean over conditions; a failure counts as "
       "no calibration\n";

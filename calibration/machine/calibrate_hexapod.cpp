@@ -90,6 +90,12 @@ void calibrate_hexapod(const Measurements& measurements, const machine::MachineD
   const Problem problem = hexapod_problem(measurements, nominal);
   const Calibration found = estimator.calibrate(problem);
   check_found(found, measurements, result.estimator);
+  report_hexapod(problem, found, unknowns, measurements, nominal, result);
+}
+
+void report_hexapod(const Problem& problem, const Calibration& found, const Unknowns& unknowns,
+                    const Measurements& measurements, const machine::MachineDescription& nominal,
+                    MachineCalibration& result) {
   result.machine.hexapod().geometry = found.parameters.geometry;
   result.stored = stored_parameters(found, unknowns, measurements, result.machine);
   for (std::size_t j = 0; j < problem.samples.size(); ++j)

@@ -10,4 +10,10 @@ namespace understudy::calibration {
 void calibrate_hexapod(const Measurements& measurements, const machine::MachineDescription& nominal,
                        const Estimator& estimator, MachineCalibration& result);
 
+/// What an estimation that is ok means for the machine and for its user: geometry, what the file stores,
+/// residuals, parameters, tip. `measurements` has a row for each sample of `problem`.
+void report_hexapod(const Problem& problem, const Calibration& found, const Unknowns& unknowns,
+                    const Measurements& measurements, const machine::MachineDescription& nominal,
+                    MachineCalibration& result);
+
 }  // namespace understudy::calibration

@@ -28,7 +28,7 @@ struct BenchmarkCall {
   std::string folder, from = "poses", choice = "random", method = "pinhole";
   std::vector<std::string> disturbances, noise{"20um:0.2mrad"};
   std::vector<int> poses{8, 12, 24};
-  double board_offset_mm = 0.02, board_rotation_mrad = 0.2;
+  double board_offset_mm = 0.02, board_rotation_mrad = 0.2, board_print_permille = 0, board_flatness_um = 0;
   bool tables = false;
 };
 
@@ -66,6 +66,10 @@ void check_ranges(const BenchmarkCall& call) {
     throw InputError(fmt::format("--board-offset {} is outside 0..2 mm", call.board_offset_mm));
   if (!(call.board_rotation_mrad >= 0 && call.board_rotation_mrad <= 50))
     throw InputError(fmt::format("--board-rotation {} is outside 0..50 mrad", call.board_rotation_mrad));
+  if (!(call.board_print_permille >= 0 && call.board_print_permille <= 50))
+    throw InputError(fmt::format("--board-print {} is outside 0..50 permille", call.board_print_permille));
+  if (!(call.board_flatness_um >= 0 && call.board_flatness_um <= 1000))
+    throw InputError(fmt::format("--board-flatness {} is outside 0..1000 um", call.board_flatness_um));
   for (const int n : call.poses)
     if (n < 1 || n > 1000) throw InputError(fmt::format("--poses {} is outside 1..1000", n));
 }
@@ -79,7 +83,8 @@ studies::CalibrationBenchmarkRequest request_of(const BenchmarkCall& call) {
     refuse("--choice", call.choice, "random d-optimal");
   if (call.choice == "d-optimal") request.choice = studies::PoseChoice::d_optimal;
   request.stand.method = method_of(call.method);
-  request.stand.boards = {from_mm(call.board_offset_mm), 1e-3 * call.board_rotation_mrad, 0};
+  request.stand.boards = {from_mm(call.board_offset_mm), 1e-3 * call.board_rotation_mrad, 0,
+                          1e-3 * call.board_print_permille, kMicrometre * call.board_flatness_um};
   request.poses.assign(call.poses.begin(), call.poses.end());
   request.noise.clear();
   for (const std::string& word : call.noise) request.noise.push_back(noise_of(word));
@@ -152,6 +157,16 @@ void add_condition_options(CLI::App& command, BenchmarkCall& call) {
       ->capture_default_str();
   command.add_option("--board-rotation", call.board_rotation_mrad, "from pixels: of a board, 1 sigma, mrad")
       ->capture_default_str();
+  command
+      .add_option("--board-print", call.board_print_permille,
+                  "from pixels: scale of each camera's print, 1 sigma, permille")
+      ->capture_default_str();
+  command
+      .add_option("--board-flatness", call.board_flatness_um, "from pixels: bow of each print, 1 sigma, um")
+      ->capture_default_str();
+  command.add_option("--engine", call.request.engine,
+                     "from pixels: drive every machine on this plant, quasistatic or mujoco, each before "
+                     "boards of its own; else poses are computed");
 }
 
 }  // namespace

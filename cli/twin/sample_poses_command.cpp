@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/units.h"
 #include "report/picture/png.h"
 #include "studies/calibration/sample_poses.h"
 
@@ -24,6 +25,7 @@ struct SampleCall {
   studies::SamplePosesRequest request;
   std::vector<double> noise;
   std::string as_built, output, pictures, from = "noise";
+  double board_offset_mm = 0.02, board_rotation_mrad = 0.2, board_print_permille = 0, board_flatness_um = 0;
 };
 
 /// The pictures, what is believed, and under truth/ what is.
@@ -43,6 +45,8 @@ int run_sample(const SampleCall& call) {
   if (const auto noise = noise_of(call.noise)) request.noise = *noise;
   if (!call.as_built.empty()) request.as_built = call.as_built;
   request.from_pixels = call.from == "pixels";
+  request.boards = {from_mm(call.board_offset_mm), 1e-3 * call.board_rotation_mrad, 0,
+                    1e-3 * call.board_print_permille, kMicrometre * call.board_flatness_um};
   const auto machine = machine::load_machine(request.machine);
   if (!call.pictures.empty() && !request.from_pixels)
     throw InputError("--pictures needs --from pixels: drawn noise has no pictures");
@@ -71,6 +75,32 @@ int run_sample(const SampleCall& call) {
              request.as_built ? ", measured on the twin" : "; replace them by the measured ones");
   if (folder) fmt::print("pictures: {}\n", call.pictures);
   return kGood;
+}
+
+void add_plant_options(CLI::App& command, SampleCall& call) {
+  command.add_option("--engine", call.request.engine,
+                     "drive the twin there on this plant, with play, gravity and microsteps: quasistatic or "
+                     "mujoco; else poses are computed");
+  command
+      .add_option("--warming", call.request.warming, "K by which the screws warm meanwhile, with --engine")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command
+      .add_option("--board-offset", call.board_offset_mm, "from pixels: placement of a board, 1 sigma, mm")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  command.add_option("--board-rotation", call.board_rotation_mrad, "from pixels: of a board, 1 sigma, mrad")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+  command
+      .add_option("--board-print", call.board_print_permille,
+                  "from pixels: scale of each camera's print, 1 sigma, permille")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+  command
+      .add_option("--board-flatness", call.board_flatness_um, "from pixels: bow of each print, 1 sigma, um")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -103,6 +133,7 @@ void add_sample_poses(CLI::App& app, Action& action) {
   command->add_option("--noise", call->noise, "um,mrad: 1 sigma of a measured pose on each axis; else 20,0.2")
       ->delimiter(',')
       ->expected(2);
+  add_plant_options(*command, *call);
   command->add_option("--seed", call->request.seed, "of poses, twin and noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -7,6 +7,8 @@ uniform vec4 light;      // gain, ambient [grey levels], albedo of ink or sphere
 uniform int spheres;     // how many; none: the board
 uniform mat3 to_grid;    // ray to squares, homogeneous; (0, 0) is the outer corner of the first square
 uniform vec3 sheet;      // squares in x and y, white margin [squares]
+uniform mat3 to_sheet;   // directions of the camera to the sheet's: squares, squares, [m]
+uniform vec3 bow;        // [m], the sheet's z by X^2, X Y and Y^2, which are 1 at the farthest corners
 uniform vec3 centre[8];  // [m], farthest first
 uniform float radius;    // [m]
 
@@ -58,10 +60,21 @@ vec2 blur_in_squares(vec3 h, vec2 b) {
   return max(lens.w * sqrt(dx * dx + dy * dy), vec2(1e-6));
 }
 
+// Where the ray meets the bowed sheet that it meets at b were it flat: along the ray by the sheet's depth, twice.
+vec2 on_sheet(vec2 ray, vec2 b) {
+  vec3 along = to_sheet * vec3(ray, 1.0);
+  vec2 met = b;
+  for (int i = 0; i < 2; ++i) {
+    vec2 at = 2.0 * (met - 0.5 * sheet.xy) / (sheet.xy - 2.0);
+    met = b + along.xy / along.z * dot(bow, vec3(at.x * at.x, at.x * at.y, at.y * at.y));
+  }
+  return met;
+}
+
 float board_light(vec2 ray) {
   vec3 h = to_grid * vec3(ray, 1.0);
   if (h.z <= 0.0) return light.w;
-  vec2 b = h.xy / h.z;
+  vec2 b = on_sheet(ray, h.xy / h.z);
   vec2 sigma = blur_in_squares(h, b);
   float same = stripes(b.x, sheet.x, sigma.x) * stripes(b.y, sheet.y, sigma.y);
   float dark = 0.5 * (1.0 + same) * inside(b, vec2(0.0), sheet.xy, sigma);
@@ -73,7 +86,7 @@ float board_light(vec2 ray) {
 bool board_is_even(vec2 ray) {
   vec3 h = to_grid * vec3(ray, 1.0);
   if (h.z <= 0.0) return true;
-  vec2 b = h.xy / h.z;
+  vec2 b = on_sheet(ray, h.xy / h.z);
   vec2 reach = (6.0 + 1.0 / lens.w) * blur_in_squares(h, b);
   vec2 grid = abs(b - round(b));
   vec2 rim = min(abs(b + sheet.z), abs(b - sheet.xy - sheet.z));

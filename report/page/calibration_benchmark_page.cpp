@@ -140,6 +140,26 @@ std::string reasons_text(const EntrantScore& score) {
   return text;
 }
 
+/// On the plant: errors against what was stated of them.
+std::string stated(const CalibrationBenchmark& benchmark, const ConditionScore& c) {
+  std::string rows;
+  const auto cell = [](double value, int digits) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string("–");
+  };
+  for (std::size_t e = 0; e < c.scores.size(); ++e)
+    for (const auto& [frame, score] :
+         {std::pair{"W", c.scores[e].in_frame}, std::pair{"registered", c.scores[e].registered}})
+      rows += fmt::format(
+          "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
+          "<td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
+          html_text(benchmark.entrants[e].name), frame, cell(to_um(score.median), 1),
+          cell(to_um(score.worst), 1), cell(score.ratio, 2), cell(1e2 * score.coverage, 1));
+  return "<table><thead><tr><th>entrant</th><th>frame</th><th class=\"number\">median µm</th>"
+         "<th class=\"number\">worst µm</th><th class=\"number\">error over stated</th>"
+         "<th class=\"number\">within 95 %, %</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table>\n";
+}
+
 std::string figures(const CalibrationBenchmark& benchmark, const ConditionScore& c) {
   std::string name = to_string(c.condition, benchmark.request.from);
   if (const auto unit = name.find(" um "); unit != std::string::npos) name.replace(unit, 4, " µm ");
@@ -160,9 +180,10 @@ std::string figures(const CalibrationBenchmark& benchmark, const ConditionScore&
       "<th class=\"number\">median µm</th><th class=\"number\">p95 µm</th>"
       "<th class=\"number\">RMS µm</th><th class=\"number\">efficiency</th>"
       "<th class=\"number\">time ms</th><th class=\"number\">failed</th><th>why</th></tr></thead>"
-      "<tbody>\n{}</tbody></table></details>\n",
+      "<tbody>\n{}</tbody></table>{}</details>\n",
       name, um(c.uncalibrated), c.bound > 0 ? fmt::format(", bound {} µm", um(c.bound)) : "",
-      c.lost_poses > 0 ? fmt::format(", {} poses not measured", c.lost_poses) : "", rows);
+      c.lost_poses > 0 ? fmt::format(", {} poses not measured", c.lost_poses) : "", rows,
+      benchmark.request.engine.empty() ? "" : stated(benchmark, c));
 }
 
 }  // namespace

@@ -8,12 +8,14 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "calibration/plugin/plugin_estimator.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
 #include "core/units.h"
+#include "studies/calibration/plant_session.h"
 
 namespace understudy::studies {
 namespace {
@@ -21,13 +23,25 @@ namespace {
 using Progress = std::function<void(double, const std::string&)>;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
+/// A bundle adjustment, or an estimator by its name.
+Method method_named(const std::string& name, bool on_plant, calibration::MachineKind kind) {
+  const auto& bundles = bundle_names();
+  if (std::find(bundles.begin(), bundles.end(), name) == bundles.end())
+    return {name, false, calibration::make_estimator(name, kind)};
+  if (!on_plant) throw InputError(fmt::format("--estimators {}: needs --from pixels and --engine", name));
+  return {name, false, nullptr, name == bundles.back()};
+}
+
 std::vector<Method> entrants_of(const CalibrationBenchmarkRequest& request, bool chain) {
   const auto kind = chain ? calibration::MachineKind::chain : calibration::MachineKind::hexapod;
+  const bool on_plant = !request.engine.empty();
   std::vector<std::string> names = request.estimators;
+  if (names.empty() && on_plant) names = {"maximum_likelihood", "with_play"};
   if (names.empty()) names = calibration::estimator_names(kind);
+  if (request.estimators.empty() && on_plant)
+    names.insert(names.end(), bundle_names().begin(), bundle_names().end());
   std::vector<Method> entrants;
-  for (const std::string& name : names)
-    entrants.push_back({name, false, calibration::make_estimator(name, kind)});
+  for (const std::string& name : names) entrants.push_back(method_named(name, on_plant, kind));
   for (const std::string& command : request.plugins)
     entrants.push_back({command, true, calibration::make_plugin_estimator(command, request.plugin_limits)});
   for (std::size_t i = 0; i < entrants.size(); ++i)
@@ -42,13 +56,23 @@ std::vector<Disturbance> disturbances_of(const CalibrationBenchmarkRequest& requ
   const auto hexapods_only = [](Disturbance d) {
     return d == Disturbance::deviation || d == Disturbance::drift;
   };
+  const auto drawn_only = [&](Disturbance d) {
+    return !request.engine.empty() && (d == Disturbance::outliers || d == Disturbance::boards);
+  };
   if (wanted.empty()) {
     wanted = all_disturbances();
     if (chain) std::erase_if(wanted, hexapods_only);
+    std::erase_if(wanted, drawn_only);
   }
-  for (const Disturbance d : wanted)
+  for (const Disturbance d : wanted) {
     if (chain && hexapods_only(d))
       throw InputError(fmt::format("--disturbances {}: a chain has no screw struts", to_string(d)));
+    if (drawn_only(d))
+      throw InputError(
+          fmt::format("--disturbances {}: not with --engine, whose boards are always misplaced "
+                      "and whose pictures are all of the machine",
+                      to_string(d)));
+  }
   return wanted;
 }
 
@@ -68,10 +92,34 @@ double mean_square(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+constexpr double kEllipsoid95 = 7.815;  // chi-square of three degrees of freedom
+
+StatedScore stated_score(const std::vector<Trial>& trials, std::size_t entrant, StatedErrors Answer::*which) {
+  std::vector<double> errors, medians, stated;
+  int inside = 0, counted = 0;
+  for (const Trial& trial : trials) {
+    const StatedErrors& of = trial.answers[entrant].*which;
+    if (of.errors.empty()) continue;
+    errors.insert(errors.end(), of.errors.begin(), of.errors.end());
+    medians.push_back(quantile(of.errors, 0.5));
+    stated.insert(stated.end(), of.stated.begin(), of.stated.end());
+    for (const double v : of.normalised) {
+      ++counted;
+      inside += v < kEllipsoid95;
+    }
+  }
+  if (errors.empty()) return {kNone, kNone, kNone, kNone, kNone};
+  StatedScore score{quantile(errors, 0.5), quantile(errors, 1), quantile(medians, 1), kNone, kNone};
+  if (counted == 0) return score;
+  score.ratio = std::sqrt(mean_square(errors) / mean_square(stated));
+  score.coverage = static_cast<double>(inside) / counted;
+  return score;
+}
+
 /// One entrant's column of a condition. `fallback`: its errors where failures count as no calibration.
 EntrantScore score_of(const std::vector<Trial>& trials, std::size_t entrant, double& fallback) {
   EntrantScore score;
-  std::vector<double> errors, with_failures, times;
+  std::vector<double> errors, with_failures, times, misfits;
   double excess = 0;
   int bounded = 0;
   for (const Trial& trial : trials) {
@@ -86,6 +134,7 @@ EntrantScore score_of(const std::vector<Trial>& trials, std::size_t entrant, dou
       continue;
     }
     errors.insert(errors.end(), answer.errors.begin(), answer.errors.end());
+    misfits.push_back(answer.misfit);
     if (trial.bound <= 0) continue;
     excess += mean_square(answer.errors) / (trial.bound * trial.bound);
     ++bounded;
@@ -95,6 +144,9 @@ EntrantScore score_of(const std::vector<Trial>& trials, std::size_t entrant, dou
   score.rms = errors.empty() ? kNone : std::sqrt(mean_square(errors));
   score.efficiency = bounded > 0 ? bounded / excess : kNone;
   score.seconds = quantile(times, 0.5);
+  score.misfit = misfits.empty() ? 0 : quantile(misfits, 0.5);
+  score.in_frame = stated_score(trials, entrant, &Answer::in_frame);
+  score.registered = stated_score(trials, entrant, &Answer::registered);
   fallback = quantile(with_failures, 0.5);
   return score;
 }
@@ -140,9 +192,45 @@ std::vector<Standing> rank(const CalibrationBenchmark& benchmark) {
 
 }  // namespace
 
+namespace {
+
+/// The stands that all machines share where there is no plant.
+struct SharedStands {
+  std::optional<MeasuringStand> stand, misplaced;
+
+  SharedStands(const CalibrationBenchmarkRequest& request, const machine::MachineDescription& machine,
+               const std::vector<Condition>& conditions, TrialSetting& setting, const Progress& progress) {
+    const auto photograph = [&](double share) {
+      if (progress) progress(share, "boards before the cameras");
+    };
+    StandOptions options = setting.stand_options;
+    setting.stand = &stand.emplace(machine, options, request.threads, photograph);
+    if (std::none_of(conditions.begin(), conditions.end(),
+                     [](const Condition& c) { return c.disturbance == Disturbance::boards; }))
+      return;
+    options.boards = {0.2e-3, 2e-3, 0};
+    setting.misplaced_stand = &misplaced.emplace(machine, options, request.threads, photograph);
+  }
+};
+
+void check_engine(const CalibrationBenchmarkRequest& request, const machine::MachineDescription& machine) {
+  if (request.engine.empty()) return;
+  if (request.from != MeasuredFrom::pixels) throw InputError("--engine: needs --from pixels");
+  if (machine.is_chain())
+    throw InputError(
+        fmt::format("--engine: the two cameras are made for a hexapod, not for {}", machine.name));
+  const auto& known = session_engines();
+  if (std::find(known.begin(), known.end(), request.engine) == known.end())
+    throw InputError(
+        fmt::format("--engine '{}' is not known (known: {})", request.engine, fmt::join(known, " ")));
+}
+
+}  // namespace
+
 CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, const Progress& progress) {
   const machine::MachineDescription machine = machine::load_machine(request.machine);
   const bool chain = machine.is_chain(), pixels = request.from == MeasuredFrom::pixels;
+  check_engine(request, machine);
   CalibrationBenchmark benchmark{request, machine.name, machine.sha256, entrants_of(request, chain), {}, {}};
   const std::vector<Condition> conditions = conditions_of(request, chain);
   TrialSetting setting;
@@ -151,20 +239,14 @@ CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, c
   setting.choice = request.choice;
   setting.seed = request.seed;
 
-  std::optional<MeasuringStand> stand, misplaced;
-  const auto photograph = [&](double share) {
-    if (progress) progress(share, "boards before the cameras");
-  };
-  StandOptions options = request.stand;
-  options.seed = request.seed;
-  if (pixels) setting.stand = &stand.emplace(machine, options, request.threads, photograph);
-  if (pixels && std::any_of(conditions.begin(), conditions.end(),
-                            [](const Condition& c) { return c.disturbance == Disturbance::boards; })) {
-    options.boards = {0.2e-3, 2e-3, 0};
-    setting.misplaced_stand = &misplaced.emplace(machine, options, request.threads, photograph);
-  }
-
-  const auto room = chain ? make_chain_trials(setting) : make_hexapod_trials(setting);
+  setting.stand_options = request.stand;
+  setting.stand_options.seed = request.seed;
+  setting.engine = request.engine;
+  std::optional<SharedStands> stands;
+  if (pixels && request.engine.empty()) stands.emplace(request, machine, conditions, setting, progress);
+  const auto room = chain                    ? make_chain_trials(setting)
+                    : request.engine.empty() ? make_hexapod_trials(setting)
+                                             : make_plant_trials(setting);
   const auto machines = static_cast<std::size_t>(request.trials);
   std::vector<std::vector<Trial>> trials(conditions.size(), std::vector<Trial>(machines));
   const std::size_t count = conditions.size() * machines;

@@ -22,6 +22,9 @@ struct CalibrationBenchmarkRequest {
   std::vector<std::string> plugins;     ///< commands
   calibration::ProcessLimits plugin_limits;
   MeasuredFrom from = MeasuredFrom::poses;
+  /// From pixels: the plant that machines are driven on (session_engines()); empty: poses by forward
+  /// kinematics.
+  std::string engine;
   StandOptions stand;  ///< from pixels; its seed is the benchmark's
   std::vector<std::size_t> poses{8, 12, 24};
   std::vector<calibration::MeasurementNoise> noise{calibration::kReferenceNoise};
@@ -32,6 +35,14 @@ struct CalibrationBenchmarkRequest {
   std::string command;  ///< how it was called, for the record
 };
 
+/// Errors over all machines against what was stated of them.
+struct StatedScore {
+  double median = 0, worst = 0;  ///< [m]
+  double median_worst = 0;       ///< [m], the worst machine's median
+  double ratio = 0;              ///< RMS of the errors over that of the stated ones; NaN: none were stated
+  double coverage = 0;           ///< share of the tips within their ellipsoid of 95 %; NaN likewise
+};
+
 /// An entrant under one condition, over all machines.
 struct EntrantScore {
   int runs = 0, failures = 0;
@@ -40,6 +51,8 @@ struct EntrantScore {
   double efficiency = 0;                ///< bound^2 / mean squared error; NaN where there is no bound
   double relative = 0;  ///< median with failures counted as no calibration, over the best entrant's
   double seconds = 0;   ///< median wall time of a run
+  StatedScore in_frame, registered;  ///< on the plant
+  double misfit = 0;                 ///< of a bundle adjustment, median; 0: none
 };
 
 struct ConditionScore {

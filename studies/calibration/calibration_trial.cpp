@@ -32,6 +32,11 @@ const std::vector<Disturbance>& all_disturbances() {
   return all;
 }
 
+const std::vector<std::string>& bundle_names() {
+  static const std::vector<std::string> names{"bundle", "bundle_with_play"};
+  return names;
+}
+
 Disturbance disturbance_named(const std::string& word) {
   std::vector<std::string> known;
   for (const Disturbance d : all_disturbances()) {

@@ -38,13 +38,27 @@ struct Condition {
 struct Method {
   std::string name;
   bool plugin = false;
-  std::shared_ptr<const calibration::Estimator> estimator;
+  std::shared_ptr<const calibration::Estimator> estimator;  ///< none: a bundle adjustment
+  bool with_play = false;                                   ///< of a bundle adjustment
+};
+
+/// "bundle" and "bundle_with_play": on the plant, from pixels, only.
+const std::vector<std::string>& bundle_names();
+
+/// Errors of the tip at the poses held out, against what was stated of them.
+struct StatedErrors {
+  std::vector<double> errors;      ///< [m]
+  std::vector<double> stated;      ///< [m], 1 sigma of the 3D error; empty: nothing is stated
+  std::vector<double> normalised;  ///< e^T C^-1 e, of three degrees of freedom
 };
 
 struct Answer {
   std::string failure;         ///< one line; empty: solved
   std::vector<double> errors;  ///< [m], of the tip at the poses held out
   double seconds = 0;          ///< wall time
+  /// On the plant: the same, and without the rigid motion of W that other poses tell.
+  StatedErrors in_frame{}, registered{};
+  double misfit = 0;  ///< of a bundle adjustment: residuals over their stated noise; 0: none
   bool ok() const { return failure.empty(); }
 };
 
@@ -65,7 +79,11 @@ struct TrialSetting {
   PoseChoice choice = PoseChoice::random;
   std::uint64_t seed = 1;
   std::size_t held_out = 60;
-  /// From pixels where set: the stand, and the one with misplaced boards where that is asked for.
+  /// On the plant where set (sessions: PlantSession), from pixels, each machine before a stand of its own.
+  std::string engine;
+  StandOptions stand_options;
+  /// From pixels without a plant where set: the stand, and the one with misplaced boards where that is asked
+  /// for.
   const MeasuringStand* stand = nullptr;
   const MeasuringStand* misplaced_stand = nullptr;
 };
@@ -78,6 +96,8 @@ class TrialRunner {
   virtual Trial run(const Condition& condition, int machine, renderer::CalibrationView* view) const = 0;
 };
 std::unique_ptr<TrialRunner> make_hexapod_trials(const TrialSetting& setting);
+/// Of a hexapod that is driven on a plant and photographed.
+std::unique_ptr<TrialRunner> make_plant_trials(const TrialSetting& setting);
 /// Of an open chain. Throws InputError for pixels.
 std::unique_ptr<TrialRunner> make_chain_trials(const TrialSetting& setting);
 

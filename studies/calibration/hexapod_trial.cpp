@@ -132,7 +132,7 @@ class HexapodTrials : public TrialRunner {
     std::vector<CameraPose> poses;
     for (std::size_t j = 0; j < exact.size(); ++j) {
       const PoseSample& sample = exact[j];
-      const auto expected = kinematics::forward(nominal_, commanded(sample), sample.X_BT);
+      const auto expected = kinematics::forward(nominal_, commanded(sample), machine_.X_BT_home);
       const std::uint64_t frame =
           hash_bits(setting_.seed + static_cast<std::uint64_t>(machine), 1000 * condition.poses + j);
       poses.push_back(stand.measure(view, machine_.X_WB * sample.X_BT, machine_.X_WB * expected.X_BT, frame));

@@ -1,5 +1,6 @@
 #include "studies/calibration/pixel_measurement.h"
 
+#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
@@ -82,9 +83,11 @@ MeasuringStand::MeasuringStand(const machine::MachineDescription& machine, const
       X_BT_home_(machine.X_BT_home),
       description_(designed_stand(machine, options)),
       built_(sample_built_rig(description_.rig, options.boards, kPrincipalSigma, options.seed)) {
-  model_ = vision::calibrate_rig(description_.rig,
-                                 photograph_boards(description_, built_, options, threads, progress),
-                                 options.method, description_.uncertainty);
+  boards_ = photograph_boards(description_, built_, options, threads, progress);
+  vision::CalibrationUncertainty uncertainty = description_.uncertainty;
+  // This calibration has one scale a board and no bow.
+  uncertainty.boards.scale = std::hypot(options.boards.scale, options.boards.print_scale);
+  model_ = vision::calibrate_rig(description_.rig, boards_, options.method, uncertainty);
 }
 
 std::vector<Pose> MeasuringStand::poses_in_view(const kinematics::Mechanism& mechanism, std::size_t count,
@@ -102,8 +105,10 @@ std::vector<Pose> MeasuringStand::poses_in_view(const kinematics::Mechanism& mec
   return poses;
 }
 
-calibration::CameraPose MeasuringStand::measure(renderer::CalibrationView& view, const Pose& X_WT_true,
-                                                const Pose& X_WT_expected, std::uint64_t number) const {
+std::array<vision::TargetsMeasurement, 2> MeasuringStand::see(renderer::CalibrationView& view,
+                                                              const Pose& X_WT_true,
+                                                              const Pose& X_WT_expected,
+                                                              std::uint64_t number) const {
   std::array<vision::TargetsMeasurement, 2> seen;
   for (int camera = 0; camera < 2; ++camera) {
     const auto k = static_cast<std::size_t>(camera);
@@ -118,7 +123,16 @@ calibration::CameraPose MeasuringStand::measure(renderer::CalibrationView& view,
     }
     seen[k] = vision::find_targets(designed(), camera, X_WT_expected, read_out);
   }
+  return seen;
+}
+
+calibration::CameraPose MeasuringStand::pose_of(const std::array<vision::TargetsMeasurement, 2>& seen) const {
   return calibration::camera_pose(vision::measure_pose(model_, designed().targets, seen));
+}
+
+calibration::CameraPose MeasuringStand::measure(renderer::CalibrationView& view, const Pose& X_WT_true,
+                                                const Pose& X_WT_expected, std::uint64_t number) const {
+  return pose_of(see(view, X_WT_true, X_WT_expected, number));
 }
 
 }  // namespace understudy::studies

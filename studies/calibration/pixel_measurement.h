@@ -13,6 +13,7 @@
 #include "renderer/calibration_view.h"
 #include "studies/calibration/rig_scenes.h"
 #include "vision/boards/rig_file.h"
+#include "vision/boards/rig_measurement.h"
 
 namespace understudy::studies {
 
@@ -51,6 +52,14 @@ class MeasuringStand {
   calibration::CameraPose measure(renderer::CalibrationView& view, const Pose& X_WT_true,
                                   const Pose& X_WT_expected, std::uint64_t number) const;
 
+  /// Its pictures, measured: of camera 0 and 1.
+  std::array<vision::TargetsMeasurement, 2> see(renderer::CalibrationView& view, const Pose& X_WT_true,
+                                                const Pose& X_WT_expected, std::uint64_t number) const;
+  /// The pose that these pictures show.
+  calibration::CameraPose pose_of(const std::array<vision::TargetsMeasurement, 2>& seen) const;
+
+  /// All boards as they were measured.
+  const std::vector<vision::SeenBoard>& boards() const { return boards_; }
   const vision::RigDescription& description() const { return description_; }
   const vision::CalibrationRig& designed() const { return description_.rig; }
   const BuiltRig& built() const { return built_; }
@@ -61,6 +70,7 @@ class MeasuringStand {
   Pose X_WB_, X_BT_home_;
   vision::RigDescription description_;
   BuiltRig built_;
+  std::vector<vision::SeenBoard> boards_;
   vision::StereoModel model_;
 };
 

@@ -30,6 +30,8 @@ BuiltRig sample_built_rig(const vision::CalibrationRig& designed, const vision::
       Random of_board(seed, fmt::format("measuring stand/board {}/{}", i + 1, layer + 1));
       built.boards[i][layer] = sample_placement(boards, of_board);
     }
+    Random of_print(seed, fmt::format("measuring stand/print {}", i + 1));
+    built.prints[i] = sample_print(boards, of_print);
   }
   return built;
 }
@@ -42,8 +44,11 @@ renderer::BoardScene board_scene(const vision::CalibrationRig& designed, const B
   scene.camera = built.cameras[k].camera;
   scene.columns = designed.board.columns;
   scene.rows = designed.board.rows;
-  scene.square = (1 + placement.scale) * designed.board.square;
-  scene.margin = (1 + placement.scale) * designed.board.margin;
+  const vision::PrintError& print = built.prints[k];
+  const double scale = (1 + placement.scale) * (1 + print.scale);
+  scene.square = scale * designed.board.square;
+  scene.margin = scale * designed.board.margin;
+  scene.bow = (1 + placement.scale) * print.bow;
   scene.X_CG = built.cameras[k].X_WC.inverse() * designed.X_WG(camera, layer) *
                make_pose(exp_rotation(placement.rotation), placement.offset);
   return scene;

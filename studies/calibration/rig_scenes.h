@@ -11,10 +11,11 @@
 namespace understudy::studies {
 
 /// The truth behind a CalibrationRig, which is what a controller believes: the cameras as they are mounted,
-/// and how far each board is from where the designed rig has it.
+/// how far each board is from where the designed rig has it, and how it was printed.
 struct BuiltRig {
   std::array<vision::MountedCamera, 2> cameras;
   std::array<std::vector<vision::BoardPlacement>, 2> boards;  ///< of each camera, layer by layer
+  std::array<vision::PrintError, 2> prints;                   ///< of the board before each camera
 };
 
 /// A set-up that was built as designed.

@@ -7,10 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "calibration/machine/strut_sides.h"
 #include "calibration/pose_choice.h"
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "sim/as_built/as_built.h"
 #include "studies/calibration/pixel_measurement.h"
+#include "studies/calibration/plant_session.h"
 
 namespace understudy::studies {
 namespace {
@@ -110,6 +113,10 @@ void check(const SamplePosesRequest& request, const MachineDescription& machine)
     throw InputError("pictures of the targets are taken of a hexapod only");
   if (request.from_pixels && !request.as_built)
     throw InputError("pictures need a machine that stands there: --as-built");
+  if (!request.engine.empty() && !request.as_built)
+    throw InputError("--engine needs a machine that is driven: --as-built");
+  if (request.warming != 0 && (request.engine.empty() || machine.is_chain()))
+    throw InputError("--warming: screws warm on a plant (--engine), and an open chain has none");
   if (request.count < 1 || request.count > 10000)
     throw InputError(fmt::format("--count {} is outside 1..10000", request.count));
   if (request.candidates < 1 || request.candidates > 10000)
@@ -118,13 +125,51 @@ void check(const SamplePosesRequest& request, const MachineDescription& machine)
     throw InputError(fmt::format("--design {} is not one of random, d-optimal", request.design));
 }
 
+constexpr double kScrewExpansion = 11.5e-6;  // [1/K], steel
+constexpr double kTimeConstants = 3;         // of the warming in the session's time
+
+/// The twin, driven to axes: by forward kinematics, or on a plant.
+class DrivenTwin {
+ public:
+  DrivenTwin(const SamplePosesRequest& request, const MachineDescription& machine,
+             const std::vector<MeasuredPose>& asked)
+      : machine_(machine), built_(sim::make_as_built(machine, *request.as_built, request.seed)) {
+    if (request.engine.empty()) return;
+    SessionOptions options;
+    options.engine = request.engine;
+    if (request.warming != 0) {
+      const auto& limits = machine.hexapod().limits;
+      std::vector<std::vector<double>> stops;
+      for (const MeasuredPose& pose : asked) stops.push_back(pose.axes);
+      options.growth = kScrewExpansion * request.warming * 0.5 * (limits.strut_min + limits.strut_max);
+      options.warming_time = planned_time(machine, stops) / kTimeConstants;
+    }
+    session_ = std::make_unique<PlantSession>(machine, built_, options);
+  }
+
+  /// False where forward kinematics has no answer.
+  bool visit(const MeasuredPose& asked, Pose& X_WT) {
+    if (session_) {
+      X_WT = session_->visit(asked.axes);
+      return true;
+    }
+    Pose X_BT;
+    if (!true_pose(machine_, built_, asked.axes, machine_.X_WB.inverse() * asked.X_WT, X_BT)) return false;
+    X_WT = machine_.X_WB * X_BT;
+    return true;
+  }
+
+ private:
+  const MachineDescription& machine_;
+  sim::AsBuilt built_;
+  std::unique_ptr<PlantSession> session_;
+};
+
 /// What measures the twin: noise of a known covariance, or two cameras.
 class Measurer {
  public:
-  Measurer(const SamplePosesRequest& request, const MachineDescription& machine,
-           std::unique_ptr<MeasuringStand> stand)
-      : X_WB_(machine.X_WB),
-        covariance_(request.noise.covariance()),
+  Measurer(const SamplePosesRequest& request, std::unique_ptr<MeasuringStand> stand)
+      : covariance_(request.noise.covariance()),
         noise_(request.seed, "calibration noise"),
         stand_(std::move(stand)) {
     if (stand_) view_ = std::make_unique<renderer::CalibrationView>();
@@ -133,9 +178,9 @@ class Measurer {
 
   /// Of the commanded `pose`, from pictures the `number`th, it makes the measured one; false where the
   /// cameras find none. Its covariance is known when all poses are: finish().
-  bool measure(const Pose& X_BT_true, std::uint64_t number, MeasuredPose& pose) {
+  bool measure(const Pose& X_WT_true, std::uint64_t number, MeasuredPose& pose) {
     if (stand_) {
-      const CameraPose seen = stand_->measure(*view_, X_WB_ * X_BT_true, pose.X_WT, number);
+      const CameraPose seen = stand_->measure(*view_, X_WT_true, pose.X_WT, number);
       pose.X_WT = seen.X_WT;
       if (seen.ok()) seen_.push_back(seen);
       return seen.ok();
@@ -143,8 +188,8 @@ class Measurer {
     Twist unit;
     for (Eigen::Index k = 0; k < 6; ++k) unit[k] = noise_.normal();
     const Twist e = covariance_.llt().matrixL() * unit;
-    const Pose X_WT = X_WB_ * X_BT_true;
-    pose.X_WT = make_pose(Mat3(exp_rotation(e.tail<3>()) * X_WT.linear()), X_WT.translation() + e.head<3>());
+    pose.X_WT = make_pose(Mat3(exp_rotation(e.tail<3>()) * X_WT_true.linear()),
+                          X_WT_true.translation() + e.head<3>());
     pose.covariance = covariance_;
     return true;
   }
@@ -156,7 +201,6 @@ class Measurer {
   }
 
  private:
-  Pose X_WB_;
   Mat6 covariance_;
   Random noise_;
   std::unique_ptr<MeasuringStand> stand_;
@@ -164,39 +208,60 @@ class Measurer {
   std::vector<CameraPose> seen_;
 };
 
+/// The poses asked for, with their axes and, where a plant has plays, the sides on which these rest.
+std::vector<MeasuredPose> asked_poses(const SamplePosesRequest& request, const MachineDescription& machine,
+                                      const MeasuringStand* stand) {
+  const auto mechanism = machine.make_mechanism();
+  std::vector<MeasuredPose> asked;
+  for (const Pose& X_BT : choose(request, machine, *mechanism, stand)) {
+    MeasuredPose pose;
+    pose.axes.resize(static_cast<std::size_t>(mechanism->axis_count()));
+    if (mechanism->inverse(X_BT, {}, pose.axes) != kinematics::SolveStatus::ok) continue;
+    pose.X_WT = machine.X_WB * X_BT;
+    if (!request.engine.empty() && !machine.is_chain())
+      pose.approach = resting_sides(machine, machine.hexapod().geometry, X_BT);
+    asked.push_back(std::move(pose));
+  }
+  return asked;
+}
+
+std::unique_ptr<MeasuringStand> make_stand(const SamplePosesRequest& request,
+                                           const MachineDescription& machine,
+                                           const std::function<void(double)>& progress,
+                                           const PictureRecord* record) {
+  if (!request.from_pixels) return nullptr;
+  StandOptions options;
+  options.seed = request.seed;
+  options.boards = request.boards;
+  if (record) options.keep = record->keep;
+  return std::make_unique<MeasuringStand>(machine, options, 1, progress);
+}
+
 }  // namespace
 
 Measurements sample_poses(const SamplePosesRequest& request, const MachineDescription& machine,
                           const std::function<void(double)>& progress, PictureRecord* record) {
   check(request, machine);
-  const auto mechanism = machine.make_mechanism();
-  Measurements sample;
+  Measurements sample, commanded, truth;
   sample.noise_given = request.as_built.has_value();
-  std::optional<sim::AsBuilt> built;
-  if (request.as_built) built = sim::make_as_built(machine, *request.as_built, request.seed);
-  std::unique_ptr<MeasuringStand> stand;
-  if (request.from_pixels) {
-    StandOptions options;
-    options.seed = request.seed;
-    if (record) options.keep = record->keep;
-    stand = std::make_unique<MeasuringStand>(machine, options, 1, progress);
-  }
+  for (Measurements* table : {&sample, &commanded, &truth})
+    table->approach_told = !request.engine.empty() && !machine.is_chain();
+  std::unique_ptr<MeasuringStand> stand = make_stand(request, machine, progress, record);
   if (record && stand) record->rig = stand->description(), record->built = stand->built();
-  Measurements commanded, truth;
-  Measurer measurer(request, machine, std::move(stand));
+  Measurer measurer(request, std::move(stand));
+  const std::vector<MeasuredPose> asked = asked_poses(request, machine, measurer.stand());
+  std::optional<DrivenTwin> twin;
+  if (request.as_built) twin.emplace(request, machine, asked);
   std::uint64_t number = 0;
-  for (const Pose& X_BT : choose(request, machine, *mechanism, measurer.stand())) {
-    MeasuredPose pose;
-    pose.axes.resize(static_cast<std::size_t>(mechanism->axis_count()));
-    if (mechanism->inverse(X_BT, {}, pose.axes) != kinematics::SolveStatus::ok) continue;
-    pose.X_WT = machine.X_WB * X_BT;
-    if (built) {
-      Pose X_true;
-      if (!true_pose(machine, *built, pose.axes, X_BT, X_true)) continue;
+  for (MeasuredPose pose : asked) {
+    stop_if_interrupted();
+    if (twin) {
+      Pose X_WT;
+      if (!twin->visit(pose, X_WT)) continue;
       commanded.poses.push_back(pose);
       truth.poses.push_back(pose);
-      truth.poses.back().X_WT = machine.X_WB * X_true;
-      if (!measurer.measure(X_true, ++number, pose)) continue;
+      truth.poses.back().X_WT = X_WT;
+      if (!measurer.measure(X_WT, ++number, pose)) continue;
     }
     sample.poses.push_back(std::move(pose));
   }

@@ -21,6 +21,11 @@ struct SamplePosesRequest {
   /// Measure the twin with two rendered cameras (pixel_measurement.h) in place of drawn noise: a hexapod
   /// only.
   bool from_pixels = false;
+  /// The plant that the twin is driven on (session_engines()); empty: poses by forward kinematics.
+  std::string engine;
+  /// [K] by which screws warm during the session, on a plant; of a hexapod.
+  double warming = 0;
+  vision::BoardTolerance boards{20e-6, 0.2e-3, 0};  ///< of the measuring set-up, from pixels
   /// Of the measured poses; also what d-optimal poses are chosen for.
   calibration::MeasurementNoise noise = calibration::kReferenceNoise;
   std::uint64_t seed = 1;
@@ -36,8 +41,9 @@ struct PictureRecord {
 };
 
 /// Poses within the machine's limits with the axes that its model computes for them. Measured: where the
-/// twin's geometry puts the tool then, with noise; its play is left out. Else the poses asked for, to be
-/// replaced by measured ones. Throws InputError; MachineError where nothing can be rendered. `progress` gets
+/// twin's geometry puts the tool then, without play; on a plant where the tool rests (plant_session.h), with
+/// the sides on which a controller says that plays rest. Else the poses asked for, to be replaced by measured
+/// ones. Throws InputError; MachineError where nothing can be rendered. `progress` gets
 /// 0..1; `record` is filled from pixels only.
 calibration::Measurements sample_poses(const SamplePosesRequest& request,
                                        const machine::MachineDescription& machine,

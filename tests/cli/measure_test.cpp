@@ -271,6 +271,40 @@ TEST(Measure, PicturesFromFilesGiveBoardsTargetsAndPoses) {
   mistakes_are_refused_in_one_line_and_nothing_is_written(pictures);
 }
 
+// Boards as a print shop makes them; the machine is driven on a plant. `calibrate bundle` finds it from the
+// tables of `measure`.
+TEST(Measure, TablesOfAllPicturesCalibrateAMachineAtOnce) {
+  const Folder folder;
+  const std::string rig = " --rig " + (folder / "p/rig.yaml"),
+                    commanded = " --commanded " + (folder / "p/commanded.csv");
+  const Outcome made = understudy(
+      "sample-poses --count 10 --as-built manufactured --seed 5 --engine quasistatic --from pixels "
+      "--board-offset 0.2 "
+      "--board-rotation 2 --board-print 1 --board-flatness 50 --pictures " +
+      (folder / "p") + " -o " + (folder / "m.csv"));
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(table_of(read_file(folder / "p/commanded.csv"))[0].count("a6"), 1u);
+  ASSERT_EQ(understudy("measure board" + rig + " -o " + (folder / "corners.csv")).status, 0);
+  ASSERT_EQ(understudy("measure targets " + (folder / "p/poses/*.png") + rig + commanded + " -o " +
+                       (folder / "targets.csv"))
+                .status,
+            0);
+  const std::string call = "calibrate bundle" + rig + commanded + " --corners " + (folder / "corners.csv") +
+                           " --targets " + (folder / "targets.csv") + " -o ";
+  const Outcome found = understudy(call + (folder / "calibrated.yaml") + " --report " + (folder / "report"));
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("bundle_with_play"));
+  EXPECT_TRUE(fs::exists(folder / "report/report.html"));
+  EXPECT_EQ(understudy("sample-poses --count 3 --design random --machine " + (folder / "calibrated.yaml") +
+                       " -o " + (folder / "again.csv"))
+                .status,
+            0);
+  const Outcome refused = understudy(call + (folder / "arm.yaml") + " --machine arm");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("hexapod only"));
+  EXPECT_FALSE(fs::exists(folder / "arm.yaml"));
+}
+
 TEST(SamplePictures, NeedAMeasurementFromPixels) {
   const Folder folder;
   const Outcome outcome = understudy("sample-poses --as-built manufactured --pictures " + (folder / "p") +

@@ -12,6 +12,13 @@ BoardPlacement sample_placement(const BoardTolerance& tolerance, Random& random)
   return p;
 }
 
+PrintError sample_print(const BoardTolerance& tolerance, Random& random) {
+  PrintError print;
+  print.scale = tolerance.print_scale * random.normal();
+  for (int i = 0; i < 3; ++i) print.bow[i] = tolerance.flatness * random.normal();
+  return print;
+}
+
 Pose CalibrationRig::X_WG(int camera, int layer) const {
   const double depth = middle_distance + layer_spacing * (layer - 0.5 * (layers - 1));
   return cameras[static_cast<std::size_t>(camera)].X_WC * Pose(Eigen::Translation3d(0, 0, depth));

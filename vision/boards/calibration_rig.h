@@ -23,6 +23,8 @@ struct Board {
   double margin = 2.5e-3;  ///< [m] of white paper around the squares
 
   int corners() const { return columns * rows; }
+  /// [m], from the middle to the farthest corner along x and along y.
+  Vec2 half_size() const { return 0.5 * square * Vec2(columns - 1, rows - 1); }
   /// In G, row by row; the first is at the upper left.
   Vec3 corner(int column, int row) const {
     return {square * (column - 0.5 * (columns - 1)), square * (row - 0.5 * (rows - 1)), 0};
@@ -38,14 +40,31 @@ struct BoardPlacement {
   Vec3 moved(const Vec3& p_G) const { return exp_rotation(rotation) * ((1 + scale) * p_G) + offset; }
 };
 
-/// Standard deviations, for each axis of each board on its own.
+/// How a print differs from its drawing. One board is moved from layer to layer before a camera, so its print
+/// is the same in all of them.
+struct PrintError {
+  double scale = 0;  ///< relative
+  /// [m], along z of G: b_0 X^2 + b_1 X Y + b_2 Y^2, with X and Y 1 at the farthest corners.
+  Vec3 bow{0, 0, 0};
+
+  Vec3 printed(const Board& board, const Vec3& p_G) const {
+    const Vec2 at = p_G.head<2>().cwiseQuotient(board.half_size());
+    const double bent = bow.dot(Vec3(at.x() * at.x(), at.x() * at.y(), at.y() * at.y()));
+    return (1 + scale) * p_G + Vec3(0, 0, bent);
+  }
+};
+
+/// Standard deviations, for each axis of each board on its own; of a print, common to all boards of a camera.
 struct BoardTolerance {
-  double offset = 0;    ///< [m]
-  double rotation = 0;  ///< [rad]
-  double scale = 0;     ///< relative
+  double offset = 0;       ///< [m]
+  double rotation = 0;     ///< [rad]
+  double scale = 0;        ///< relative
+  double print_scale = 0;  ///< relative, of the print
+  double flatness = 0;     ///< [m], each number of the print's bow
 };
 
 BoardPlacement sample_placement(const BoardTolerance& tolerance, Random& random);
+PrintError sample_print(const BoardTolerance& tolerance, Random& random);
 
 struct MountedCamera {
   Camera camera;

@@ -85,6 +85,13 @@ void read_uncertainty(YamlMap& map, CalibrationUncertainty& uncertainty) {
   uncertainty.boards.rotation =
       map.quantity("board_rotation_mrad", {0, 500}, "1 sigma of its rotation, each axis");
   uncertainty.boards.scale = map.quantity("board_scale_permille", {0, 100}, "1 sigma of its print's scale");
+  if (map.has("board_print_permille"))
+    uncertainty.boards.print_scale =
+        map.quantity("board_print_permille", {0, 100},
+                     "1 sigma of the scale that all layers of a camera share: one print");
+  if (map.has("board_flatness_um"))
+    uncertainty.boards.flatness =
+        map.quantity("board_flatness_um", {0, 1e5}, "1 sigma of each number of the print's bow");
   uncertainty.corner_px = map.quantity("corner_px", {0, 10}, "1 sigma of a measured corner in u and v");
   uncertainty.principal_px =
       map.quantity("principal_point_px", {0, 1000}, "1 sigma of centre_px in u and v; 0: it is not known");
@@ -193,9 +200,12 @@ std::string rig_yaml(const RigDescription& d, const std::string& comment) {
   const CalibrationUncertainty& u = d.uncertainty;
   out << "uncertainty:\n  board_offset_um: " << to_um(u.boards.offset)
       << "\n  board_rotation_mrad: " << u.boards.rotation / kMilli
-      << "\n  board_scale_permille: " << u.boards.scale / kMilli << "\n  corner_px: " << u.corner_px
-      << "\n  principal_point_px: " << u.principal_px << "\nboard_pictures: '" << d.board_pictures.pattern()
-      << "'\npose_pictures: '" << d.pose_pictures.pattern() << "'\n";
+      << "\n  board_scale_permille: " << u.boards.scale / kMilli;
+  if (u.boards.print_scale > 0) out << "\n  board_print_permille: " << u.boards.print_scale / kMilli;
+  if (u.boards.flatness > 0) out << "\n  board_flatness_um: " << to_um(u.boards.flatness);
+  out << "\n  corner_px: " << u.corner_px << "\n  principal_point_px: " << u.principal_px
+      << "\nboard_pictures: '" << d.board_pictures.pattern() << "'\npose_pictures: '"
+      << d.pose_pictures.pattern() << "'\n";
   return out.str();
 }
 

@@ -60,6 +60,18 @@ TEST(RigFile, TheExampleIsTheReferencesSetUpBeforeTheHexapod) {
             std::string(UNDERSTUDY_SOURCE_DIR) + "/examples/boards/camera1-layer07.png");
 }
 
+TEST(RigFile, APrintIsExactUnlessTheFileSaysOtherwise) {
+  RigDescription rig = load_rig(kExample);
+  EXPECT_EQ(rig.uncertainty.boards.print_scale, 0);
+  rig.uncertainty.boards.print_scale = 1e-3;
+  rig.uncertainty.boards.flatness = 50e-6;
+  const TemporaryFile file(rig_yaml(rig, "test"));
+  const RigDescription read = load_rig(file.path());
+  EXPECT_NEAR(read.uncertainty.boards.print_scale, 1e-3, 1e-15);
+  EXPECT_NEAR(read.uncertainty.boards.flatness, 50e-6, 1e-15);
+  EXPECT_EQ(read.uncertainty.corner_px, rig.uncertainty.corner_px);
+}
+
 TEST(RigFile, WhatIsWrittenReadsBack) {
   RigDescription d = load_rig(kExample);
   d.rig.cameras[1].camera.k1 = -0.123456789;

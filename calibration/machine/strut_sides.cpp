@@ -1,0 +1,93 @@
+#include "calibration/machine/strut_sides.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "core/units.h"
+
+namespace understudy::calibration {
+namespace {
+
+using machine::HexapodModel;
+
+// Joints that are off by 0.5 mm change loads of some 3 N by a hundredth; the rest is for cables.
+constexpr double kLoadKnown = 0.1;  // [N]
+
+/// Of a motor, which stands off by dev from its universal joint, when the ball joint is at d_B from there.
+/// Its first axis is `tangent_B`.
+Vec3 motor_place(const Vec3& d_B, const Vec3& tangent_B, double deviation) {
+  const Vec3 across = d_B - d_B.dot(tangent_B) * tangent_B;
+  const double leg = std::sqrt(std::max(0.0, across.squaredNorm() - deviation * deviation));
+  return deviation * (deviation * across + leg * across.cross(tangent_B)) / across.squaredNorm();
+}
+
+/// What the motor's weight does at the ball joint: minus the slope of its potential energy.
+Vec3 motor_force(const Vec3& d_B, const Vec3& tangent_B, double deviation, const Vec3& weight_B) {
+  constexpr double kStep = 1e-5;  // [m]: central differences err by its square
+  Vec3 force;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Vec3 step = kStep * Vec3::Unit(k);
+    force[k] = weight_B.dot(motor_place(d_B + step, tangent_B, deviation) -
+                            motor_place(d_B - step, tangent_B, deviation)) /
+               (2 * kStep);
+  }
+  return force;
+}
+
+}  // namespace
+
+bool strut_loads(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                 const Pose& X_BT, StrutLengths& load) {
+  const HexapodModel& hexapod = machine.hexapod();
+  Mat6 J;
+  if (kinematics::jacobian(geometry, X_BT, J) != kinematics::SolveStatus::ok) return false;
+  const Vec3 gravity_B = machine.X_WB.linear().transpose() * Vec3(0, 0, -kGravity);
+  const auto wrench = [](const Vec3& arm, const Vec3& force) {
+    Twist w;
+    w << force, arm.cross(force);
+    return w;
+  };
+  Twist Q = wrench(X_BT.linear() * hexapod.masses.platform_centre_T, hexapod.masses.platform * gravity_B);
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    const Vec3 arm = X_BT.linear() * geometry.platform_joint[i];
+    const Vec3 d_B = X_BT.translation() + arm - geometry.base_joint[i];
+    const Vec3 tangent_B = Vec3::UnitZ().cross(hexapod.joints.radial_axis[i]).normalized();
+    Q += wrench(arm, hexapod.masses.nut * gravity_B +
+                         motor_force(d_B, tangent_B, geometry.deviation, hexapod.masses.motor * gravity_B));
+  }
+  const Eigen::FullPivLU<Mat6> factors(J.transpose());
+  if (!factors.isInvertible()) return false;
+  const Twist forces = factors.solve(-Q);
+  for (std::size_t i = 0; i < kStruts; ++i) load[i] = forces[static_cast<Eigen::Index>(i)];
+  return forces.allFinite();
+}
+
+kinematics::PerStrut<double> probable_sides(const machine::MachineDescription& machine,
+                                            const kinematics::HexapodGeometry& geometry, const Pose& X_BT) {
+  kinematics::PerStrut<double> sides{};
+  StrutLengths load;
+  if (!strut_loads(machine, geometry, X_BT, load)) return sides;
+  const HexapodModel& hexapod = machine.hexapod();
+  const double nut = kGravity * hexapod.masses.nut;
+  const double both = hexapod.play.ball_joint + hexapod.play.screw_nut;
+  // The nut hangs in its screw while the rod, which it carries, stands on it.
+  const double between = both > 0 ? (hexapod.play.ball_joint - hexapod.play.screw_nut) / both : 0;
+  for (std::size_t i = 0; i < kStruts; ++i) sides[i] = load[i] > 0 ? 1 : load[i] < -nut ? -1 : between;
+  return sides;
+}
+
+kinematics::PerStrut<Approach> resting_sides(const machine::MachineDescription& machine,
+                                             const kinematics::HexapodGeometry& geometry, const Pose& X_BT) {
+  kinematics::PerStrut<Approach> sides{};
+  StrutLengths load;
+  if (!strut_loads(machine, geometry, X_BT, load)) return sides;
+  const HexapodModel& hexapod = machine.hexapod();
+  const double margin = hexapod.play.friction + kLoadKnown, nut = kGravity * hexapod.masses.nut;
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    if (load[i] > margin) sides[i] = Approach::lengthening;
+    if (load[i] < -nut - margin) sides[i] = Approach::shortening;
+  }
+  return sides;
+}
+
+}  // namespace understudy::calibration

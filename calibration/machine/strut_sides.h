@@ -1,0 +1,26 @@
+// On which side the play of each strut rests, by what the controller knows: the description's masses and its
+// own geometry. A table of measured poses says so in a1 to a6.
+#pragma once
+
+#include "calibration/problem.h"
+#include "machine/description.h"
+
+namespace understudy::calibration {
+
+/// [N] that each drive pushes (positive) or pulls along its strut to hold the platform still: virtual work of
+/// the weights of platform, nuts and motors. False where the pose is singular or out of reach.
+bool strut_loads(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                 const Pose& X_BT, StrutLengths& load);
+
+/// Where each play most probably rests: 1 as if the strut had come by lengthening (it pushes), -1 as by
+/// shortening (it pulls), between them where the nut's own weight keeps one play on either side.
+kinematics::PerStrut<double> probable_sides(const machine::MachineDescription& machine,
+                                            const kinematics::HexapodGeometry& geometry, const Pose& X_BT);
+
+/// A strut that pushes rests as if it had come by lengthening, one that pulls as by shortening. `unknown`
+/// within friction of the joints, between the sides (where the nut's own weight keeps one play on either),
+/// and nearer to that than a machine before calibration tells (0.1 N).
+kinematics::PerStrut<Approach> resting_sides(const machine::MachineDescription& machine,
+                                             const kinematics::HexapodGeometry& geometry, const Pose& X_BT);
+
+}  // namespace understudy::calibration

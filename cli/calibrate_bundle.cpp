@@ -1,0 +1,81 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "calibration/bundle/calibrate_bundle.h"
+#include "cli/calibrate_bundle.h"
+#include "cli/machine_option.h"
+#include "core/interrupt.h"
+#include "core/output_file.h"
+#include "core/units.h"
+#include "machine/file/calibration_section.h"
+#include "report/calibration_summary.h"
+#include "report/page/calibration_page.h"
+
+namespace understudy::cli {
+namespace {
+
+struct BundleCall {
+  calibration::BundleRequest request;
+  double warming_um = 0;
+  std::string output, report;
+};
+
+/// Both results or none.
+int run_bundle(const BundleCall& call) {
+  calibration::BundleRequest request = call.request;
+  request.warming = kMicrometre * call.warming_um;
+  request.command = command_line();
+  const calibration::MachineCalibration result = calibration::calibrate_bundle(request);
+  std::optional<OutputFolder> report;
+  if (!call.report.empty()) {
+    report.emplace(call.report, "summary.json");
+    write_file(report->path() / "summary.json", report::calibration_json(result));
+    write_file(report->path() / "report.html", report::calibration_html(result));
+  }
+  stop_if_interrupted();
+  machine::write_calibrated(result.machine, call.output, result.stored);
+  if (report) report->commit();
+  fmt::print("{}machine: {}\n", report::calibration_text(result), call.output);
+  if (report) fmt::print("report: {}\n", (std::filesystem::path(call.report) / "report.html").string());
+  return kGood;
+}
+
+}  // namespace
+
+CLI::App* add_calibrate_bundle(CLI::App& calibrate, Action& action) {
+  auto call = std::make_shared<BundleCall>();
+  auto* command = calibrate.add_subcommand(
+      "bundle", "Find machine, cameras and boards together, from all corners and targets in pixels");
+  command->add_option("--rig", call->request.rig, "the measuring set-up (docs/measuring-pictures.md)")
+      ->required();
+  command->add_option("--corners", call->request.corners, "CSV of understudy measure board")->required();
+  command->add_option("--targets", call->request.targets, "CSV of understudy measure targets")->required();
+  command->add_option("--commanded", call->request.commanded, "CSV of the commanded poses, as measure had it")
+      ->required();
+  add_machine_option(*command, call->request.machine);
+  command
+      ->add_option("--warming", call->warming_um,
+                   "um by which the struts may have grown while poses were measured; 0: they have not")
+      ->check(CLI::Range(0.0, 10000.0))
+      ->capture_default_str();
+  command->add_option("-o,--output", call->output, "calibrated machine file, a .yaml")->required();
+  command->add_option("--report", call->report, "folder for report.html and summary.json");
+  command->footer(
+      "Boards may be off their places within the tolerances of the rig's file. The plays of the struts are "
+      "found "
+      "where the commanded poses have a1..a6.\n"
+      "Example: understudy measure board --rig shots/rig.yaml -o corners.csv\n"
+      "         understudy measure targets shots/poses/*.png --rig shots/rig.yaml --commanded "
+      "shots/commanded.csv -o targets.csv\n"
+      "         understudy calibrate bundle --rig shots/rig.yaml --corners corners.csv --targets targets.csv "
+      "--commanded shots/commanded.csv -o calibrated.yaml");
+  command->callback([=, &action] { action = [=] { return run_bundle(*call); }; });
+  return command;
+}
+
+}  // namespace understudy::cli
