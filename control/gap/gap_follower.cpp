@@ -182,7 +182,12 @@ void GapFollower::judge(const GapObservation& o) {
   if (!known_) return;
   if (gap(o.correction) - kSafeSigmas * std::hypot(sigma(), calibration_sigma_) < options_.floor)
     raise(GapStop::too_close);
-  if (std::abs(wanted()) > options_.travel_max + kSafeSigmas * sigma()) raise(GapStop::too_far);
+  // What nobody has seen follow the tool says nothing about the surface.
+  if (std::abs(wanted()) > options_.travel_max + kSafeSigmas * sigma()) {
+    const bool unseen = excitation_.available() && excitation_due(o.path);
+    if (unseen) unanswered_ = std::max(0.0, o.correction);
+    raise(unseen ? GapStop::no_progress : GapStop::too_far);
+  }
   judge_proof(o);
 }
 

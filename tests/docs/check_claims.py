@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Holds the figures of the pages to what commands print and tests assert, as claims.toml lists them.
 
-usage: check_claims.py CLAIMS --source FOLDER --understudy PROGRAM [--only NAME] | --list | --tests CTEST-FOLDER
+usage: check_claims.py CLAIMS --source FOLDER --understudy PROGRAM [--build FOLDER] [--only NAME] | --list | --tests CTEST-FOLDER
 
 [[command]]            a command in a folder that holds the shipped scenarios, models and examples
 name = "..."           of the CTest
-run = "..."            for bash
+run = "..."            for bash; $SOURCE and $BUILD are the folders of the sources and of the build
 slow = true            optional: minutes
 [[command.claim]]      a figure that it prints
 page = "docs/strand.md"
@@ -96,7 +96,9 @@ def wrong_claims(arguments, claims):
 
 def wrong_figures(arguments, command):
     with tempfile.TemporaryDirectory() as folder:
-        printed, status = run(command, make_folder(arguments, folder), folder)
+        environment = make_folder(arguments, folder)
+        environment |= {"SOURCE": os.path.abspath(arguments.source), "BUILD": os.path.abspath(arguments.build or ".")}
+        printed, status = run(command, environment, folder)
     if status > command.get("status", 0):
         return [f"{arguments.claims}: {command['name']}: ended with status {status}"]
     problems = [(claim, check_figures(claim, printed)) for claim in command["claim"]]
@@ -116,6 +118,7 @@ def main():
     parser.add_argument("claims")
     parser.add_argument("--source")
     parser.add_argument("--understudy")
+    parser.add_argument("--build")
     parser.add_argument("--only")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--tests")

@@ -93,7 +93,8 @@ TEST_F(ScenarioFile, ThePartIsRegisteredWhereTheFileSaysSo) {
   write_file(root_ / "parts/places.csv", "x_mm,y_mm,z_mm\n");
   const Scenario given = load(head + "register: {pattern: ../parts/places.csv}\n" + rest);
   EXPECT_EQ(given.registration.pattern, (root_ / "parts/places.csv").string());
-  EXPECT_THAT(error_of(head + "register: {places: 5}\n" + rest), testing::HasSubstr("register.places is 5, outside 6 to 100"));
+  EXPECT_THAT(error_of(head + "register: {places: 5}\n" + rest),
+              testing::HasSubstr("register.places is 5, outside 6 to 100"));
   EXPECT_THAT(error_of(head + "register: {pattern: none.csv}\n" + rest),
               testing::HasSubstr("does not exist"));
   EXPECT_THAT(error_of(head + "register: {pattern: ../parts/places.csv, places: 9}\n" + rest),

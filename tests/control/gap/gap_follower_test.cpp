@@ -267,6 +267,22 @@ TEST(GapFollower, StopsWhereTheSurfaceIsFartherOffThanItMayFollow) {
   for (const auto& p : loop.points) EXPECT_LE(std::abs(p.correction), 0.5e-3 + 1e-6);
 }
 
+TEST(GapFollower, ASpotThatLeadsTheToolAwayIsNoSurface) {
+  int stopped = 0, seed = 0;
+  for (double below = 10e-6; below < 60e-6; below += 10e-6)
+    for (double from = 0.8; from < 2; from += 0.1) {  // [s], wherever an excitation is just then
+      auto loop = loop_with([](double, double) { return kAim; }, 1.5e-6, static_cast<std::uint64_t>(++seed),
+                            options_of_hexapod());
+      loop.set_camera([&](double time, double, double gap) {
+        return FollowerLoop::Look{GapStop::none, time < from ? gap : kAim - below};
+      });
+      loop.run(12);
+      EXPECT_EQ(loop.follower.stop(), GapStop::no_progress) << below << ' ' << from;
+      stopped += loop.follower.unanswered() > 0;
+    }
+  EXPECT_GT(stopped, 0);
+}
+
 TEST(GapFollower, DoesNothingBeforeReadingsAgree) {
   FollowerLoop loop(
       filter_alone(), [](double, double) { return kAim + 60e-6; }, 4e-6);
