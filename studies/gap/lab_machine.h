@@ -18,7 +18,7 @@ struct LabMachine {
 };
 
 /// The drawn machine built with this seed and calibrated with the defaults of `sample-poses`, `calibrate`,
-/// `sample-gaps` and `calibrate gap-sensor` (bench/print/built_machines.sh), with no file between them.
+/// `sample-gaps` and `calibrate gap-sensor` (bench/print/built_machines.py), with no file between them.
 /// Throws InputError for a machine without tolerances, microscope or mounting tolerances.
 LabMachine make_lab_machine(const machine::MachineDescription& drawn, std::uint64_t seed);
 

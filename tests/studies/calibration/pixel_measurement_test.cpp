@@ -117,8 +117,10 @@ TEST(SlowPixelMeasurement, TwentyAsBuiltMachinesFallBelowATenthOfAMillimetre) {
   const ConditionScore& c = b.conditions[0];
   std::printf("as built %.2f mm, calibrated %.1f um median, %.1f um p95\n", to_mm(c.uncalibrated),
               to_um(c.scores[0].median), to_um(c.scores[0].p95));
-  EXPECT_GT(c.uncalibrated, 1e-3);
-  EXPECT_LT(c.uncalibrated, 4e-3);
+  // Figures of docs/calibration-benchmark.md, within a fifth.
+  EXPECT_NEAR(to_mm(c.uncalibrated), 2.48, 0.5);
+  EXPECT_NEAR(to_um(c.scores[0].median), 9.4, 1.9);
+  EXPECT_NEAR(to_um(c.scores[0].p95), 12.9, 2.6);
   EXPECT_EQ(c.lost_poses, 0);
   EXPECT_EQ(c.scores[0].failures, 0);
   for (const double median : c.machine_medians) EXPECT_LT(median, 0.1e-3);

@@ -78,13 +78,16 @@ TEST(SlowPlantTrial, TwentyMachinesBeforeBoardsOfAPrintShop) {
   const EntrantScore& bundle = c.scores[1];
   EXPECT_EQ(bundle.failures, 0);
   EXPECT_EQ(c.lost_poses, 0);
-  EXPECT_LT(bundle.registered.median, 50e-6);
-  EXPECT_LT(bundle.registered.median_worst, 50e-6);
-  EXPECT_LT(bundle.registered.worst, 130e-6);  // 116 um; 100 um are missed
+  // Figures of the page, within a fifth.
+  EXPECT_NEAR(bundle.registered.median, 22e-6, 4.4e-6);
+  EXPECT_NEAR(bundle.registered.median_worst, 38e-6, 7.6e-6);
+  EXPECT_NEAR(bundle.registered.worst, 116e-6, 23e-6);  // the goal of 100 um is missed
+  EXPECT_NEAR(bundle.in_frame.median, 86e-6, 17e-6);
+  EXPECT_NEAR(bundle.in_frame.worst, 217e-6, 43e-6);
   // 20 machines: an RMS of errors that are mostly six numbers each is known to 1 / sqrt(2 6 20) = 6.5 %.
   EXPECT_NEAR(bundle.in_frame.ratio, 1, 0.26);
   EXPECT_NEAR(bundle.registered.ratio, 1, 0.26);
-  EXPECT_GT(bundle.registered.coverage, 0.75);  // 81 % of 95: sides of plays that the model has wrong
+  EXPECT_NEAR(bundle.registered.coverage, 0.81, 0.06);  // of 95 %: sides of plays that the model has wrong
 }
 
 }  // namespace

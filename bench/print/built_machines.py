@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""The bottle's line on built machines, each off in all that its tolerances name (--as-built manufactured), after the
+calibrations that a lab would make of it and, last, with the part found first.
+
+usage: built_machines.py UNDERSTUDY OUT.jsonl [--first SEED] [--last SEED] [--cases CASE...] [--jobs N]
+cases: drawn, geometry (calibrated), sensor (calibrated, too), registered (that, and the part found first)
+
+OUT.jsonl gets a line for each machine; what stands there already is not run again. Prints a table over all of them:
+machines that are GO, that begin in the band, that keep 99 % of the line in it, and that touch.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+CASES = {"drawn": ("hexapod", []), "geometry": ("calibrated.yaml", []), "sensor": ("ready.yaml", []),
+         "registered": ("ready.yaml", ["--register"])}
+CONTROLS = ("off", "start", "continuous")
+KEPT = 0.99  # of the line, in the band
+BAND = (0.1, 0.2)  # [mm], the hexapod's accepted gaps
+
+
+def run(folder, *words, may_end_with=(0,)):
+    done = subprocess.run(words, cwd=folder, text=True, capture_output=True, check=False)
+    if done.returncode not in may_end_with:
+        sys.exit(f"{' '.join(words)}: status {done.returncode}\n{done.stderr}")
+    return done.stdout
+
+
+def rehearsal(understudy, folder, built, case, control):
+    machine, register = CASES[case]
+    run(folder, understudy, "rehearse", "line.gcode", "--machine", machine, "--fixture", "bottle", *built, *register, "--engine",
+        "quasistatic", "--no-pictures", "--gap-control", control, "--out", f"{case}-{control}", may_end_with=(0, 1))
+    with open(os.path.join(folder, f"{case}-{control}", "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    gap = summary.get("gap", {})
+    clearance = summary["collision"].get("nozzle_clearance_mm")
+    errors = [f["message"] for f in summary["findings"] if f["severity"] == "error"]
+    return {"go": summary["go"], "start_mm": gap.get("start_mm"), "in_band": gap.get("in_band_fraction", 0),
+            "path_mm": [gap.get("path_min_mm"), gap.get("path_max_mm")], "clearance_mm": clearance,
+            "why": errors[0] if errors else "", "registration": summary.get("registration")}
+
+
+def machine_of(understudy, seed, cases):
+    built = ["--as-built", "manufactured", "--seed", str(seed)]
+    with tempfile.TemporaryDirectory() as folder:
+        run(folder, understudy, "plan", "surface", "bottle", "--tilt", "-20", "20", "-o", "line.gcode")
+        if set(cases) - {"drawn"}:
+            run(folder, understudy, "sample-poses", "--count", "24", *built, "-o", "poses.csv")
+            run(folder, understudy, "calibrate", "poses.csv", "-o", "calibrated.yaml")
+        if set(cases) & {"sensor", "registered"}:
+            run(folder, understudy, "sample-gaps", *built, "-o", "gaps")
+            run(folder, understudy, "calibrate", "gap-sensor", "gaps/table.csv", "--machine", "calibrated.yaml", "-o",
+                "ready.yaml")
+        return {"seed": seed, "prints": {f"{case} {control}": rehearsal(understudy, folder, built, case, control)
+                                         for case in cases for control in CONTROLS}}
+
+
+def table(machines):
+    print(f"{'machine file':12} {'gap control':11} {'machines':>8} {'GO':>5} {'start in band':>14} {'line in band':>13} {'touch':>6}")
+    for key in dict.fromkeys(key for machine in machines for key in machine["prints"]):
+        prints = [machine["prints"][key] for machine in machines if key in machine["prints"]]
+        starts = sum(p["start_mm"] is not None and BAND[0] <= p["start_mm"] <= BAND[1] for p in prints)
+        kept = sum(p["in_band"] >= KEPT for p in prints)
+        touches = sum(p["clearance_mm"] is not None and p["clearance_mm"] <= 0 for p in prints)
+        case, control = key.split()
+        print(f"{case:12} {control:11} {len(prints):8} {sum(p['go'] for p in prints):5} {starts:14} {kept:13} {touches:6}")
+    found = [machine["prints"]["registered off"]["registration"] for machine in machines if "registered off" in machine["prints"]]
+    found = [f for f in found if f and f.get("normal_error_rms_um") is not None]
+    if found:
+        rms = [f["normal_error_rms_um"] for f in found]
+        scale = sum(f["chi_square"] for f in found) / sum(f["degrees_of_freedom"] for f in found)
+        print(f"registered {len(found)}: surface off by {sum(r * r for r in rms) ** 0.5 / len(rms) ** 0.5:.1f} um RMS, the worst "
+              f"machine {max(rms):.1f} um, any place {max(f['normal_error_max_um'] for f in found):.1f} um; "
+              f"stated {max(f['normal_sigma_max_um'] for f in found):.1f} um at most; chi-square {scale:.2f} for a degree of freedom")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("understudy")
+    parser.add_argument("out")
+    parser.add_argument("--first", type=int, default=1)
+    parser.add_argument("--last", type=int, default=20)
+    parser.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    arguments = parser.parse_args()
+    understudy = os.path.abspath(arguments.understudy)
+    machines = {}
+    if os.path.exists(arguments.out):
+        with open(arguments.out, encoding="utf-8") as file:
+            machines = {machine["seed"]: machine for machine in map(json.loads, file)}
+    wanted = range(arguments.first, arguments.last + 1)
+    missing = [seed for seed in wanted if seed not in machines]
+    with open(arguments.out, "a", encoding="utf-8") as file, ThreadPoolExecutor(arguments.jobs) as pool:
+        for machine in pool.map(lambda seed: machine_of(understudy, seed, arguments.cases), missing):
+            machines[machine["seed"]] = machine
+            print(json.dumps(machine), file=file, flush=True)
+            print(f"machine {machine['seed']} of {arguments.last}", file=sys.stderr, flush=True)
+    table([machines[seed] for seed in wanted])
+
+
+if __name__ == "__main__":
+    main()
