@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/quantile.h"
+#include "core/run_journal.h"
 #include "core/units.h"
 #include "rehearsal/rehearse.h"
 
@@ -58,6 +59,28 @@ SweepRow row_of(const Record& record, std::uint64_t seed) {
   return row;
 }
 
+RunJournal::Answer numbers_of(const SweepRow& row) {
+  const auto flag = [](bool is) { return is ? 1.0 : 0.0; };
+  return {flag(row.go),      row.open_loop_start_mm, row.start_mm,
+          flag(row.printed), row.approach_min_mm,    flag(row.open_loop_touched),
+          flag(row.touched), row.in_band_fraction,   row.open_loop_in_band_fraction};
+}
+
+SweepRow row_in(const RunJournal::Answer& numbers, std::uint64_t seed) {
+  SweepRow row;
+  row.seed = seed;
+  row.go = numbers.at(0) != 0;
+  row.open_loop_start_mm = numbers.at(1);
+  row.start_mm = numbers.at(2);
+  row.printed = numbers.at(3) != 0;
+  row.approach_min_mm = numbers.at(4);
+  row.open_loop_touched = numbers.at(5) != 0;
+  row.touched = numbers.at(6) != 0;
+  row.in_band_fraction = numbers.at(7);
+  row.open_loop_in_band_fraction = numbers.at(8);
+  return row;
+}
+
 struct Distribution {
   std::vector<double> values;
   int touched = 0;
@@ -77,17 +100,25 @@ std::string line_of(const std::string& name, const Distribution& d, double low, 
 }  // namespace
 
 std::vector<SweepRow> sweep(const rehearsal::RehearsalRequest& request, std::uint64_t first, int count,
-                            int threads, const Progress& progress) {
+                            int threads, const Progress& progress, const std::string& journal_file) {
   std::vector<SweepRow> rows(static_cast<std::size_t>(count));
-  const auto run = [&](std::size_t i) {
+  const auto rehearse_one = [&](std::size_t i) {
     rehearsal::RehearsalRequest one = request;
     one.seed = first + i;
     one.keep_scene = false;
-    rows[i] = row_of(rehearsal::rehearse(one), one.seed);
+    return row_of(rehearsal::rehearse(one), one.seed);
+  };
+  RunJournal journal(journal_file, fmt::format("sweep, from {}, {}", first, request.as_built));
+  if (!journal_file.empty()) journal.confirm(numbers_of(rehearse_one(0)));
+  const auto run = [&](std::size_t i) {
+    const auto known = journal.find(i);
+    rows[i] = known ? row_in(*known, first + i) : rehearse_one(i);
+    if (!known) journal.add(i, numbers_of(rows[i]));
   };
   in_parallel(rows.size(), threads, run, [&](std::size_t, std::size_t done) {
     if (progress) progress(static_cast<double>(done) / count, fmt::format("machine {} of {}", done, count));
   });
+  journal.remove();
   return rows;
 }
 

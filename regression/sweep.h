@@ -28,8 +28,10 @@ struct SweepRow {
 
 /// Rehearses with seeds first..first+count-1 on `threads` threads. Rows are ordered by seed and do not depend
 /// on the number of threads. Throws what rehearse() throws, for the smallest seed that failed.
+/// `journal`: file that keeps the rows until all are there (core/run_journal.h), but for their metrics;
+/// empty: none.
 std::vector<SweepRow> sweep(const rehearsal::RehearsalRequest& request, std::uint64_t first, int count,
-                            int threads, const Progress& progress = {});
+                            int threads, const Progress& progress = {}, const std::string& journal = {});
 
 /// The table of a sweep, for people: distribution of the start gap with and without gap control, touches.
 std::string sweep_table(const std::vector<SweepRow>& rows, double band_min_mm, double band_max_mm);

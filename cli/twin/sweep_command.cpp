@@ -32,6 +32,15 @@ struct SweepRequest {
   std::uint64_t first_seed = 1;
 };
 
+/// Beside the folder of results, which appears when it is whole.
+std::string journal_of(const SweepRequest& r) {
+  const auto folder = std::filesystem::path(r.folder).lexically_normal();
+  const std::string journal = (folder.has_filename() ? folder : folder.parent_path()).string() + ".journal";
+  if (std::filesystem::exists(journal))
+    fmt::print(stderr, "goes on with {}; delete it to begin anew\n", journal);
+  return journal;
+}
+
 rehearsal::RehearsalRequest print_of(const SweepRequest& r) {
   auto print = regression::request_of(regression::load_scenario(r.scenario));
   if (!r.as_built.empty()) print.as_built = r.as_built;
@@ -48,6 +57,7 @@ int run_budget(const SweepRequest& r) {
   request.print = print_of(r);
   fmt::print(stderr, "{}\n", report::budget_cost(studies::plan_budget(request), request.samples));
   OutputFolder out(r.folder, "budget.json");
+  request.journal = journal_of(r);
   studies::ErrorBudget budget;
   {
     ProgressLine line;
@@ -74,11 +84,12 @@ int run_sweep(const SweepRequest& r) {
   const auto request = print_of(r);
   const auto machine = machine::load_machine(request.machine);
   OutputFolder out(r.folder, "sweep.csv");
+  const std::string journal = journal_of(r);
   std::vector<regression::SweepRow> rows;
   {
     ProgressLine line;
-    rows = regression::sweep(request, r.first_seed, samples, r.threads,
-                             [&](double share, const std::string& what) { line.show(share, what); });
+    const auto progress = [&](double share, const std::string& what) { line.show(share, what); };
+    rows = regression::sweep(request, r.first_seed, samples, r.threads, progress, journal);
   }
   const auto table =
       regression::sweep_table(rows, to_mm(machine.gap.accepted_min), to_mm(machine.gap.accepted_max));

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/run_journal.h"
 #include "machine/description.h"
 #include "rehearsal/rehearse.h"
 #include "sim/as_built/as_built.h"
@@ -63,6 +64,20 @@ BudgetAnswer answer_of(const Record& record) {
   if (answer.stopped) return answer;
   set(BudgetQuantity::path_gap_error, kMicrometres * (record.gap->path_mean_mm - commanded_mm));
   if (record.accuracy) set(BudgetQuantity::tip_error, record.accuracy->tip_p95_um);
+  return answer;
+}
+
+RunJournal::Answer numbers_of(const BudgetAnswer& answer) {
+  RunJournal::Answer numbers{answer.stopped ? 1.0 : 0.0};
+  for (const auto& value : answer.values) numbers.push_back(value.value_or(std::nan("")));
+  return numbers;
+}
+
+BudgetAnswer answer_in(const RunJournal::Answer& numbers) {
+  BudgetAnswer answer;
+  answer.stopped = numbers.at(0) != 0;
+  for (std::size_t i = 0; i < kBudgetQuantities; ++i)
+    if (!std::isnan(numbers.at(i + 1))) answer.values[i] = numbers[i + 1];
   return answer;
 }
 
@@ -153,7 +168,10 @@ ErrorBudget run_budget(const BudgetRequest& request, const Progress& progress) {
   budget.command = request.print.command;
   const std::size_t worlds = budget.plan.groups.size() + 2;
   budget.answers.assign(static_cast<std::size_t>(request.samples), std::vector<BudgetAnswer>(worlds));
-  const auto run = [&](std::size_t job) {
+  RunJournal journal(request.journal,
+                     fmt::format("budget, {} samples from {}, {}, {} groups", request.samples,
+                                 request.first_seed, budget.plan.as_built, worlds - 2));
+  const auto rehearse_one = [&](std::size_t job) {
     const std::size_t sample = job / worlds, world = job % worlds;
     rehearsal::RehearsalRequest one = request.print;
     one.as_built = budget.plan.as_built;
@@ -161,13 +179,21 @@ ErrorBudget run_budget(const BudgetRequest& request, const Progress& progress) {
     one.keep_scene = false;
     one.compare_without_gap_control = false;
     const Record record = rehearsal::rehearse(one);
-    budget.answers[sample][world] = answer_of(record);
     if (job == 0) describe(record, budget);
+    return answer_of(record);
   };
+  const auto run = [&](std::size_t job) {
+    const auto known = journal.find(job);
+    const BudgetAnswer answer = known ? answer_in(*known) : rehearse_one(job);
+    if (!known) journal.add(job, numbers_of(answer));
+    budget.answers[job / worlds][job % worlds] = answer;
+  };
+  journal.confirm(numbers_of(rehearse_one(0)));
   const int all = budget.plan.rehearsals;
   in_parallel(static_cast<std::size_t>(all), request.threads, run, [&](std::size_t, std::size_t done) {
     if (progress) progress(static_cast<double>(done) / all, fmt::format("rehearsal {} of {}", done, all));
   });
+  journal.remove();
   for (const auto& sample : budget.answers)
     budget.stopped += static_cast<int>(
         std::count_if(sample.begin(), sample.end(), [](const BudgetAnswer& a) { return a.stopped; }));

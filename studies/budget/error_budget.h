@@ -23,6 +23,7 @@ struct BudgetRequest {
   int samples = 64;                   ///< pairs of worlds
   std::uint64_t first_seed = 1;       ///< of them, two each
   int threads = 1;                    ///< the result does not depend on it
+  std::string journal;  ///< file that keeps the answers until all are there (core/run_journal.h); empty: none
 };
 
 /// What is rehearsed, before it is.

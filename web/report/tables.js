@@ -79,6 +79,13 @@ const kFigureLabels = {
   orientation_max_mrad: 'Orientation error, largest', open_loop_tip_max_um: 'Tip error without gap control, largest',
   tip_tolerance_mm: 'Tip error accepted', orientation_tolerance_deg: 'Orientation error accepted',
   places: 'Places measured', left_out: 'Places left out', seen: 'Freedoms seen, of six', unseen: 'Not seen, left as drawn', refused: 'Not printed',
+  reference_x_mm: 'Centre of the places, x', reference_y_mm: 'Centre of the places, y', reference_z_mm: 'Centre of the places, z',
+  shift_x_um: 'Shift there, x', shift_y_um: 'Shift there, y', shift_z_um: 'Shift there, z',
+  shift_sigma_x_um: 'Shift, 1 sigma, x', shift_sigma_y_um: 'Shift, 1 sigma, y', shift_sigma_z_um: 'Shift, 1 sigma, z',
+  turn_x_mrad: 'Turn about x', turn_y_mrad: 'Turn about y', turn_z_mrad: 'Turn about z',
+  turn_sigma_x_mrad: 'Turn, 1 sigma, about x', turn_sigma_y_mrad: 'Turn, 1 sigma, about y', turn_sigma_z_mrad: 'Turn, 1 sigma, about z',
+  chi_square: 'Chi-square of what the fit leaves', degrees_of_freedom: 'Its degrees of freedom', chi_square_limit: 'Refused above',
+  place_sigma_um: 'Each place off besides noise, 1 sigma',
   normal_sigma_max_um: 'Surface found within, 1 sigma, worst place', normal_error_rms_um: 'Surface truly off, RMS', normal_error_max_um: 'Surface truly off, largest',
   commanded_mm: 'Commanded', open_loop_start_mm: 'At the start, without gap control', start_mm: 'At the start',
   path_min_mm: 'Least on the path', path_mean_mm: 'Mean on the path', path_max_mm: 'Largest on the path',
@@ -109,9 +116,9 @@ function drawFigures(report) {
   if (groups.length === 0) return null;
   return section('Figures', null, element('div', { class: 'figures' }, ...groups.map(([key, values]) =>
     element('table', {}, element('caption', {}, kGroupTitles[key] || key),
-      element('tbody', {}, ...Object.entries(values).map(([name, value]) => element('tr', {},
+      element('tbody', {}, ...Object.entries(values).filter(([, value]) => value !== '').map(([name, value]) => element('tr', {},
         element('th', { scope: 'row' }, kFigureLabels[name] || format.kind(name)),
-        element('td', { class: 'number' }, figureText(name, value)))))))));
+        element('td', { class: Array.isArray(value) || typeof value === 'string' ? 'text' : 'number' }, figureText(name, value)))))))));
 }
 
 function calibrationTable(figures) {

@@ -1,0 +1,55 @@
+#include "regression/sweep.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/output_file.h"
+#include "machine/description.h"
+
+namespace understudy::regression {
+namespace {
+
+namespace fs = std::filesystem;
+
+rehearsal::RehearsalRequest bottle() {
+  rehearsal::RehearsalRequest request;
+  request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
+  request.fixture = "bottle";
+  request.engine = "quasistatic";
+  request.gap_control = "off";
+  request.as_built = "manufactured";
+  return request;
+}
+
+TEST(Sweep, AKilledOneGoesOnWithTheSameRows) {
+  const std::string journal = (fs::path(testing::TempDir()) / "sweep-test.journal").string();
+  fs::remove(journal);
+  const auto dies = [](double share, const std::string&) {
+    if (share > 0.5) throw MachineError("killed");
+  };
+  EXPECT_THROW(sweep(bottle(), 1, 3, 1, dies, journal), MachineError);
+  ASSERT_TRUE(fs::exists(journal));
+  // The row of the second machine as it is kept: whoever rehearses it again does not see the mark.
+  std::string kept = read_file(journal);
+  const auto line = kept.find("\n1 ") + 3;
+  kept.replace(line, kept.find(' ', line) - line, "1");
+  const bool was_go = read_file(journal) == kept;
+  if (was_go) kept.replace(line, 1, "0");
+  write_file(journal, kept);
+  const auto resumed = sweep(bottle(), 1, 3, 1, {}, journal);
+  EXPECT_FALSE(fs::exists(journal));
+  const auto whole = sweep(bottle(), 1, 3, 1);
+  ASSERT_EQ(resumed.size(), 3u);
+  EXPECT_NE(resumed[1].go, whole[1].go);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(resumed[i].seed, whole[i].seed);
+    EXPECT_EQ(resumed[i].start_mm, whole[i].start_mm);
+    EXPECT_EQ(resumed[i].in_band_fraction, whole[i].in_band_fraction);
+    EXPECT_EQ(resumed[i].touched, whole[i].touched);
+  }
+}
+
+}  // namespace
+}  // namespace understudy::regression
