@@ -94,7 +94,7 @@ class Approach {
         aim_(safe_.gap),
         play_(machine.tip_play()),
         floor_(limits_.accepted_min / 2 + kSafeSigmas * safe_.sigma),
-        response_(floor_, kBlind, play_),
+        response_(floor_, kBlind),
         sensor_(machine, surface, options, motion.port()),
         height_(standoff) {}
 

@@ -14,11 +14,10 @@ namespace understudy::control {
 /// Of an approach: samples from heights that sink.
 class ApproachResponseTest {
  public:
-  /// `floor` [m] is what must be left in any case; `blind` [m] what may be travelled before the first proof;
-  /// `play` [m] how far the tip may shift of its own when the mechanism changes sides.
-  ApproachResponseTest(double floor, double blind, double play) : floor_(floor), blind_(blind), play_(play) {}
+  /// `floor` [m] is what must be left in any case; `blind` [m] what may be travelled before the first proof.
+  ApproachResponseTest(double floor, double blind) : floor_(floor), blind_(blind) {}
 
-  void restart() { *this = ApproachResponseTest(floor_, blind_, play_); }
+  void restart() { *this = ApproachResponseTest(floor_, blind_); }
 
   void add(double height, double gap, double sigma) {
     if (!begun_) {
@@ -51,8 +50,6 @@ class ApproachResponseTest {
  private:
   static constexpr double kStallStep = 15e-6;  // [m], a step whose effect must show
   static constexpr double kStallShare = 0.3;   // of a step: a gap that closes by less has not followed
-  static constexpr double kFollowed =
-      0.5;  // of a step, that play and scale may take or add: a still spot lacks all
   static constexpr double kEvident = 6;  // standard deviations of two samples: a third of it may be noise
 
   struct Sample {
@@ -63,11 +60,10 @@ class ApproachResponseTest {
   static bool evident(const Sample& from, const Sample& to) {
     return from.height - to.height >= std::max(kStallStep, kEvident * noise(from, to));
   }
-  bool followed(const Sample& from, const Sample& to) const {
+  static bool followed(const Sample& from, const Sample& to) {
     const double moved = from.height - to.height;
-    const double allowed = std::min(kScaleError * moved + play_, kFollowed * moved);
     return evident(from, to) &&
-           std::abs(from.gap - to.gap - moved) <= allowed + kEvident / 3 * noise(from, to);
+           std::abs(from.gap - to.gap - moved) <= kScaleError * moved + kEvident / 3 * noise(from, to);
   }
 
   /// Steps too small to show add up.
@@ -78,7 +74,7 @@ class ApproachResponseTest {
     stall_ = sample;
   }
 
-  double floor_, blind_, play_;
+  double floor_, blind_;
   bool begun_ = false, proved_ = false;
   double sure_ = 0;               // [m], gap less height: no more is proved
   Sample stall_, last_, anchor_;  // anchor: at the last proof, or the first

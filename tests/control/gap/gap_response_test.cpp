@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "control/gap/gap_response.h"
 #include "control/print.h"
 #include "core/random_vector.h"
 #include "tests/control/gap/bead_program.h"
@@ -144,33 +143,6 @@ TEST(Ghost, InTheMicroscopeStopsThePrintAboveTheFloor) {
     if (s.line >= 6) {
       ASSERT_GT(rig.gap_at(rig.commanded(s.position)), 0.05e-3) << "at " << s.time;
     }
-}
-
-/// Three steps down by 0.25 mm in all, of which readings follow a share.
-bool proves(double share, double play) {
-  ApproachResponseTest test(0.05e-3, 0.25e-3, play);
-  double gap = 1.96e-3, height = 2e-3;
-  test.add(height, gap, 1.5e-6);
-  for (const double step : {0.1e-3, 0.1e-3, 0.05e-3}) {
-    height -= step;
-    gap -= share * step;
-    test.add(height, gap, 1.5e-6);
-  }
-  return test.proved();
-}
-
-TEST(ApproachResponseTest, PlayThatChangesSidesIsNoSpot) {
-  // A quarter of each step: beyond a scale that is off by 15 %, and what a tip with 60 um of play may do.
-  EXPECT_FALSE(proves(0.75, 0));
-  EXPECT_TRUE(proves(0.75, 0.06e-3));
-}
-
-TEST(ApproachResponseTest, PlayDoesNotExcuseASpotThatStandsStill) {
-  for (const double play : {0.0, 0.06e-3, 1e-3}) {
-    EXPECT_FALSE(proves(0, play));
-    EXPECT_FALSE(proves(0.3, play));
-    EXPECT_TRUE(proves(1, play));
-  }
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ TEST(FaultedTwin, RefusesWhatItCannotRun) {
   EXPECT_THROW(run_faulted_twin(request), InputError);
 }
 
-TEST(SlowFaultedTwin, NoneOfTwoThousandApproachesTouchesAndTwoAnswersAreWrong) {
+TEST(SlowFaultedTwin, NoneOfTwoThousandApproachesTouchesAndAtMostTwoAnswersAreWrong) {
   expect_right_answers(request_for(FaultedTask::approach, 2000, 50), {500, 7, 2});
 }
 
