@@ -35,7 +35,7 @@ struct SweepRequest {
 /// Beside the folder of results, which appears when it is whole.
 std::string journal_of(const SweepRequest& r) {
   const auto folder = std::filesystem::path(r.folder).lexically_normal();
-  const std::string journal = (folder.has_filename() ? folder : folder.parent_path()).string() + ".journal";
+  std::string journal = (folder.has_filename() ? folder : folder.parent_path()).string() + ".journal";
   if (std::filesystem::exists(journal))
     fmt::print(stderr, "goes on with {}; delete it to begin anew\n", journal);
   return journal;

@@ -40,7 +40,7 @@ struct Teeth {
 };
 
 FaultedTwin expect_right_answers(const FaultedTwinRequest& request, const Teeth& teeth) {
-  const FaultedTwin result = run_faulted_twin(request);
+  FaultedTwin result = run_faulted_twin(request);
   for (const UnsoundWorld& world : result.unsound)
     std::printf("machine %d on %s is left out: %s\n", static_cast<int>(world.world), world.surface.c_str(),
                 world.why.c_str());
