@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/cross_matrix.h"
+
 namespace understudy::calibration {
 namespace {
 
@@ -16,7 +18,7 @@ MatrixXd motion_rows(std::span<const Vec3> points, const Vec3& middle) {
     const Vec3 r = points[k] - middle;
     const Index row = 3 * static_cast<Index>(k);
     rows.block<3, 3>(row, 0).setIdentity();
-    rows.block<3, 3>(row, 3) << 0, r.z(), -r.y(), -r.z(), 0, r.x(), r.y(), -r.x(), 0;
+    rows.block<3, 3>(row, 3) = -cross_matrix(r);
   }
   return rows;
 }

@@ -1,20 +1,13 @@
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "calibration/bundle/calibrate_bundle.h"
 #include "cli/calibrate_bundle.h"
+#include "cli/calibration_output.h"
 #include "cli/machine_option.h"
-#include "core/interrupt.h"
-#include "core/output_file.h"
 #include "core/units.h"
-#include "machine/file/calibration_section.h"
-#include "report/calibration_summary.h"
-#include "report/page/calibration_page.h"
 
 namespace understudy::cli {
 namespace {
@@ -25,24 +18,11 @@ struct BundleCall {
   std::string output, report;
 };
 
-/// Both results or none.
 int run_bundle(const BundleCall& call) {
   calibration::BundleRequest request = call.request;
   request.warming = kMicrometre * call.warming_um;
   request.command = command_line();
-  const calibration::MachineCalibration result = calibration::calibrate_bundle(request);
-  std::optional<OutputFolder> report;
-  if (!call.report.empty()) {
-    report.emplace(call.report, "summary.json");
-    write_file(report->path() / "summary.json", report::calibration_json(result));
-    write_file(report->path() / "report.html", report::calibration_html(result));
-  }
-  stop_if_interrupted();
-  machine::write_calibrated(result.machine, call.output, result.stored);
-  if (report) report->commit();
-  fmt::print("{}machine: {}\n", report::calibration_text(result), call.output);
-  if (report) fmt::print("report: {}\n", (std::filesystem::path(call.report) / "report.html").string());
-  return kGood;
+  return write_calibration(calibration::calibrate_bundle(request), call.output, call.report);
 }
 
 }  // namespace

@@ -1,23 +1,16 @@
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "calibration/machine/calibrate_machine.h"
 #include "cli/calibrate_bundle.h"
+#include "cli/calibration_output.h"
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/noise_option.h"
 #include "core/error.h"
-#include "core/interrupt.h"
-#include "core/output_file.h"
-#include "machine/file/calibration_section.h"
-#include "report/calibration_summary.h"
-#include "report/page/calibration_page.h"
 
 namespace understudy::cli {
 namespace {
@@ -28,24 +21,11 @@ struct CalibrateCall {
   std::string output, report;
 };
 
-/// Both results or none.
 int run_calibrate(const CalibrateCall& call) {
   calibration::CalibrationRequest request = call.request;
   request.noise = noise_of(call.noise);
   request.command = command_line();
-  const calibration::MachineCalibration result = calibration::calibrate_machine(request);
-  std::optional<OutputFolder> report;
-  if (!call.report.empty()) {
-    report.emplace(call.report, "summary.json");
-    write_file(report->path() / "summary.json", report::calibration_json(result));
-    write_file(report->path() / "report.html", report::calibration_html(result));
-  }
-  stop_if_interrupted();
-  machine::write_calibrated(result.machine, call.output, result.stored);
-  if (report) report->commit();
-  fmt::print("{}machine: {}\n", report::calibration_text(result), call.output);
-  if (report) fmt::print("report: {}\n", (std::filesystem::path(call.report) / "report.html").string());
-  return kGood;
+  return write_calibration(calibration::calibrate_machine(request), call.output, call.report);
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 // understudy: the command, and the one place where every error becomes a line and an exit status.
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -13,15 +17,24 @@
 #include "cli/command.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/printable.h"
+#include "core/standard_streams.h"
 #include "core/version.h"
 
 namespace {
 
 using namespace understudy;
 
+/// The standard error may be closed: there is nobody to tell that.
 int fail(int status, const std::string& message) {
-  fmt::print(stderr, "understudy: {}\n", message);
+  std::fputs(fmt::format("understudy: {}\n", printable(message)).c_str(), stderr);
   return status;
+}
+
+/// An answer that did not arrive is none.
+int delivered(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  return fail(cli::kFailed, fmt::format("cannot write standard output: {}", std::strerror(errno)));
 }
 
 /// CLI11 would only say that a sub-command is missing.
@@ -41,7 +54,9 @@ void check_first_word(const CLI::App& app, int argc, char** argv) {
 
 std::string footer() {
   const std::string status =
-      "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed.\n";
+      "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed; "
+      "128 + the signal where "
+      "one ended it.\n";
   const std::vector<std::string> left_out = cli::left_out_commands();
   if (left_out.empty())
     return status + "Start with: understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out";
@@ -77,14 +92,20 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);  // the same bytes whatever the number of cores
+  keep_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write
   watch_for_interrupt();
   cli::remember_command_line(argc, argv);
   try {
-    return run(argc, argv);
+    return delivered(run(argc, argv));
   } catch (const InputError& e) {
     return fail(cli::kBadInput, e.what());
   } catch (const Interrupted&) {
-    return fail(cli::kFailed, "interrupted: nothing was written");
+    fail(cli::kFailed, "interrupted: nothing unfinished is left");
+    die_of_interrupt();
+    return cli::kFailed;
+  } catch (const std::bad_alloc&) {
+    return fail(cli::kFailed, "out of memory");
   } catch (const std::exception& e) {
     return fail(cli::kFailed, e.what());
   }

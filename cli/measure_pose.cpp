@@ -10,6 +10,7 @@
 #include "calibration/machine/camera_poses.h"
 #include "cli/measure_command.h"
 #include "cli/progress.h"
+#include "cli/seed_option.h"
 #include "core/interrupt.h"
 #include "core/units.h"
 #include "vision/boards/rig_pictures.h"
@@ -97,7 +98,7 @@ void add_measure_pose(CLI::App& measure, Action& action) {
   command
       ->add_option("--seed", call->seed,
                    "of the perturbed calibrations that the cameras' uncertainty comes from")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_check())
       ->capture_default_str();
   command->footer(
       "The pictures of boards that the rig names calibrate the cameras. One row a pose, with its covariance "

@@ -1,28 +1,67 @@
 #include "core/interrupt.h"
 
+#include <unistd.h>
+
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <string_view>
+#include <thread>
 
 #include "core/error.h"
+#include "core/partial_results.h"
 
 namespace understudy {
 namespace {
 
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+constexpr std::chrono::milliseconds kPatience{800}, kTick{50};
+
 std::atomic<bool> flag{false};
+std::atomic<int> received{0};
+
+void die_of(int number) {
+  std::signal(number, SIG_DFL);
+  sigset_t that;
+  sigemptyset(&that);
+  sigaddset(&that, number);
+  ::pthread_sigmask(SIG_UNBLOCK, &that, nullptr);
+  ::kill(::getpid(), number);
+  while (true) ::pause();
+}
 
 // A second signal ends the process at once, for a user who will not wait.
 void on_signal(int number) {
+  received.store(number);
   if (flag.exchange(true)) {
     std::signal(number, SIG_DFL);
     std::raise(number);
   }
 }
 
+/// Its own thread: it looks at the clock while the others work.
+void end_what_does_not_answer() {
+  while (received.load() == 0) std::this_thread::sleep_for(kTick);
+  std::this_thread::sleep_for(kPatience);
+  remove_partial_results();
+  constexpr std::string_view kSaid = "interrupted: nothing unfinished is left\n";
+  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, kSaid.data(), kSaid.size());
+  die_of(received.load());
+}
+
 }  // namespace
 
 void watch_for_interrupt() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  for (const int number : kSignals)  // one that is ignored (nohup, a shell's background) stays so
+    if (std::signal(number, on_signal) == SIG_IGN) std::signal(number, SIG_IGN);
+  // The signals are for the working threads: this one only waits.
+  sigset_t mine, before;
+  sigemptyset(&mine);
+  for (const int number : kSignals) sigaddset(&mine, number);
+  ::pthread_sigmask(SIG_BLOCK, &mine, &before);
+  std::thread(end_what_does_not_answer).detach();
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 bool interrupted() { return flag.load(); }
@@ -30,6 +69,10 @@ void set_interrupted(bool value) { flag.store(value); }
 
 void stop_if_interrupted() {
   if (interrupted()) throw Interrupted();
+}
+
+void die_of_interrupt() {
+  if (received.load() != 0) die_of(received.load());
 }
 
 }  // namespace understudy

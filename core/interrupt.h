@@ -3,11 +3,16 @@
 
 namespace understudy {
 
-/// SIGINT and SIGTERM set the flag from now on.
+/// From now on SIGINT, SIGTERM and SIGHUP set the flag. Work that does not answer within a second is ended:
+/// partial results (core/partial_results.h) go, and the process dies of the signal. So does a second signal,
+/// at once.
 void watch_for_interrupt();
 bool interrupted();
 /// Throws Interrupted when the flag is set.
 void stop_if_interrupted();
+/// Ends the process as the signal would have done, for whoever waits for it (a shell: 128 + its number).
+/// Returns where no signal came.
+void die_of_interrupt();
 /// For tests.
 void set_interrupted(bool value);
 

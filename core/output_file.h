@@ -1,36 +1,25 @@
-// Results appear under their final name only when they are whole: written beside it, then renamed.
+// Files are read whole, and results appear under their final name only when they are whole: written beside
+// it, then renamed.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
 namespace understudy {
 
-/// Replaces `path` with `content` in one step. Throws InputError naming the path when it cannot be written.
+constexpr std::size_t kFileMax = 1'000'000'000;  ///< [bytes], of any file that is read (docs/limits.md)
+
+/// Replaces `path` with `content` in one step; a link's target where it is a link. A device or a pipe gets
+/// the content as it is. Throws InputError where `path` cannot be written at all (its folder is missing, may
+/// not be written, or it is a folder), MachineError where writing fails (a full disk).
 void write_file(const std::filesystem::path& path, const std::string& content);
 
-/// Whole file as bytes. Throws InputError naming the path.
-std::string read_file(const std::filesystem::path& path);
+/// Throws InputError where write_file() could not put a file there: to be asked before long work.
+void check_writable(const std::filesystem::path& path);
 
-/// A folder of results that is filled under a temporary name beside `target` and renamed by commit().
-/// Destruction without commit removes the temporary folder. An older result under `target` is replaced
-/// only by commit(); a `target` that exists but does not look like our result (no `marker` file inside and
-/// not empty) is refused with InputError, so that no foreign folder is ever deleted.
-class OutputFolder {
- public:
-  OutputFolder(std::filesystem::path target, std::string marker);
-  ~OutputFolder();
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-
-  const std::filesystem::path& path() const { return working_; }
-  void commit();
-
- private:
-  std::filesystem::path target_;
-  std::filesystem::path working_;
-  std::string marker_;
-  bool committed_ = false;
-};
+/// Whole file or pipe as bytes; waits for a pipe until an interrupt. Throws InputError naming the path where
+/// it cannot be read to its end, is a folder or a device, or is larger than `limit` bytes.
+std::string read_file(const std::filesystem::path& path, std::size_t limit = kFileMax);
 
 }  // namespace understudy

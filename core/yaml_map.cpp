@@ -65,6 +65,19 @@ Unit unit_of(std::string_view key) {
 }
 
 constexpr std::size_t kWordsToList = 12;
+constexpr std::size_t kTextMax = 16'000'000;  // [bytes]
+
+/// YAML allows no control characters (YAML 1.2, 5.1); yaml-cpp takes them for the end of the text, or worse.
+void check_characters(const std::string& text, const std::string& file) {
+  Place at{file, 1, 0};
+  for (const char c : text) {
+    ++at.column;
+    if (c == '\n') ++at.line, at.column = 0;
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\r' && c != '\t') || byte == 0x7f)
+      throw InputError(at, fmt::format("not YAML: the control character 0x{:02x}", byte));
+  }
+}
 
 /// An empty value's mark is where the next word of the file begins: errors about one name its key's place.
 Place place_of(const YAML::Mark& mark, const std::string& file) {
@@ -139,6 +152,10 @@ YamlMap::YamlMap(const YAML::Node& node, std::string file, std::string path)
 }
 
 void YamlMap::read_text(const std::string& text, const std::string& file, const Read& read) {
+  if (text.size() > kTextMax)
+    throw InputError({file, 0, 0}, fmt::format("the file has {} bytes, more than {} (docs/limits.md)",
+                                               text.size(), kTextMax));
+  check_characters(text, file);
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.empty()) throw InputError({file, 0, 0}, "the file is empty");
@@ -172,7 +189,7 @@ void YamlMap::fail(const std::string& key, const std::string& message) const {
 }
 
 const YAML::Node* YamlMap::find(const std::string& key) {
-  known_.push_back(key);
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   const auto found = values_.find(key);
   if (found != values_.end()) return found->second.get();
   if (first_missing_.empty()) first_missing_ = key;

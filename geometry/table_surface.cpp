@@ -18,7 +18,9 @@ std::optional<double> TableSurface::ray_hit(const Vec3& origin, const Vec3& dire
   const double c = origin.z() - z(p);
   const double under_root = b * b - 4 * a * c;
   if (b >= 0 || under_root < 0) return std::nullopt;
-  return -2 * c / (b - std::sqrt(under_root));
+  const double distance = -2 * c / (b - std::sqrt(under_root));
+  if (!reaches(p + distance * d)) return std::nullopt;
+  return distance;
 }
 
 }  // namespace understudy::geometry

@@ -21,6 +21,7 @@ void read_drives(Keys keys, BuiltTolerances& t) {
 
 void read_optics(Keys keys, BuiltTolerances& t) {
   keys.read("camera_centre_px", {0, 1000}, "each coordinate of the principal point", t.camera_centre);
+  keys.read("distortion_k1", {0, 1}, "of the lens", t.distortion);
   keys.read("laser_power_permille", kShare, "of the laser's grey levels", t.laser_power);
   keys.read("waist_permille", kShare, "of the beam's waist", t.waist);
   keys.read("blur_permille", kShare, "of the optics' blur", t.blur);

@@ -20,6 +20,7 @@ struct BuiltTolerances {
   double blur = 0;           ///< share
   double ambient_light = 0;  ///< share
   double camera_centre = 0;  ///< [px], each coordinate of the principal point
+  double distortion = 0;     ///< of the lens, k1
   // The clamped part.
   double part_position = 0;  ///< [m], each coordinate
   double part_rotation = 0;  ///< [rad], about each axis of W

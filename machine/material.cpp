@@ -28,6 +28,8 @@ fs::path materials_folder() {
   return fs::is_directory(own, error) ? own : shipped_models_folder() / "materials";
 }
 
+}  // namespace
+
 fs::path find_material(const std::string& name_or_path) {
   if (name_or_path.empty()) throw InputError("the material has no name");
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".yaml") ||
@@ -44,6 +46,8 @@ fs::path find_material(const std::string& name_or_path) {
                                near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
                                fmt::join(names, ", ")));
 }
+
+namespace {
 
 double celsius(YamlMap& map, const std::string& key, Bounds bounds, const char* about) {
   return kCelsiusZero + map.quantity(key, bounds, about);

@@ -1,6 +1,7 @@
 // Filament materials: one YAML file each under models/materials (docs/materials.md explains every key).
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct Material {
 /// `name_or_path` is a name under models_folder()/materials or a path of a file. Throws InputError naming the
 /// known materials, or file, line, key, value and limit.
 Material load_material(const std::string& name_or_path);
+
+/// Its file. Throws InputError naming the known materials.
+std::filesystem::path find_material(const std::string& name_or_path);
 
 /// Names of the shipped materials, sorted.
 std::vector<std::string> material_names();

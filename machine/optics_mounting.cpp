@@ -50,6 +50,13 @@ void set_mounting(const OpticsMounting& mounting, Laser& laser, Microscope& micr
   microscope.camera.focal_px = mounting.focal_px;
 }
 
+void set_distortion(const std::vector<double>& brown, Camera& camera) {
+  camera.k1 = brown[0];
+  camera.k2 = brown[1];
+  camera.p1 = brown[2];
+  camera.p2 = brown[3];
+}
+
 double picture_scale(const MachineDescription& machine) {
   const Laser& laser = machine.laser;
   const Microscope& microscope = machine.microscope;

@@ -17,6 +17,9 @@ OpticsMounting moved(const OpticsMounting& from, const MountingVector& error);
 
 void set_mounting(const OpticsMounting& mounting, Laser& laser, Microscope& microscope);
 
+/// `brown`: k1, k2, p1, p2.
+void set_distortion(const std::vector<double>& brown, Camera& camera);
+
 /// [px/m] where the beam crosses the tip plane: within a few per cent of that at any gap.
 double picture_scale(const MachineDescription& machine);
 

@@ -104,7 +104,8 @@ constexpr const char* kTexts[] = {"verdict",
                                   "engine.version",
                                   "provenance.as_built",
                                   "provenance.machine_sha256",
-                                  "provenance.program_sha256"};
+                                  "provenance.program_sha256",
+                                  "provenance.inputs_sha256"};
 
 void count_findings(const rehearsal::Record& record, const std::set<std::string>& sections,
                     Metrics& metrics) {

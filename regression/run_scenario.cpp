@@ -7,9 +7,14 @@ namespace {
 
 constexpr double kShareOfOneRun = 0.1;  // of the progress shown when a series follows
 
-/// `error` says why there is no summary, when there is none.
+/// `result` says why there is no summary, when there is none.
 Metrics run_once(const Scenario& scenario, const RecordSink& sink, const Progress& progress,
-                 std::string& error) {
+                 ScenarioResult& result) {
+  const auto fail = [&](const std::exception& error, int status) {
+    result.error = error.what();
+    result.error_status = status;
+    return failed_run(status);
+  };
   try {
     rehearsal::RehearsalRequest request = request_of(scenario);
     request.keep_scene = static_cast<bool>(sink);
@@ -17,11 +22,9 @@ Metrics run_once(const Scenario& scenario, const RecordSink& sink, const Progres
     if (sink) sink(record);
     return metrics_of(record);
   } catch (const InputError& e) {
-    error = e.what();
-    return failed_run(2);
+    return fail(e, 2);
   } catch (const MachineError& e) {
-    error = e.what();
-    return failed_run(3);
+    return fail(e, 3);
   }
 }
 
@@ -71,12 +74,11 @@ ScenarioResult run_scenario(const Scenario& scenario, const ScenarioRun& run) {
   const auto report = [&](double share, const std::string& what) {
     if (run.progress) run.progress(share, what);
   };
-  std::string error;
   const Metrics own = run_once(
-      scenario, run.sink, [&](double s, const std::string& what) { report(one * s, what); }, error);
-  if (!error.empty() && !expects_refusal(scenario)) {
-    result.error = error;
-    return result;
+      scenario, run.sink, [&](double s, const std::string& what) { report(one * s, what); }, result);
+  if (!result.error.empty()) {
+    if (!expects_refusal(scenario)) return result;
+    result.error.clear(), result.error_status = 0;
   }
   std::vector<Metrics> machines;
   if (scenario.machines) {

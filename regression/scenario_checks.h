@@ -30,6 +30,7 @@ struct ScenarioResult {
   std::vector<Check> checks;
   std::string error;              ///< why it could not be judged; empty when it was
   std::optional<double> seconds;  ///< wall time; left out of files that must be reproducible
+  int error_status = 0;           ///< of a rehearsal that ended so: 2 bad input, 3 the machine failed
   bool passed() const;
 };
 

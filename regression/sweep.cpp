@@ -9,6 +9,7 @@
 #include "core/quantile.h"
 #include "core/run_journal.h"
 #include "core/units.h"
+#include "rehearsal/input_digest.h"
 #include "rehearsal/rehearse.h"
 
 namespace understudy::regression {
@@ -102,13 +103,15 @@ std::string line_of(const std::string& name, const Distribution& d, double low, 
 std::vector<SweepRow> sweep(const rehearsal::RehearsalRequest& request, std::uint64_t first, int count,
                             int threads, const Progress& progress, const std::string& journal_file) {
   std::vector<SweepRow> rows(static_cast<std::size_t>(count));
-  const auto rehearse_one = [&](std::size_t i) {
+  const auto machine = [&](std::size_t i) {
     rehearsal::RehearsalRequest one = request;
     one.seed = first + i;
     one.keep_scene = false;
-    return row_of(rehearsal::rehearse(one), one.seed);
+    return one;
   };
-  RunJournal journal(journal_file, fmt::format("sweep, from {}, {}", first, request.as_built));
+  const auto rehearse_one = [&](std::size_t i) { return row_of(rehearsal::rehearse(machine(i)), first + i); };
+  RunJournal journal(journal_file,
+                     journal_file.empty() ? "" : "sweep of " + rehearsal::inputs_sha256(machine(0)));
   if (!journal_file.empty()) journal.confirm(numbers_of(rehearse_one(0)));
   const auto run = [&](std::size_t i) {
     const auto known = journal.find(i);

@@ -108,6 +108,7 @@ struct Provenance {
   std::string as_built, command;
   std::vector<std::string> faults = {};  ///< what was made to go wrong, in words
   std::string machine_before_sha256 = {};
+  std::string inputs_sha256 = {};  ///< of all inputs (input_digest.h)
 };
 
 /// A strand in air as the report lists it.

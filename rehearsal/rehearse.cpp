@@ -21,6 +21,7 @@
 #include "rehearsal/findings.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/gap_belief.h"
+#include "rehearsal/input_digest.h"
 #include "rehearsal/process_check.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/rotary_words.h"
@@ -29,6 +30,7 @@
 #include "rehearsal/surface.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/as_built/truth.h"
+#include "toolpath/duration.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
@@ -85,6 +87,8 @@ TwinSetup prepare(const RehearsalRequest& request) {
   setup.machine = machine::load_machine(request.machine, setup.calibrated);
   if (!request.program.empty())
     setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
+  toolpath::check_duration(setup.program, (setup.machine.X_WB * setup.machine.X_BT_home).translation(),
+                           request.max_time);
   if (setup.machine.tool.prints()) {
     setup.material =
         machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);
@@ -138,6 +142,7 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
   }
   record.provenance = {kVersion,     setup.machine.sha256,  setup.program.sha256,
                        request.seed, setup.as_built.source, request.command};
+  record.provenance.inputs_sha256 = inputs_sha256(request, setup.program.sha256);
   for (const sim::FaultEvent& event : setup.faults)
     record.provenance.faults.push_back(describe(event, setup.machine));
   for (const sim::CameraFaultEvent& event : setup.camera_faults)

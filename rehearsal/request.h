@@ -54,8 +54,9 @@ struct RehearsalRequest {
   DialectRequest dialect;
   SurfaceRequest surface;
   RegistrationRequest registration;
-  std::string command;     ///< for the record: how a user repeats this
-  bool keep_scene = true;  ///< keep what pictures are drawn from; sweeps leave it out
+  std::string command;      ///< for the record: how a user repeats this
+  double max_time = 86400;  ///< [s], of the program; what would take longer is refused
+  bool keep_scene = true;   ///< keep what pictures are drawn from; sweeps leave it out
   bool compare_without_gap_control =
       true;  ///< run the print again with gap control off, for open-loop figures
 };

@@ -76,7 +76,8 @@ Surface table_around(const geometry::TableSurface& top, const Vec3& p_W) {
   const Vec3 normal = top.normal(middle);
   Surface s;
   for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-    const Vec2 way = kTableHalf * Vec2(x, y);
+    const Vec2 corner = middle + kTableHalf * Vec2(x, y);
+    const Vec2 way = corner.cwiseMax(-top.half_sides).cwiseMin(top.half_sides) - middle;
     const double rise = -normal.head<2>().dot(way) / normal.z();
     s.vertices.push_back({middle.x() + way.x(), middle.y() + way.y(), top.z(middle) + rise});
   }
@@ -201,7 +202,7 @@ void LaserView::State::gather(const LaserScene& scene, const Region& region) {
       add(tessellate(body, kSegments), X_CT, Owner::tool, scene, region);
     }
   }
-  if (scene.table)
+  if (scene.table && scene.table_top.reaches(scene.X_WT.translation().head<2>()))
     add(table_around(scene.table_top, scene.X_WT.translation()), X_CW, Owner::scenery, scene, region);
 }
 

@@ -3,21 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
+#include "core/brown_model.h"
+
 namespace understudy::renderer {
 namespace {
 
-/// Newton on Brown's model. Where the model folds over, beyond what a real lens does, the last step stands.
-Vec2 undistort(const Camera& camera, const Vec2& pixel) {
-  const auto project = [&](const Vec2& r) { return *camera.project(Vec3(r.x(), r.y(), 1)); };
-  Vec2 ray = (pixel - camera.centre_px) / camera.focal_px;
+/// Newton on Brown's model from the ray of a pixel near by. Where the model folds over, beyond what a real
+/// lens does, the last step stands.
+Vec2 undistort(const Camera& camera, const Vec2& pixel, Vec2 ray) {
+  const Vec2 wanted = (pixel - camera.centre_px) / camera.focal_px;
+  const double close_enough = 1e-9 / camera.focal_px;
   for (int i = 0; i < 20; ++i) {
-    const Vec2 error = project(ray) - pixel;
-    if (error.norm() < 1e-9) break;
-    constexpr double kStep = 1e-6;
-    Eigen::Matrix2d J;
-    J.col(0) = (project(ray + Vec2(kStep, 0)) - project(ray - Vec2(kStep, 0))) / (2 * kStep);
-    J.col(1) = (project(ray + Vec2(0, kStep)) - project(ray - Vec2(0, kStep))) / (2 * kStep);
-    ray -= J.inverse() * error;
+    const DistortedRay seen = distort(camera, ray);
+    const Vec2 error = seen.ray - wanted;
+    if (error.norm() < close_enough) break;
+    ray -= seen.slopes.inverse() * error;
   }
   return ray;
 }
@@ -34,7 +36,9 @@ Lens::Lens(const Camera& camera, int margin) : camera_(camera), margin_(margin) 
   const int first = -kSamplesPerPixel * margin;
   for (int j = first; j < first + height_; ++j) {
     for (int i = first; i < first + width_; ++i) {
-      ideal_.push_back(undistort(camera, Vec2(pixel_of_sample(i), pixel_of_sample(j))));
+      const Vec2 pixel(pixel_of_sample(i), pixel_of_sample(j));
+      const Vec2 near = i == first ? Vec2((pixel - camera.centre_px) / camera.focal_px) : ideal_.back();
+      ideal_.push_back(undistort(camera, pixel, near));
     }
   }
 }

@@ -109,7 +109,7 @@ Remedy remedy_of(TruthGroup group, const std::string& as_built) {
                  : Remedy{"tolerances.mounting",
                           "calibrate laser and microscope: understudy calibrate gap-sensor"};
     case TruthGroup::camera:
-      return {"tolerances.optics.camera_centre_px, blur_permille",
+      return {"tolerances.optics.camera_centre_px, distortion_k1, blur_permille",
               "calibrate the camera (understudy calibrate gap-sensor), focus it"};
     case TruthGroup::light:
       return {"tolerances.optics.laser_power_permille, waist_permille, ambient_light_permille",

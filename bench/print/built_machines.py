@@ -5,7 +5,7 @@ calibrations that a lab would make of it and, last, with the part found first.
 usage: built_machines.py UNDERSTUDY OUT.jsonl [--first SEED] [--last SEED] [--cases CASE...] [--jobs N]
 cases: drawn, geometry (calibrated), sensor (calibrated, too), registered (that, and the part found first)
 
-OUT.jsonl gets a line for each machine; what stands there already is not run again. Prints a table over all of them:
+OUT.jsonl gets a line for each machine; one that stands there with all its cases is not run again. Prints a table over all of them:
 machines that are GO, that begin in the band, that keep 99 % of the line in it, and that touch.
 """
 
@@ -79,6 +79,22 @@ def table(machines):
               f"stated {max(f['normal_sigma_max_um'] for f in found):.1f} um at most; chi-square {scale:.2f} for a degree of freedom")
 
 
+def known_machines(path):
+    """Of the file's lines, the last of each machine; a line that a kill cut off goes."""
+    machines = {}
+    if not os.path.exists(path):
+        return machines
+    with open(path, "r+", encoding="utf-8") as file:
+        text = file.read()
+        whole = text[:text.rfind("\n") + 1]
+        if whole != text:
+            file.seek(0)
+            file.truncate(len(whole.encode()))
+    for machine in map(json.loads, whole.splitlines()):
+        machines[machine["seed"]] = machine
+    return machines
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("understudy")
@@ -89,12 +105,10 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
     understudy = os.path.abspath(arguments.understudy)
-    machines = {}
-    if os.path.exists(arguments.out):
-        with open(arguments.out, encoding="utf-8") as file:
-            machines = {machine["seed"]: machine for machine in map(json.loads, file)}
+    machines = known_machines(arguments.out)
     wanted = range(arguments.first, arguments.last + 1)
-    missing = [seed for seed in wanted if seed not in machines]
+    asked = {f"{case} {control}" for case in arguments.cases for control in CONTROLS}
+    missing = [seed for seed in wanted if not asked <= machines.get(seed, {"prints": {}})["prints"].keys()]
     with open(arguments.out, "a", encoding="utf-8") as file, ThreadPoolExecutor(arguments.jobs) as pool:
         for machine in pool.map(lambda seed: machine_of(understudy, seed, arguments.cases), missing):
             machines[machine["seed"]] = machine

@@ -5,6 +5,7 @@
 
 #include "calibration/bundle/session_time.h"
 #include "calibration/strut_model.h"
+#include "core/cross_matrix.h"
 
 namespace understudy::calibration {
 namespace {
@@ -17,12 +18,6 @@ using Eigen::VectorXd;
 constexpr double kExactLength = 1e-7, kExactShare = 1e-7, kExactCorner = 0.01;  // [m], 1 or [rad], [px]
 
 double weight(double sigma, double least) { return 1 / std::max(sigma, least); }
-
-Mat3 cross_matrix(const Vec3& v) {
-  Mat3 matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
 
 std::vector<Index> range(Index first, Index count) {
   std::vector<Index> columns;
@@ -73,7 +68,7 @@ bool add_board(const BundleProblem& problem, const BundleState& state, const Bun
                               board.corner(i % board.columns, i / board.columns));
     if (!vision::pixel_slopes(state.cameras[camera], X_WG * corner.place, at)) return false;
     const Eigen::Matrix<double, 2, 3> by_G = at.by_point * X_WG.linear();
-    const Index row = 2 * i;
+    const Index row = Index{2} * i;
     residual.segment<2>(row) = w * (at.pixel - seen.corners_px[static_cast<std::size_t>(i)]);
     by_shared.middleRows<2>(row).leftCols<vision::kCameraNumbers>() = w * at.by_camera;
     by_shared.middleRows<2>(row).rightCols<BundleLayout::kPrint>() = w * by_G * corner.by_print;

@@ -131,6 +131,7 @@ std::vector<PoseTargets> read_targets(const std::string& file) {
       throw InputError(table.place(), "the covariance c11_px2, c12_px2, c22_px2 is not positive definite");
   }
   std::vector<PoseTargets> all;
+  all.reserve(poses.size());
   for (auto& [number, pose] : poses) all.push_back(pose);
   return all;
 }

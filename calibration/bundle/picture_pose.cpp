@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include "calibration/bundle/session_time.h"
+#include "core/cross_matrix.h"
 #include "vision/boards/pixel_slopes.h"
 
 namespace understudy::calibration {
@@ -26,8 +27,7 @@ bool picture_pose(const BundleProblem& problem, const BundleState& state, std::s
         const Vec3 p_W = problem.X_WB * (sample.X_BT.translation() + arm);
         if (!vision::pixel_slopes(state.cameras[c], p_W, at)) return false;
         Eigen::Matrix<double, 3, 6> motion;
-        motion << Mat3::Identity(),
-            (Mat3() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0).finished();
+        motion << Mat3::Identity(), -cross_matrix(arm);
         const Eigen::Matrix<double, 2, 6> J = at.by_point * problem.X_WB.linear() * motion;
         const vision::PixelPoint& seen = problem.poses[pose].targets[c][k];
         const Eigen::LLT<Eigen::Matrix2d> weight(seen.covariance);

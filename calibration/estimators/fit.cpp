@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/cross_matrix.h"
+
 namespace understudy::calibration {
 namespace {
 
@@ -64,8 +66,7 @@ Fit fit(Objective& objective, const HexapodParameters& start, const Unknowns& un
 }
 
 Mat3 inverse_right_jacobian(const Vec3& e) {
-  Mat3 x;
-  x << 0, -e.z(), e.y(), e.z(), 0, -e.x(), -e.y(), e.x(), 0;
+  const Mat3 x = cross_matrix(e);
   const double angle = e.norm();
   // (1 / angle^2) (1 - angle/2 cot(angle/2)), by its series where that cancels.
   const double square = angle < 1e-2 ? 1.0 / 12 + angle * angle / 720

@@ -76,7 +76,7 @@ void check_axes_moved(const Measurements& measurements, const machine::MachineDe
 TipCovariance tip_covariance(const MachineCalibration& result, const ChainCalibration& found,
                              const Measurements& measurements) {
   if (found.covariance.size() == 0) return {};
-  const TipCovariance tip = chain_tip(result.machine, found);
+  TipCovariance tip = chain_tip(result.machine, found);
   if (!measurements.frame) return tip;
   return in_frame(tip, *measurements.frame, middle_of_tips(measurements), result.machine.X_WB);
 }

@@ -72,7 +72,7 @@ void check_model(const machine::MachineDescription& machine, const Measurements&
 TipCovariance tip_covariance(const MachineCalibration& result, const Calibration& found,
                              const Unknowns& unknowns, const Measurements& measurements) {
   if (found.covariance.size() == 0) return {};
-  const TipCovariance tip = hexapod_tip(result.machine, found, unknowns);
+  TipCovariance tip = hexapod_tip(result.machine, found, unknowns);
   if (!measurements.frame) return tip;
   return in_frame(tip, *measurements.frame, middle_of_tips(measurements), result.machine.X_WB);
 }

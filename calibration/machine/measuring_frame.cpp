@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "core/cross_matrix.h"
+
 namespace understudy::calibration {
 namespace {
 
@@ -16,7 +18,7 @@ using Rows = Eigen::Matrix<double, 6, kMotion>;
 Rows rows_of(const Vec3& r) {
   Rows rows = Rows::Zero();
   rows.block<3, 3>(0, 0).setIdentity();
-  rows.block<3, 3>(0, 3) << 0, r.z(), -r.y(), -r.z(), 0, r.x(), r.y(), -r.x(), 0;
+  rows.block<3, 3>(0, 3) = -cross_matrix(r);
   rows.block<3, 6>(0, 6) << r.x(), 0, 0, 0, r.z(), r.y(), 0, r.y(), 0, r.z(), 0, r.x(), 0, 0, r.z(), r.y(),
       r.x(), 0;
   rows.block<3, 3>(3, 3) = kLever * Mat3::Identity();

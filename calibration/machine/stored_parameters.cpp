@@ -4,18 +4,13 @@
 
 #include "calibration/absorb_zeros.h"
 #include "calibration/machine/estimation_report.h"
+#include "core/cross_matrix.h"
 
 namespace understudy::calibration {
 namespace {
 
 constexpr Eigen::Index kDeviationRow = kGeometryParameters;
 constexpr Eigen::Index kWorkRow = 6;  // after the tool's position and rotation
-
-Mat3 cross_matrix(const Vec3& v) {
-  Mat3 matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
 
 /// Of the motion (p + t + w x p, exp(w) R), told in B, that the measuring frame makes of every pose.
 Mat6 frame_covariance(const Measurements& measurements, const machine::MachineDescription& machine) {

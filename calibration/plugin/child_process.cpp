@@ -11,9 +11,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "calibration/plugin/box.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 
@@ -80,8 +82,8 @@ class NoBrokenPipeSignal {
   sigset_t pipe_, before_;
 };
 
-/// posix_spawn, not Boost.Process: 1.74 resets no signal mask and has no timed wait for two pipes without
-/// Asio.
+/// In a box (box.h). posix_spawn, not Boost.Process: 1.74 resets no signal mask and has no timed wait for two
+/// pipes without Asio.
 class Child {
  public:
   Child(const std::string& command, const Pipe& in, const Pipe& out, const Pipe& err) {
@@ -100,9 +102,13 @@ class Child {
     posix_spawnattr_setpgroup(&attributes, 0);
     posix_spawnattr_setflags(&attributes,
                              POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-    std::string shell = "/bin/sh", option = "-c", words = command;
-    char* arguments[] = {shell.data(), option.data(), words.data(), nullptr};
-    const int failed = posix_spawn(&pid_, shell.c_str(), &files, &attributes, arguments, environ);
+    std::vector<std::string> words = boxed(command);
+    std::vector<char*> arguments, environment{mark_.data()};
+    for (std::string& word : words) arguments.push_back(word.data());
+    for (char** entry = environ; *entry; ++entry) environment.push_back(*entry);
+    arguments.push_back(nullptr), environment.push_back(nullptr);
+    const int failed =
+        posix_spawn(&pid_, arguments[0], &files, &attributes, arguments.data(), environment.data());
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
     if (failed != 0) throw MachineError(fmt::format("no plug-in can be started: {}", std::strerror(failed)));
@@ -118,11 +124,12 @@ class Child {
            info.si_pid == pid_;
   }
 
-  /// Kills what is left of the group and takes the status of its first process.
+  /// Kills what is left of all that it started and takes the status of its first process.
   int end() {
     if (reaped_) return status_;
     ::kill(-pid_, SIGKILL);
     ::kill(pid_, SIGKILL);
+    kill_marked(mark_);
     while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
     }
     reaped_ = true;
@@ -130,6 +137,7 @@ class Child {
   }
 
  private:
+  std::string mark_ = next_run_mark();
   pid_t pid_ = -1;
   int status_ = 0;
   bool reaped_ = false;

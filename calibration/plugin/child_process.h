@@ -1,5 +1,6 @@
 // An external program that gets text on standard input and answers on standard output. Whatever it does
-// (crash, hang, flood), the caller gets a reason within the time limit, and no process of its group is left.
+// (crash, hang, flood), the caller gets a reason within the time limit, and no process that it started is
+// left.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +22,9 @@ struct ProcessRun {
   double seconds = 0;  ///< wall time
 };
 
-/// Runs `command` by /bin/sh in a process group of its own, which is killed when the program ends, too. Only
-/// throws Interrupted, when the user asked for it, and MachineError, when no process can be started.
+/// Runs `command` by /bin/sh in a box (box.h). All that it started is killed when it ends, whatever session
+/// or group that began, and when we die. Only throws Interrupted, when the user asked for it, and
+/// MachineError, when no process can be started.
 ProcessRun run_process(const std::string& command, const std::string& input,
                        const ProcessLimits& limits = {});
 

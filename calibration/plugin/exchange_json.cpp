@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "calibration/plugin/child_process.h"
+#include "core/json_depth.h"
 #include "core/units.h"
 
 namespace understudy::calibration::exchange {
@@ -80,6 +81,8 @@ Json problem_value(const std::string& machine) {
 }
 
 std::string read_json(const std::string& text, const std::function<void(const Json&)>& read) {
+  if (nests_deeper(text))
+    return fmt::format("answer nests lists or objects more than {} deep", kJsonDepthMax);
   try {
     const Json answer = Json::parse(text);
     check_schema(answer);

@@ -10,9 +10,11 @@
 #include "cli/jobs_option.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
+#include "cli/seed_option.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "core/units.h"
 #include "report/calibration_benchmark_report.h"
 #include "report/page/calibration_benchmark_page.h"
@@ -119,7 +121,7 @@ int run_calibration(const BenchmarkCall& call) {
   if (call.tables) return run_tables(call);
   const studies::CalibrationBenchmarkRequest request = request_of(call);
   const std::string folder = call.folder.empty() ? "out/benchmark-calibration" : call.folder;
-  OutputFolder out(folder, "benchmark.json");
+  OutputFolder out(folder);
   studies::CalibrationBenchmark benchmark;
   {
     ProgressLine line;
@@ -188,7 +190,9 @@ void add_benchmark_calibration(CLI::App& benchmark, Action& action) {
   command->add_option("--plugin-timeout", call->request.plugin_limits.time, "of one problem, s")
       ->capture_default_str();
   add_condition_options(*command, *call);
-  command->add_option("--seed", call->request.seed, "of all that is drawn")->capture_default_str();
+  command->add_option("--seed", call->request.seed, "of all that is drawn")
+      ->check(seed_check())
+      ->capture_default_str();
   add_jobs(*command, call->request.threads);
   command->add_option("--out", call->folder, "folder of results; else out/benchmark-calibration");
   command->add_flag("--tables", call->tables,

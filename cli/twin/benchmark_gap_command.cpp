@@ -8,8 +8,10 @@
 #include "cli/jobs_option.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
+#include "cli/seed_option.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "machine/description.h"
 #include "report/page/gap_benchmark_page.h"
 #include "studies/gap/gap_benchmark.h"
@@ -31,7 +33,7 @@ int run_gap(const GapCall& call) {
   request.command = command_line();
   if (request.program.empty())
     request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
-  OutputFolder out(call.folder, "gap.json");
+  OutputFolder out(call.folder);
   studies::GapBenchmark benchmark;
   {
     ProgressLine line;
@@ -80,7 +82,7 @@ void add_benchmark_gap(CLI::App& benchmark, Action& action) {
   command->add_option("--fault", request.faults, "of faulted approaches and prints; else all take turns")
       ->delimiter(',');
   command->add_option("--seed", request.seed, "of the machines and of all noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_check())
       ->capture_default_str();
   command->add_option("--program", request.program, "of the bottle's line; else scenarios/song-bottle.gcode");
   add_jobs(*command, request.threads);

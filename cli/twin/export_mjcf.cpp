@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/machine_option.h"
+#include "cli/seed_option.h"
 #include "core/output_file.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
@@ -37,7 +38,9 @@ void add_export_mjcf(CLI::App& command, Action& action) {
   mjcf->add_option(
       "--as-built", request->as_built,
       "nominal, sampled, manufactured, calibrated or a file; without it as the machine file has it");
-  mjcf->add_option("--seed", request->seed, "of the as-built errors")->capture_default_str();
+  mjcf->add_option("--seed", request->seed, "of the as-built errors")
+      ->check(seed_check())
+      ->capture_default_str();
   mjcf->add_option("-o,--output", request->output, "file to write")->required();
   mjcf->callback([=, &action] { action = [=] { return export_mjcf(*request); }; });
 }

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
+#include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -104,7 +105,7 @@ void add_register(CLI::App& app, Action& action) {
   command->add_option("--as-built", call->request.as_built,
                       "the machine and the part that stand there, as for `rehearse`");
   command->add_option("--seed", call->request.seed, "of the as-built errors and of all noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_check())
       ->capture_default_str();
   command->add_option("-o,--output", call->output, "pose of the part with its covariance, a .yaml")
       ->required();

@@ -9,9 +9,11 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
+#include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "rehearsal/finding_groups.h"
 #include "rehearsal/rehearse.h"
 #include "rehearsal/verdict.h"
@@ -95,10 +97,22 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("report: {}\n", (std::filesystem::path(folder) / "report.html").string());
 }
 
+/// A file that shall lie in the folder of results is one of them, written where they are.
+std::string among_results(const std::string& file, const std::string& folder, const OutputFolder& out) {
+  namespace fs = std::filesystem;
+  if (file.empty()) return file;
+  const auto whole = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
+  const fs::path name = whole(file).lexically_relative(whole(fs::path(folder) / "."));
+  if (name.empty() || *name.begin() == "..") return file;
+  fs::create_directories((out.path() / name).parent_path());
+  return (out.path() / name).string();
+}
+
 int rehearse(const rehearsal::RehearsalRequest& asked, const std::string& folder) {
   rehearsal::RehearsalRequest request = asked;
   request.command = command_line();
-  OutputFolder out(folder, "summary.json");
+  OutputFolder out(folder);
+  request.surface.as_printed = among_results(asked.surface.as_printed, folder, out);
   rehearsal::Record record;
   std::vector<report::Illustration> pictures;
   {
@@ -189,8 +203,10 @@ void add_rehearse(CLI::App& app, Action& action) {
       ->add_option("--engine", request->engine,
                    "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
       ->capture_default_str();
-  command->add_option("--fixture", request->fixture,
-                      "the inserted part: an STL in mm, or a name under models/parts");
+  command
+      ->add_option("--fixture", request->fixture,
+                   "the inserted part: an STL in mm, or a name under models/parts")
+      ->check([](const std::string& word) { return word.empty() ? "is empty: leave the option out" : ""; });
   command->add_option("--material", request->material,
                       "filament: a name under models/materials or a file; the machine's own unless given");
   command->add_option(
@@ -200,7 +216,7 @@ void add_rehearse(CLI::App& app, Action& action) {
       "calibrated: what the calibration of --machine leaves open; without it calibrated where --machine "
       "has a calibration, else sampled");
   command->add_option("--seed", request->seed, "of the as-built errors and of all noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_check())
       ->capture_default_str();
   command->add_option(
       "--gap-control", request->gap_control,
@@ -215,6 +231,11 @@ void add_rehearse(CLI::App& app, Action& action) {
   add_tolerances(*command, *request);
   add_dialect(*command, request->dialect);
   add_surface(*command, request->surface);
+  command
+      ->add_option("--max-time", request->max_time,
+                   "seconds that the program may take at least; more is refused")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_flag("!--no-pictures", request->keep_scene,
                     "leave the drawings of machine and part out of the report");
   command->add_option("--out", *folder, "folder of results")->capture_default_str();

@@ -9,6 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/machine_option.h"
+#include "cli/seed_option.h"
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/units.h"
@@ -69,7 +70,7 @@ void add_render(CLI::App& app, Action& action) {
   command->add_option("--layer", call->request.layer, "0 (nearest) to 10, of the chessboard")
       ->capture_default_str();
   command->add_option("--seed", call->request.seed, "of noise and surface")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_check())
       ->capture_default_str();
   command->add_option("-o,--output", call->output, "IMAGE.png; its truth goes to IMAGE.json")->required();
   command->footer("Without --pose: home; laser: above the table, at the gap that the machine aims at.");

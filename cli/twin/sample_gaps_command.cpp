@@ -8,7 +8,9 @@
 
 #include "cli/command.h"
 #include "cli/machine_option.h"
+#include "cli/seed_option.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "report/picture/png.h"
@@ -34,7 +36,7 @@ int run_sample_gaps(const SampleGapsCall& call) {
   request.height_sigma = kMicrometre * call.height_sigma_um;
   request.speckle = !call.no_speckle;
   const auto machine = machine::load_machine(call.machine);
-  OutputFolder folder(call.output, "table.csv");
+  OutputFolder folder(call.output);
   const auto sample =
       studies::sample_gaps(request, machine, [&](const std::string& name, const Image& picture) {
         write_file(folder.path() / name, report::encode_png(picture));
@@ -81,7 +83,7 @@ void add_sample_gaps(CLI::App& app, Action& action) {
   command
       ->add_option("--seed", call->request.seed,
                    "of the machine as built, the flat's roughness and the noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_check())
       ->capture_default_str();
   command->add_option("-o,--output", call->output, "folder: pictures, table.csv, and the truth under truth/")
       ->required();

@@ -11,9 +11,11 @@
 #include "cli/machine_option.h"
 #include "cli/noise_option.h"
 #include "cli/progress.h"
+#include "cli/seed_option.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "core/units.h"
 #include "report/picture/png.h"
 #include "studies/calibration/sample_poses.h"
@@ -53,7 +55,7 @@ int run_sample(const SampleCall& call) {
   std::optional<OutputFolder> folder;
   studies::PictureRecord record;
   if (!call.pictures.empty()) {
-    folder.emplace(call.pictures, "rig.yaml");
+    folder.emplace(call.pictures);
     for (const char* inner : {"boards", "poses", "truth"})
       std::filesystem::create_directories(folder->path() / inner);
     record.keep = [&](const std::string& name, const Image& picture) {
@@ -135,7 +137,7 @@ void add_sample_poses(CLI::App& app, Action& action) {
       ->expected(2);
   add_plant_options(*command, *call);
   command->add_option("--seed", call->request.seed, "of poses, twin and noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_check())
       ->capture_default_str();
   command->add_option("-o,--output", call->output, "CSV (docs/calibration-data.md)")->required();
   command->callback([=, &action] { action = [=] { return run_sample(*call); }; });

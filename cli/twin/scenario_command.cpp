@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -7,8 +9,9 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/progress.h"
-#include "core/interrupt.h"
+#include "core/error.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "regression/junit.h"
 #include "regression/run_scenario.h"
 #include "regression/scenario_file.h"
@@ -42,16 +45,29 @@ void print_result(const regression::ScenarioResult& result) {
 
 regression::RecordSink results_in(const fs::path& folder) {
   return [folder](const rehearsal::Record& record) {
-    OutputFolder out(folder, "summary.json");
+    OutputFolder out(folder);
     report::write_results(record, report::draw_scene(*record.scene), out.path());
     out.commit();
   };
+}
+
+/// Each has a folder of its file's name.
+void check_folders(const std::vector<regression::Scenario>& scenarios) {
+  std::map<std::string, fs::path> taken;
+  for (const auto& scenario : scenarios) {
+    const auto [other, is_new] = taken.emplace(scenario.file.stem().string(), scenario.file);
+    if (!is_new)
+      throw InputError(fmt::format("{} and {} would write into one folder of --out: rename one",
+                                   other->second.string(), scenario.file.string()));
+  }
 }
 
 int run(const ScenarioRequest& request) {
   check_jobs(request.threads);
   std::vector<regression::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
   for (const auto& file : scenario_files(request.paths)) scenarios.push_back(regression::load_scenario(file));
+  if (!request.folder.empty()) check_folders(scenarios);
+  if (!request.junit.empty()) check_writable(request.junit);
   std::vector<regression::ScenarioResult> results;
   int failed = 0;
   for (const auto& scenario : scenarios) {
@@ -73,6 +89,8 @@ int run(const ScenarioRequest& request) {
   }
   if (!request.junit.empty()) write_file(request.junit, regression::junit_xml(results));
   fmt::print("{} passed, {} failed\n", results.size() - static_cast<std::size_t>(failed), failed);
+  for (const int status : {kBadInput, kFailed})
+    if (std::ranges::count(results, status, &regression::ScenarioResult::error_status) > 0) return status;
   return failed == 0 ? kGood : kNo;
 }
 

@@ -7,9 +7,11 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/progress.h"
+#include "cli/seed_option.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "core/units.h"
 #include "machine/description.h"
 #include "regression/run_scenario.h"
@@ -56,7 +58,7 @@ int run_budget(const SweepRequest& r) {
   check_jobs(r.threads);
   request.print = print_of(r);
   fmt::print(stderr, "{}\n", report::budget_cost(studies::plan_budget(request), request.samples));
-  OutputFolder out(r.folder, "budget.json");
+  OutputFolder out(r.folder);
   request.journal = journal_of(r);
   studies::ErrorBudget budget;
   {
@@ -83,7 +85,7 @@ int run_sweep(const SweepRequest& r) {
   check_jobs(r.threads);
   const auto request = print_of(r);
   const auto machine = machine::load_machine(request.machine);
-  OutputFolder out(r.folder, "sweep.csv");
+  OutputFolder out(r.folder);
   const std::string journal = journal_of(r);
   std::vector<regression::SweepRow> rows;
   {
@@ -116,6 +118,7 @@ void add_sweep(CLI::App& app, Action& action) {
   command->add_option("--as-built", request->as_built,
                       "sampled, manufactured or calibrated, in place of the scenario's");
   command->add_option("--first-seed", request->first_seed, "seed of the first machine")
+      ->check(seed_check())
       ->capture_default_str();
   add_jobs(*command, request->threads);
   command->add_option("--out", request->folder, "folder of results")->capture_default_str();

@@ -13,6 +13,7 @@
 #include "cli/progress.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
@@ -52,7 +53,7 @@ int run_workspace(const WorkspaceCall& call) {
   const auto machine = machine::load_machine(call.machine);
   auto study = studies::plan_workspace(machine, options_of(call));
   const std::string folder = call.folder.empty() ? "out/workspace-" + machine.name : call.folder;
-  OutputFolder out(folder, "workspace.json");
+  OutputFolder out(folder);
   {
     ProgressLine line;
     studies::evaluate(study, [&](double share) { line.show(share, "workspace of " + machine.name); });

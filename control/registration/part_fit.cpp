@@ -11,6 +11,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "core/assert.h"
+#include "core/cross_matrix.h"
 #include "core/units.h"
 
 namespace understudy::control {
@@ -231,12 +232,10 @@ Eigen::Matrix<double, 1, 6> distance_row(const Vec3& p_W, const Vec3& normal_W, 
 }
 
 Mat6 tolerance_root(const PartTolerance& tolerance, const Vec3& reference_W) {
-  Mat3 cross;
-  cross << 0, -reference_W.z(), reference_W.y(), reference_W.z(), 0, -reference_W.x(), -reference_W.y(),
-      reference_W.x(), 0;
   Mat6 root = Mat6::Zero();
   root.topLeftCorner<3, 3>() = tolerance.position * Mat3::Identity();
-  root.topRightCorner<3, 3>() = -tolerance.rotation * cross;  // a turn about the origin shifts the reference
+  // A turn about the origin shifts the reference.
+  root.topRightCorner<3, 3>() = -tolerance.rotation * cross_matrix(reference_W);
   root.bottomRightCorner<3, 3>() = tolerance.rotation * Mat3::Identity();
   return root;
 }

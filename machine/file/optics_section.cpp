@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "machine/optics_mounting.h"
 
 namespace understudy::machine {
 namespace {
@@ -52,10 +53,7 @@ void read_microscope(YamlMap& map, Microscope& microscope) {
   camera.centre_px = {centre[0], centre[1]};
   const std::vector<double> distortion =
       map.quantities("distortion", 4, {-10, 10}, "of the lens: k1, k2, p1, p2 (Brown)");
-  camera.k1 = distortion[0];
-  camera.k2 = distortion[1];
-  camera.p1 = distortion[2];
-  camera.p2 = distortion[3];
+  set_distortion(distortion, camera);
 
   microscope.exposure = map.quantity("exposure_ms", {0.001, 10000}, "of a frame");
   microscope.transfer =

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/xml.h"
 
 namespace understudy::machine {
 namespace {
@@ -46,6 +47,9 @@ class QuietConsole final : public console_bridge::OutputHandler {
   std::string message_;  // the first two errors: the value, and the element that it stands in
 };
 
+constexpr int kLinksMax = 1000;  // docs/limits.md
+constexpr std::size_t kBytesMax = 64'000'000;
+
 class UrdfReader {
  public:
   UrdfReader(const std::filesystem::path& file, const std::string& base_link, const std::string& tool_link);
@@ -53,6 +57,7 @@ class UrdfReader {
 
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError({file_, 0, 0}, message); }
+  void check_size(const std::string& text) const;
   void check_tree() const;
   urdf::LinkConstSharedPtr link(const std::string& name) const;
   /// Joints from a link up to the root.
@@ -75,7 +80,8 @@ class UrdfReader {
 UrdfReader::UrdfReader(const std::filesystem::path& file, const std::string& base_link,
                        const std::string& tool_link)
     : file_(file.string()), base_name_(base_link), tool_name_(tool_link) {
-  const std::string text = read_file(file);
+  const std::string text = read_file(file, kBytesMax);
+  check_size(text);
   QuietConsole console;
   try {
     model_ = urdf::parseURDF(text);
@@ -87,7 +93,22 @@ UrdfReader::UrdfReader(const std::filesystem::path& file, const std::string& bas
     fail("is no URDF: " + (console.message().empty() ? "unknown reason" : console.message()));
 }
 
-// urdfdom takes a link with two parents, and leaves one of them out without a word.
+// urdfdom recurses into elements and links, however many there are.
+void UrdfReader::check_size(const std::string& text) const {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
+    fail(fmt::format("is no URDF: elements are nested more than {} deep", TINYXML2_MAX_ELEMENT_DEPTH));
+  if (document.RootElement() == nullptr) return;  // urdfdom's message says more
+  for (const char* kind : {"link", "joint"}) {
+    int count = 0;
+    for (const auto* e = document.RootElement()->FirstChildElement(kind); e; e = e->NextSiblingElement(kind))
+      ++count;
+    if (count > kLinksMax) fail(fmt::format("has {} {}s, more than {}", count, kind, kLinksMax));
+  }
+}
+
+// urdfdom takes a link with two parents, and leaves one of them out without a word; and links that hang on
+// none, or on each other in a loop.
 void UrdfReader::check_tree() const {
   std::map<std::string, std::string> parent_joint;
   for (const auto& [name, joint] : model_->joints_) {
@@ -96,6 +117,13 @@ void UrdfReader::check_tree() const {
       fail(fmt::format("link '{}' is the child of two joints, '{}' and '{}': loops are not supported",
                        joint->child_link_name, known->second, name));
   }
+  std::vector<std::string> reached{model_->getRoot()->name};
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    for (const auto& joint : model_->getLink(reached[i])->child_joints)
+      reached.push_back(joint->child_link_name);
+  for (const auto& [name, link] : model_->links_)
+    if (std::find(reached.begin(), reached.end(), name) == reached.end())
+      fail(fmt::format("link '{}' is not connected to the root link '{}'", name, reached[0]));
 }
 
 urdf::LinkConstSharedPtr UrdfReader::link(const std::string& name) const {

@@ -64,8 +64,10 @@ AsBuilt without_errors(const machine::MachineDescription& machine, Geometry geom
     machine::set_mounting(machine::drawn_mounting(machine), built.laser, built.microscope);
   built.filament_diameter = machine.tool.filament_diameter;
   built.extruder_lag = machine.process.extruder_lag;
-  if (const auto* table = std::get_if<geometry::Box>(&machine.table.form))
+  if (const auto* table = std::get_if<geometry::Box>(&machine.table.form)) {
     built.table.radius = 0.5 * table->size.head<2>().minCoeff();
+    built.table.half_sides = 0.5 * table->size.head<2>();
+  }
   return built;
 }
 

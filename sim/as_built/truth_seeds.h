@@ -18,7 +18,7 @@ enum class TruthGroup {
   periodic,    ///< error of the drives over a turn
   play,        ///< of all joints
   mounting,    ///< where laser and microscope sit
-  camera,      ///< principal point and blur
+  camera,      ///< principal point, distortion and blur
   light,       ///< power and waist of the laser, ambient light
   part_place,  ///< where the part is clamped
   part_shape,  ///< its size and ripple

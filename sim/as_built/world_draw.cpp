@@ -69,6 +69,7 @@ void draw_optics(const TruthSeeds& seeds, const BuiltTolerances& t, AsBuilt& bui
   light.scale("laser waist", t.waist, built.laser.waist_diameter);
   light.scale("ambient light", t.ambient_light, microscope.ambient_level);
   microscope.camera.centre_px += camera.vector("camera centre", t.camera_centre).head<2>();
+  microscope.camera.k1 += camera.normal("camera distortion", t.distortion);
   camera.scale("camera blur", t.blur, microscope.blur_px);
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "machine/optics_mounting.h"
 #include "sim/as_built/file_parts.h"
 
 namespace understudy::sim {
@@ -36,6 +37,10 @@ void read_camera(YamlMap& map, machine::Microscope& microscope) {
   if (map.has("centre_px")) {
     const auto centre = map.quantities("centre_px", 2, {-10000, 20000}, "principal point");
     microscope.camera.centre_px = {centre[0], centre[1]};
+  }
+  if (map.has("distortion")) {
+    const auto brown = map.quantities("distortion", 4, {-10, 10}, "of the lens: k1, k2, p1, p2");
+    machine::set_distortion(brown, microscope.camera);
   }
   read_if_given(map, "blur_px", {0, 50}, "of the optics, 1 sigma", microscope.blur_px);
   read_if_given(map, "ambient_levels", {0, 254}, "grey levels without the laser", microscope.ambient_level);
@@ -82,15 +87,15 @@ std::string drives_text(const kinematics::PerAxis<DriveError>& drives) {
 
 std::string optics_text(const AsBuilt& built) {
   const machine::Microscope& microscope = built.microscope;
+  const Camera& camera = microscope.camera;
   return fmt::format(
       "laser: {{front_mm: {}, quaternion: {}, waist_diameter_mm: {}, peak_levels: {}}}\n"
-      "camera: {{lens_mm: {}, quaternion: {}, focal_px: {}, centre_px: [{}, {}], blur_px: {}, "
-      "ambient_levels: "
-      "{}}}\n",
+      "camera: {{lens_mm: {}, quaternion: {}, focal_px: {}, centre_px: [{}, {}], "
+      "distortion: [{}, {}, {}, {}], blur_px: {}, ambient_levels: {}}}\n",
       vector_text(built.laser.X_TL.translation(), kMillimetre), rotation_text(built.laser.X_TL),
       to_mm(built.laser.waist_diameter), built.laser.peak_level,
       vector_text(microscope.X_TC.translation(), kMillimetre), rotation_text(microscope.X_TC),
-      microscope.camera.focal_px, microscope.camera.centre_px.x(), microscope.camera.centre_px.y(),
+      camera.focal_px, camera.centre_px.x(), camera.centre_px.y(), camera.k1, camera.k2, camera.p1, camera.p2,
       microscope.blur_px, microscope.ambient_level);
 }
 

@@ -62,7 +62,8 @@ std::optional<Hit> Workpiece::nearest(const Vec3& p_W, double cutoff, std::size_
   // Its slopes are a few milliradians: the distance across is that down, to parts in a million.
   const Vec3 normal_W = table_.normal(p_W.head<2>());
   const double above = (p_W.z() - table_.z(p_W.head<2>())) * normal_W.z();
-  if (above <= cutoff) keep_nearer(best, {Body::table, above, p_W - above * normal_W, normal_W, 0});
+  if (above <= cutoff && table_.reaches(p_W.head<2>()))
+    keep_nearer(best, {Body::table, above, p_W - above * normal_W, normal_W, 0});
   return best;
 }
 

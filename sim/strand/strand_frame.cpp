@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/cross_matrix.h"
 #include "core/error.h"
 
 namespace understudy::sim {
@@ -26,15 +27,13 @@ StrandFrame::Element StrandFrame::make_element(const Vec3& along) const {
   const double torsion = section_.shear_modulus * std::numbers::pi / 32 * d2 * d2 / l;
   const Vec3 t = along / l;
   const Mat3 tangential = t * t.transpose(), transverse = Mat3::Identity() - tangential;
-  Mat3 cross;  // cross * v = t x v
-  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
 
   Element e;
   e.stiffness.setZero();
   e.torsion_stiffness.setZero();
   const Mat3 force = axial * tangential + 12 * bending / (l * l) * transverse;
   // Turning by w moves the line by (w x t) s, so that forces follow rotations by [t]x transposed.
-  const Mat3 coupling = 6 * bending / l * cross;
+  const Mat3 coupling = 6 * bending / l * cross_matrix(t);
   e.stiffness.block<3, 3>(0, 0) = e.stiffness.block<3, 3>(6, 6) = force;
   e.stiffness.block<3, 3>(0, 6) = e.stiffness.block<3, 3>(6, 0) = -force;
   for (const int turn : {3, 9}) {

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
+#include "core/output_folder.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "sim/beads/bead_shape.h"
@@ -41,9 +42,7 @@ void put_mm(std::string& bytes, const Vec3& p) {
 class StreamedFile {
  public:
   explicit StreamedFile(const fs::path& path)
-      : path_(path),
-        folder_(path.string() + ".unfinished", "part"),
-        out_(folder_.path() / "part", std::ios::binary) {
+      : path_(path), folder_(path.string() + ".unfinished"), out_(folder_.path() / "part", std::ios::binary) {
     write({});
   }
 

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/run_journal.h"
 #include "machine/description.h"
+#include "rehearsal/input_digest.h"
 #include "rehearsal/rehearse.h"
 #include "sim/as_built/as_built.h"
 
@@ -168,9 +169,9 @@ ErrorBudget run_budget(const BudgetRequest& request, const Progress& progress) {
   budget.command = request.print.command;
   const std::size_t worlds = budget.plan.groups.size() + 2;
   budget.answers.assign(static_cast<std::size_t>(request.samples), std::vector<BudgetAnswer>(worlds));
-  RunJournal journal(request.journal,
-                     fmt::format("budget, {} samples from {}, {}, {} groups", request.samples,
-                                 request.first_seed, budget.plan.as_built, worlds - 2));
+  RunJournal journal(request.journal, fmt::format("budget, {} samples from {}, {}, {} groups, of {}",
+                                                  request.samples, request.first_seed, budget.plan.as_built,
+                                                  worlds - 2, rehearsal::inputs_sha256(request.print)));
   const auto rehearse_one = [&](std::size_t job) {
     const std::size_t sample = job / worlds, world = job % worlds;
     rehearsal::RehearsalRequest one = request.print;

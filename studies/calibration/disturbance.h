@@ -8,6 +8,8 @@ namespace understudy::studies {
 constexpr calibration::MeasurementNoise kOutlier{1e-3, 10e-3};
 constexpr calibration::MeasurementNoise kFrameNoise{50e-6, 0.5e-3};
 constexpr double kFrameScale = 0.5e-3;
+constexpr double kDeviationError = 1e-3;  // [m]
+constexpr double kWarming = 20;           // [K], over the measurement
 
 /// An eighth of the poses, at least one.
 inline std::size_t outlier_count(std::size_t poses) { return poses < 12 ? 1 : (poses + 4) / 8; }

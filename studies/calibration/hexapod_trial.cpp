@@ -9,16 +9,12 @@
 #include "calibration/bound.h"
 #include "sim/as_built/as_built.h"
 #include "studies/calibration/disturbance.h"
+#include "studies/calibration/warming.h"
 
 namespace understudy::studies {
 namespace {
 
 using namespace calibration;
-
-constexpr double kDeviationError = 1e-3;     // [m]
-constexpr double kScrewExpansion = 11.5e-6;  // [1/K], steel
-constexpr double kWarming = 20;              // [K], over the measurement
-constexpr double kTimeConstants = 3;         // of the warming in the measurement's time
 
 class HexapodTrials : public TrialRunner {
  public:
@@ -97,7 +93,7 @@ class HexapodTrials : public TrialRunner {
       for (Approach& a : approach) a = random.uniform() < 0.5 ? Approach::shortening : Approach::lengthening;
       const double time =
           poses.size() > 1 ? static_cast<double>(j) / static_cast<double>(poses.size() - 1) : 1;
-      if (drift) truth = warmed(cold, kWarming * (1 - std::exp(-kTimeConstants * time)));
+      if (drift) truth = warmed(cold, kWarming * (1 - std::exp(-kSessionTimeConstants * time)));
       PoseSample sample;
       if (true_sample(truth, nominal_, poses[j], condition.noise, approach, sample))
         samples.push_back(sample);
@@ -107,9 +103,7 @@ class HexapodTrials : public TrialRunner {
 
   /// Screws that are `rise` [K] warmer: their middle length is the longer.
   HexapodParameters warmed(HexapodParameters machine, double rise) const {
-    const auto& limits = machine_.hexapod().limits;
-    for (double& l : machine.geometry.length_offset)
-      l += kScrewExpansion * rise * 0.5 * (limits.strut_min + limits.strut_max);
+    for (double& l : machine.geometry.length_offset) l += strut_growth(machine_, rise);
     return machine;
   }
 

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "sim/plant/drive_errors.h"
+#include "studies/calibration/warming.h"
 
 namespace understudy::studies {
 namespace {
@@ -102,6 +103,20 @@ std::vector<sim::FaultEvent> warming_events(const SessionOptions& options, int a
   return events;
 }
 
+/// [s] that visits of these stops take, from home.
+double planned_time(const machine::MachineDescription& machine,
+                    const std::vector<std::vector<double>>& stops) {
+  const auto mechanism = machine.make_mechanism();
+  std::vector<double> at = home_axes(machine, *mechanism);
+  double time = 0;
+  for (const std::vector<double>& stop : stops) {
+    const std::vector<double> first = beyond(*mechanism, stop, StopSide::lengthening);
+    time += move_time(*mechanism, at, first) + move_time(*mechanism, first, stop) + kRestCheck;
+    at = stop;
+  }
+  return time;
+}
+
 }  // namespace
 
 const std::vector<std::string>& session_engines() {
@@ -178,17 +193,10 @@ Pose PlantSession::visit(const std::vector<double>& axes) {
   return rest();
 }
 
-double planned_time(const machine::MachineDescription& machine,
-                    const std::vector<std::vector<double>>& stops) {
-  const auto mechanism = machine.make_mechanism();
-  std::vector<double> at = home_axes(machine, *mechanism);
-  double time = 0;
-  for (const std::vector<double>& stop : stops) {
-    const std::vector<double> first = beyond(*mechanism, stop, StopSide::lengthening);
-    time += move_time(*mechanism, at, first) + move_time(*mechanism, first, stop) + kRestCheck;
-    at = stop;
-  }
-  return time;
+void set_warming(const machine::MachineDescription& machine, double rise,
+                 const std::vector<std::vector<double>>& stops, SessionOptions& options) {
+  options.growth = strut_growth(machine, rise);
+  options.warming_time = planned_time(machine, stops) / kSessionTimeConstants;
 }
 
 }  // namespace understudy::studies

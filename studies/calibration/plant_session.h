@@ -56,8 +56,8 @@ class PlantSession {
   std::vector<double> at_;  ///< axes as commanded last
 };
 
-/// [s] that visits of these stops take, from home: what a session's warming is planned by.
-double planned_time(const machine::MachineDescription& machine,
-                    const std::vector<std::vector<double>>& stops);
+/// Struts that warm by `rise` [K] while these stops are visited from home, 95 % of it by the last.
+void set_warming(const machine::MachineDescription& machine, double rise,
+                 const std::vector<std::vector<double>>& stops, SessionOptions& options);
 
 }  // namespace understudy::studies

@@ -11,6 +11,7 @@
 #include "calibration/machine/strut_sides.h"
 #include "calibration/pose_choice.h"
 #include "studies/calibration/calibration_trial.h"
+#include "studies/calibration/disturbance.h"
 #include "studies/calibration/driven_model.h"
 #include "studies/calibration/plant_session.h"
 
@@ -19,11 +20,7 @@ namespace {
 
 using namespace calibration;
 
-constexpr double kDeviationError = 1e-3;     // [m]
-constexpr double kScrewExpansion = 11.5e-6;  // [1/K], steel
-constexpr double kWarming = 20;              // [K], over the measurement
-constexpr double kTimeConstants = 3;         // of the warming in the measurement's time
-constexpr double kWarmingThought = 100e-6;   // [m] of growth that a lab thinks possible
+constexpr double kWarmingThought = 100e-6;  // [m] of growth that a lab thinks possible
 constexpr std::size_t kRegistrationPoses = 20;
 constexpr double kRangeMargin = 4e-3;  // [m], of a strut: joints and offsets are off by some 0.5 mm each
 
@@ -129,10 +126,7 @@ SessionOptions PlantTrials::session_options(const Condition& condition,
                                             const std::vector<std::vector<double>>& stops) const {
   SessionOptions options;
   options.engine = setting_.engine;
-  if (condition.disturbance != Disturbance::drift) return options;
-  const auto& limits = machine_.hexapod().limits;
-  options.growth = kScrewExpansion * kWarming * 0.5 * (limits.strut_min + limits.strut_max);
-  options.warming_time = planned_time(machine_, stops) / kTimeConstants;
+  if (condition.disturbance == Disturbance::drift) set_warming(machine_, kWarming, stops, options);
   return options;
 }
 

@@ -125,9 +125,6 @@ void check(const SamplePosesRequest& request, const MachineDescription& machine)
     throw InputError(fmt::format("--design {} is not one of random, d-optimal", request.design));
 }
 
-constexpr double kScrewExpansion = 11.5e-6;  // [1/K], steel
-constexpr double kTimeConstants = 3;         // of the warming in the session's time
-
 /// The twin, driven to axes: by forward kinematics, or on a plant.
 class DrivenTwin {
  public:
@@ -138,11 +135,9 @@ class DrivenTwin {
     SessionOptions options;
     options.engine = request.engine;
     if (request.warming != 0) {
-      const auto& limits = machine.hexapod().limits;
       std::vector<std::vector<double>> stops;
       for (const MeasuredPose& pose : asked) stops.push_back(pose.axes);
-      options.growth = kScrewExpansion * request.warming * 0.5 * (limits.strut_min + limits.strut_max);
-      options.warming_time = planned_time(machine, stops) / kTimeConstants;
+      set_warming(machine, request.warming, stops, options);
     }
     session_ = std::make_unique<PlantSession>(machine, built_, options);
   }

@@ -167,7 +167,7 @@ TEST(BadOutput, AFolderOfSomebodyElseIsNotReplaced) {
   const Folder folder;
   folder.write("letter.txt", "dear");
   expect_refused("rehearse " + kBottleLine + " --fixture bottle --out " + folder.path().string(), folder,
-                 {"summary.json"});
+                 {"letter.txt"});
 }
 
 }  // namespace

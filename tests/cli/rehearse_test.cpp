@@ -1,3 +1,8 @@
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <regex>
 
@@ -150,6 +155,18 @@ TEST(Rehearse, PrintingInTheAirIsANoGo) {
   EXPECT_FALSE(summary.contains("gap")) << "there is no gap where nothing lies below";
 }
 
+TEST(Rehearse, ALineBesideTheTableIsANoGo) {
+  const Folder folder;
+  const auto file = folder.write(
+      "beside.gcode", "M109 S230\nG0 X140 Y0 Z20 F3000\nG1 X140 Y0 Z0.16 F300\nG1 X140 Y20 E0.7 F600\n");
+  for (const char* machine : {"arm", "five-axis"}) {
+    const Outcome outcome = understudy("rehearse " + file + " --engine quasistatic --no-pictures --machine " +
+                                       machine + " --out " + (folder / machine));
+    EXPECT_EQ(outcome.status, 1) << machine << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("nothing lies below")) << machine;
+  }
+}
+
 TEST(Rehearse, InterruptedLeavesNothing) {
   const Folder folder;
   int interrupted = 0;
@@ -157,8 +174,8 @@ TEST(Rehearse, InterruptedLeavesNothing) {
     const Outcome outcome = understudy_interrupted(kBottle + "--out " + (folder / "out"), seconds);
     if (outcome.status <= 1) break;  // it was faster than the signal
     EXPECT_EQ(folder.entries(), 0) << seconds;
-    if (outcome.status == 130) continue;  // before main() could say what a signal means
-    EXPECT_EQ(outcome.status, 3) << seconds << " s: " << outcome.err;
+    if (outcome.err.empty()) continue;  // before main() could say what a signal means
+    EXPECT_EQ(outcome.status, 128 + SIGINT) << seconds << " s: " << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
     ++interrupted;
   }
@@ -179,6 +196,57 @@ TEST(Help, EveryCommandExplainsItself) {
 TEST(Doctor, ThisComputerCanRehearse) {
   const Outcome outcome = understudy("doctor");
   EXPECT_EQ(outcome.status, 0) << outcome.out;
+}
+
+TEST(Rehearse, APartAsPrintedMayLieAmongTheResults) {
+  const Folder folder;
+  const std::string command = kBottle + "--engine quasistatic --no-pictures --out " + (folder / "out");
+  for (int run = 0; run < 2; ++run) {
+    const Outcome outcome = understudy(command + " --as-printed " + (folder / "out/part.stl"));
+    EXPECT_LE(outcome.status, 1) << outcome.err;
+    EXPECT_TRUE(fs::exists(folder.path() / "out/part.stl"));
+    EXPECT_THAT(read_file(folder.path() / "out/manifest.sha256"), HasSubstr("part.stl"));
+    EXPECT_EQ(folder.entries(), 1);
+  }
+}
+
+TEST(Rehearse, ASeedThatIsNoneAndAnEmptyFixtureAreRefused) {
+  const Folder folder;
+  for (const char* seed : {"-1", "18446744073709551616", "1.5", "0x10", "\"\""}) {
+    const Outcome outcome = understudy(kBottle + "--seed " + seed + " --out " + (folder / "out"));
+    EXPECT_EQ(outcome.status, 2) << seed;
+    EXPECT_THAT(outcome.err, HasSubstr("a seed is a whole number")) << seed;
+  }
+  EXPECT_THAT(understudy(kBottle + "--fixture '' --out " + (folder / "out")).err, HasSubstr("--fixture"));
+  EXPECT_EQ(folder.entries(), 0);
+}
+
+TEST(Rehearse, TextOfAFileDoesNotRepaintTheTerminal) {
+  const Folder folder;
+  const auto file = folder.write("e.gcode", "G1 X\"\033[2J\033[31mx\"\n");
+  const Outcome outcome = understudy("rehearse " + file + " --out " + (folder / "out"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("\\x1b[2J"));
+  EXPECT_EQ(outcome.err.find('\033'), std::string::npos);
+}
+
+TEST(Rehearse, APipeThatNobodyWritesToIsLeftAtASignal) {
+  const Folder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const Outcome outcome =
+      understudy_interrupted("rehearse " + (folder / "pipe") + " --out " + (folder / "out"), 2);
+  EXPECT_EQ(outcome.status, 128 + SIGINT);
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
+TEST(Rehearse, AnAnswerThatCannotBeToldIsAFailure) {
+  const auto status = [](const std::string& streams) {
+    return WEXITSTATUS(std::system((UNDERSTUDY_PROGRAM " machines " + streams).c_str()));
+  };
+  EXPECT_EQ(status(">/dev/full 2>/dev/null"), 3);
+  EXPECT_EQ(status(">/dev/full 2>&-"), 3) << "there is nobody to tell";
+  EXPECT_EQ(status(">/dev/null 2>&-"), 0);
 }
 
 }  // namespace

@@ -60,6 +60,29 @@ TEST(ScenarioRun, BadScenariosAreRefusedBeforeAnythingRuns) {
   EXPECT_EQ(understudy("scenario run " + (folder / "none.yaml")).status, 2);
 }
 
+TEST(ScenarioRun, WhatCannotBeRehearsedIsBadInputAndNoFailedExpectation) {
+  const Folder folder;
+  for (const auto& [what, by] :
+       {std::pair("fixture: bottle", "fixture: botle"), {"machine: hexapod", "machine: hexapot"}}) {
+    const Outcome outcome = understudy("scenario run " + changed(folder, what, by));
+    EXPECT_EQ(outcome.status, 2) << by << outcome.out << outcome.err;
+  }
+}
+
+TEST(ScenarioRun, ResultsThatWouldReplaceEachOtherAreRefusedBeforeAnythingRuns) {
+  const Folder folder;
+  const auto one = changed(folder, "seed:", "seed:");
+  std::filesystem::create_directory(folder.path() / "b");
+  std::filesystem::copy(one, folder.path() / "b" / "changed.yaml");
+  const std::string both = "scenario run " + one + " " + (folder / "b/changed.yaml");
+  const Outcome outcome = understudy(both + " --out " + (folder / "out"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("one folder of --out"));
+  const Outcome nowhere = understudy(both + " --junit " + (folder / "none/junit.xml"));
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_EQ(nowhere.out, "") << "nothing ran";
+}
+
 // 200 machines, both ways: minutes. The table is `understudy sweep scenarios/song-bottle.yaml`.
 TEST(SlowScenarioRun, TwoHundredMachinesStartInTheBandAndNoneTouches) {
   const Outcome outcome = understudy("scenario run " + kSource + "/scenarios/studies/song-bottle-200.yaml");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -131,7 +132,7 @@ TEST(Workspace, RefusesWhatItCannotEvaluateAndWritesNothing) {
 TEST(Workspace, InterruptedItLeavesNothing) {
   const Folder folder;
   const Outcome outcome = understudy_interrupted("workspace --step 0.3 --out " + (folder / "out"), 0.5);
-  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
   EXPECT_EQ(folder.entries(), 0);
 }
 

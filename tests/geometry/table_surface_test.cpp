@@ -56,5 +56,15 @@ TEST(TableSurface, ItsNormalIsThatOfItsHeights) {
   EXPECT_NEAR(table.normal(p).norm(), 1, 1e-15);
 }
 
+TEST(TableSurface, BesideItThereIsNothing) {
+  TableSurface table{0, {2e-3, 0}, 0, 0.1};
+  table.half_sides = {0.1, 0.05};
+  EXPECT_TRUE(table.ray_hit({0.1, 0.05, 0.01}, {0, 0, -1}));
+  EXPECT_FALSE(table.ray_hit({0.1001, 0, 0.01}, {0, 0, -1}));
+  EXPECT_FALSE(table.ray_hit({0, -0.0501, 0.01}, {0, 0, -1}));
+  EXPECT_FALSE(table.ray_hit({0.095, 0, 0.01}, Vec3(1, 0, -1).normalized())) << "it passes the edge";
+  EXPECT_TRUE(table.ray_hit({0.105, 0, 0.01}, Vec3(-1, 0, -1).normalized()));
+}
+
 }  // namespace
 }  // namespace understudy::geometry

@@ -24,6 +24,8 @@ TEST_F(BuiltTolerancesFile, OfTheShippedHexapodAreThoseThatItsCommentsState) {
   EXPECT_NEAR(300e-3 * t.lead, 0.052e-3, 1e-6) << "a screw of class 7";
   EXPECT_DOUBLE_EQ(t.part_position, 0.2e-3);
   EXPECT_DOUBLE_EQ(t.camera_centre, 2);
+  // The picture's farthest corner is (428, 336) px from the principal point; the focal length is 64 x 33 px.
+  EXPECT_NEAR(t.distortion * (428. * 428 + 336 * 336) / (64. * 33 * 64 * 33), 0.0033, 1e-4);
   EXPECT_DOUBLE_EQ(t.nozzle_temperature, 2);
 }
 

@@ -17,6 +17,8 @@
 
 namespace understudy::toolpath {
 
+constexpr double kLargestCoordinate = 100;  ///< [m], that is read or written
+
 /// What the two rotary words mean on a machine that has them; b and c are the first and the second. Angles in
 /// [rad], of any number of turns.
 struct RotaryWords {

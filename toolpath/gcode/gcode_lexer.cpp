@@ -82,7 +82,7 @@ class LineLexer {
     std::size_t digits = 0, points = 0;
     for (; at_ < line_.size() && (is_digit(line_[at_]) || line_[at_] == '.'); ++at_)
       ++(line_[at_] == '.' ? points : digits);
-    if (digits == 0 || points > 1) fail_number(word_start);
+    if (digits == 0 || points > 1 || is_exponent(word_start)) fail_number(word_start);
     const std::size_t first = line_[start] == '+' ? start + 1 : start;
     double value = 0;
     const auto [end, error] =
@@ -92,6 +92,11 @@ class LineLexer {
       fail_number(word_start);
     if (end != line_.data() + at_ || !std::isfinite(value)) fail_number(word_start);
     return value;
+  }
+
+  /// F1e-30: a small e that ends a number of a capital word is no filament.
+  bool is_exponent(std::size_t word_start) const {
+    return at_ < line_.size() && line_[at_] == 'e' && line_[word_start] < 'a';
   }
 
   static bool is_huge(std::string_view digits) {

@@ -14,10 +14,10 @@ namespace understudy::toolpath {
 namespace {
 
 // No machine is larger; keeps sums finite.
-constexpr double kLargestCoordinate = 100;  // [m]
-constexpr double kLargestLength = 1e6;      // [m]
+constexpr double kLargestLength = 1e6;  // [m]
 // A hundred thousand turns, of which doubles keep 1e-10 rad.
-constexpr double kLargestTurn = 3.6e7 * kDegree;  // [rad]
+constexpr double kWholeTurn = 360 * kDegree, kMostTurns = 1000;  // of one move (docs/limits.md)
+constexpr double kLargestTurn = 3.6e7 * kDegree;                 // [rad]
 // What is left of a tip that does not move when slides and table move around it: rounding, not a path.
 constexpr double kNoPath = 1e-12;  // [m]
 
@@ -199,6 +199,10 @@ bool GcodePosition::read_turns(Block& block, bool relative) {
     if (!(std::abs(turns.*axis) <= kLargestTurn))
       block.fail(*word, fmt::format("'{}' leads to {:.10g} deg, beyond {:.10g} deg", word->text,
                                     to_deg(turns.*axis), to_deg(kLargestTurn)));
+    const double by = std::abs(turns.*axis - (turns_ ? (*turns_).*axis : 0));
+    if (by > kMostTurns * kWholeTurn)
+      block.fail(*word, fmt::format("'{}' turns {:.0f} times, more than {:.0f} in one move", word->text,
+                                    by / kWholeTurn, kMostTurns));
   };
   read(b, &RotaryTurns::b, options_.b_sign);
   read(c, &RotaryTurns::c, options_.c_sign);

@@ -83,6 +83,10 @@ class Writer {
     if (!X_WT.matrix().allFinite())
       throw InputError(fmt::format("step {}: a pose that is not finite cannot be written", steps_ + 1));
     const Vec3 p = X_WT.translation();
+    if (p.cwiseAbs().maxCoeff() > kLargestCoordinate)
+      throw InputError(fmt::format("step {}: ({:g}, {:g}, {:g}) mm cannot be written, beyond {:g} mm",
+                                   steps_ + 1, to_mm(p.x()), to_mm(p.y()), to_mm(p.z()),
+                                   to_mm(kLargestCoordinate)));
     Quat q(X_WT.linear());
     if (q.w() < 0) q.coeffs() *= -1;
     return fmt::format(" X{} Y{} Z{} W{} I{} J{} K{}", millimetres(p.x()), millimetres(p.y()),

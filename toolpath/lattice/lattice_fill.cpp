@@ -12,6 +12,7 @@ namespace understudy::toolpath {
 namespace {
 
 constexpr double kOnSurface = 1 * kMicrometre;  // single precision of an STL of some decimetres
+constexpr double kNodesMax = 100'000;           // docs/limits.md
 constexpr double kLargest = 2.0;                // [m], of a part; more smells of a wrong unit
 
 void check_strut(double strut) {
@@ -28,6 +29,10 @@ class CubeGrid {
       const double left = size[k] - cubes_[k] * strut;
       origin_[k] = lower[k] + (k < 2 ? 0.5 * left : 0);
     }
+    const double nodes = 1.0 * count(0) * count(1) * count(2);
+    if (nodes > kNodesMax)
+      throw InputError(fmt::format(
+          "a lattice of {:.3g} nodes, more than {:g}: longer struts, or a smaller part", nodes, kNodesMax));
   }
 
   using Inside = std::function<bool(const Vec3&)>;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/json_depth.h"
 #include "core/output_file.h"
 #include "core/units.h"
 
@@ -19,6 +20,8 @@ using nlohmann::json;
 
 const std::map<std::string, double> kUnits = {
     {"millimeter", kMillimetre}, {"centimeter", 1e-2}, {"meter", 1.0}, {"inch", kInch}};
+
+constexpr std::size_t kEntriesMax = 100'000;  // docs/limits.md
 
 class LatticeReader {
  public:
@@ -57,6 +60,8 @@ class LatticeReader {
   const json& list(const std::string& key) const {
     const json& value = member(root_, key, "the frame");
     if (!value.is_array() || value.empty()) fail(key, "is not a list with an entry");
+    if (value.size() > kEntriesMax)
+      fail(key, fmt::format("has {} entries, more than {}", value.size(), kEntriesMax));
     return value;
   }
   int integer(const json& value, const std::string& what) const {
@@ -128,6 +133,9 @@ class LatticeReader {
 }  // namespace
 
 Lattice parse_lattice(const std::string& text, const std::string& file) {
+  if (nests_deeper(text))
+    throw InputError(Place{file},
+                     fmt::format("lists or objects are nested more than {} deep", kJsonDepthMax));
   json root;
   try {
     root = json::parse(text);
@@ -135,6 +143,8 @@ Lattice parse_lattice(const std::string& text, const std::string& file) {
     const auto end = static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = 1 + std::count(text.begin(), text.begin() + end, '\n');
     throw InputError(Place{file, static_cast<int>(line)}, "is not JSON here");
+  } catch (const json::exception&) {
+    throw InputError(Place{file}, "holds a number that is out of range");
   }
   return LatticeReader(root, file).run();
 }

@@ -26,7 +26,7 @@ void check(const SpiralPlan& plan) {
   check_within("lean", to_deg(plan.lean), 0, 60, "deg");
   check_within("turns to take the lean up", plan.lean_turns, 0, 1000, "turns");
   check_positive("strand diameter", to_mm(plan.strand_diameter), "mm");
-  check_positive("chord tolerance", to_mm(plan.chord_tolerance), "mm");
+  check_within("chord tolerance", to_mm(plan.chord_tolerance), 1e-3, 10, "mm");
   check_positive("feed", plan.feed / kMillimetrePerMinute, "mm/min");
   check_positive("approach feed", plan.approach_feed / kMillimetrePerMinute, "mm/min");
   check_positive("clearance", to_mm(plan.clearance), "mm");

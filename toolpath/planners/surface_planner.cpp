@@ -22,7 +22,7 @@ void check_plan(const SurfacePlan& plan) {
   check_positive("standoff", to_mm(plan.standoff), "mm");
   check_positive("clearance", to_mm(plan.clearance), "mm");
   check_positive("step", to_mm(plan.step), "mm");
-  check_positive("chord tolerance", to_mm(plan.chord_tolerance), "mm");
+  check_within("chord tolerance", to_mm(plan.chord_tolerance), 1e-3, 10, "mm");
   check_positive("feed", plan.feed / kMillimetrePerMinute, "mm/min");
   check_positive("approach feed", plan.approach_feed / kMillimetrePerMinute, "mm/min");
   check_bead(plan.bead_width, plan.bead_height);

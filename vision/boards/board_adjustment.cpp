@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "core/cross_matrix.h"
+
 namespace understudy::vision {
 namespace {
 
@@ -56,9 +58,7 @@ BoardEquations equations(const Board& board, const Pose& X_FG, const std::vector
     const auto k = static_cast<std::size_t>(i);
     const Vec3 arm = where.moved(board.corner(i % board.columns, i / board.columns)) - where.offset;
     Eigen::Matrix<double, 3, kPlacement> motion;  // of the corner in G over the placement
-    motion << Mat3::Identity(),
-        (Mat3() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0).finished(),
-        arm / (1 + where.scale);
+    motion << Mat3::Identity(), -cross_matrix(arm), arm / (1 + where.scale);
     for (int axis = 0; axis < 2; ++axis) {
       const Eigen::Index row = 2 * i + axis;
       const double* s = slopes.ptr<double>(static_cast<int>(row));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cross_matrix.h"
+
 namespace understudy::vision {
 
 namespace {
@@ -39,7 +41,7 @@ Eigen::Matrix<double, 6, 9> fit_response(const Pose& X_WT, const std::array<Vec3
   for (int k = 0; k < 3; ++k) {
     const Vec3 arm = X_WT.linear() * p_T[static_cast<std::size_t>(k)];
     J.block<3, 3>(3 * k, 0).setIdentity();
-    J.block<3, 3>(3 * k, 3) << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+    J.block<3, 3>(3 * k, 3) = -cross_matrix(arm);
   }
   return (J.transpose() * J).inverse() * J.transpose();
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/cross_matrix.h"
 #include "core/units.h"
 #include "sim/plant/joint_constants.h"
 #include "sim/plant/quasistatic/axis_mechanics.h"
@@ -13,12 +14,6 @@ namespace {
 using kinematics::kMaxAxes;
 using kinematics::SolveStatus;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
-
-Mat3 cross(const Vec3& p) {
-  Mat3 P;
-  P << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-  return P;
-}
 
 /// What an axis carries, where it is now; about O's origin.
 struct LinkState {
@@ -162,7 +157,7 @@ void ChainMechanics::mass_matrix(AxisMatrix& mass) const {
   for (int i = 0; i < chain_.size(); ++i) {
     const LinkState& s = state_[i];
     const double m = links_[i].mass;
-    const Mat3 P = cross(s.centre_O);
+    const Mat3 P = cross_matrix(s.centre_O);
     composite[i] << m * Mat3::Identity(), -m * P, m * P, s.inertia_O - m * P * P;
   }
   mass.setZero(chain_.size(), chain_.size());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cross_matrix.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "kinematics/hexapod/hexapod_passive_rotation.h"
@@ -223,14 +224,9 @@ SolveStatus HexapodMechanics::load(const AxisVector& velocity, const AxisVector&
 }
 
 void HexapodMechanics::mass_matrix(AxisMatrix& mass) const {
-  const auto cross = [](const Vec3& p) {
-    Mat3 P;
-    P << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-    return P;
-  };
   Mat6 M = Mat6::Zero();
   const auto add = [&](const Mat3& m, const Vec3& p) {
-    const Mat3 P = cross(p);
+    const Mat3 P = cross_matrix(p);
     M.topLeftCorner<3, 3>() += m;
     M.topRightCorner<3, 3>() -= m * P;
     M.bottomLeftCorner<3, 3>() += P * m;

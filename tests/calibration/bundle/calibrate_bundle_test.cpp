@@ -23,7 +23,10 @@ using ::testing::ThrowsMessage;
 /// The files of a lab: set-up, corners, targets, commanded poses.
 class CalibrateBundle : public ::testing::Test {
  protected:
-  CalibrateBundle() : folder_(std::filesystem::path(::testing::TempDir()) / "calibrate-bundle") {
+  CalibrateBundle()
+      : folder_(std::filesystem::path(::testing::TempDir()) /
+                (std::string("calibrate-bundle-") +
+                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
     std::filesystem::create_directories(folder_);
   }
   ~CalibrateBundle() override { std::filesystem::remove_all(folder_); }

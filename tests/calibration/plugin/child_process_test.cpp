@@ -2,13 +2,20 @@
 #include "calibration/plugin/child_process.h"
 
 #include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calibration/plugin/box.h"
 #include "tests/calibration/plugin/script.h"
 
 namespace understudy::calibration {
@@ -19,6 +26,9 @@ using ::testing::HasSubstr;
 ProcessRun run(const std::string& text, const std::string& input = "in\n", const ProcessLimits& limits = {}) {
   return run_process(Script(text).command(), input, limits);
 }
+
+/// Where the numbers that a script writes are those of its processes here.
+void outside_the_box() { ::setenv("UNDERSTUDY_PLUGIN_BOX", "off", 1); }
 
 /// Kill 0 finds a process or a zombie.
 bool alive(pid_t pid) { return ::kill(pid, 0) == 0; }
@@ -52,7 +62,45 @@ TEST(ChildProcess, MayLeaveItsInputUnread) {
   EXPECT_EQ(deaf.output, "answer\n");
 }
 
+TEST(ChildProcess, WhatBeginsASessionOfItsOwnIsKilledToo) {
+  outside_the_box();
+  const ProcessRun run_away = run("setsid sh -c 'echo $$; exec sleep 100' &\nsleep 0.3");
+  EXPECT_TRUE(run_away.ok) << run_away.failure;
+  expect_gone(run_away.output);
+}
+
+/// Whether `sleep SECONDS` runs anywhere: in the box, processes have numbers of their own.
+bool sleeps(const std::string& seconds) {
+  const std::string words = std::string("sleep") + '\0' + seconds + '\0';
+  for (const auto& process : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream file(process.path() / "cmdline", std::ios::binary);
+    if (std::string(std::istreambuf_iterator<char>(file), {}) == words) return true;
+  }
+  return false;
+}
+
+TEST(ChildProcess, DiesWithUsWhereThereIsABox) {
+  if (!has_box()) GTEST_SKIP() << "bubblewrap is not installed, or may make no namespaces here";
+  const std::string seconds = std::to_string(100'000 + ::getpid());
+  const Script script("sleep " + seconds + " & setsid sleep " + seconds);
+  const pid_t us = ::fork();
+  if (us == 0) {
+    run_process(script.command(), "");
+    ::_exit(0);
+  }
+  const auto becomes = [&](bool running) {
+    for (int tries = 0; tries < 200 && sleeps(seconds) != running; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return sleeps(seconds) == running;
+  };
+  EXPECT_TRUE(becomes(true));
+  ::kill(us, SIGKILL);
+  ::waitpid(us, nullptr, 0);
+  EXPECT_TRUE(becomes(false));
+}
+
 TEST(ChildProcess, ThatHangsIsKilledWithAllItStarted) {
+  outside_the_box();
   const auto start = std::chrono::steady_clock::now();
   const ProcessRun hung = run("sleep 100 & echo $!\nsleep 100", "", {.time = 0.3});
   EXPECT_FALSE(hung.ok);
@@ -85,6 +133,7 @@ TEST(ChildProcess, ThatCrashesIsToldWithItsLastWords) {
 
 // What it leaves behind holds the pipes open: that must not keep us.
 TEST(ChildProcess, LeavesNoProcessBehind) {
+  outside_the_box();
   const ProcessRun left = run("sleep 100 & echo $!", "");
   EXPECT_TRUE(left.ok) << left.failure;
   EXPECT_LT(left.seconds, 5);

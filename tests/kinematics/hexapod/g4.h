@@ -13,7 +13,7 @@ inline HexapodGeometry nominal_g4(double deviation = 0) {
   HexapodGeometry g;
   for (int k = 0; k < 3; ++k) {
     for (int s = -1; s <= 1; s += 2) {
-      const auto i = static_cast<std::size_t>(2 * k + (s > 0 ? 1 : 0));
+      const std::size_t i = 2 * static_cast<std::size_t>(k) + (s > 0 ? 1 : 0);
       const double base = from_deg(120.0 * k + 43.0 * s), platform = from_deg(120.0 * k + 17.0 * s);
       g.base_joint[i] = {0.080 * std::cos(base), 0.080 * std::sin(base), 0.206};
       g.platform_joint[i] = {0.029 * std::cos(platform), 0.029 * std::sin(platform), 0.025};

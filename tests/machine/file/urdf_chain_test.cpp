@@ -235,6 +235,19 @@ TEST_F(UrdfFile, BrokenTreesAreNamed) {
   EXPECT_THROW(read_urdf(folder_ / "missing.urdf", "base", "tool"), InputError);
 }
 
+// urdfdom takes each of these; a walk through them would not end, or overflow the stack.
+TEST_F(UrdfFile, LoopsIslandsAndDepthsAreRefused) {
+  const std::string round =
+      joint("c", "fixed", "arm2", "tool2", "") + joint("d", "fixed", "tool2", "arm2", "");
+  EXPECT_THAT(complaint("<link name='arm2'/><link name='tool2'/>" + kGood + round, "base", "tool2"),
+              HasSubstr("is not connected to the root link"));
+  std::string links, deep;
+  for (int i = 0; i < 1001; ++i) links += "<link name='l" + std::to_string(i) + "'/>";
+  EXPECT_THAT(complaint(kGood + links), HasSubstr("links, more than 1000"));
+  for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  EXPECT_THAT(complaint_of("<robot>" + deep), HasSubstr("nested more than 500 deep"));
+}
+
 TEST_F(UrdfFile, MoreAxesThanAMachineHasAreRefused) {
   std::string links, joints;
   for (int i = 0; i < 9; ++i) {

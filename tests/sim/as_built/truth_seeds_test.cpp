@@ -28,7 +28,7 @@ std::vector<std::vector<double>> truths(const AsBuilt& b) {
           {b.drives[1].periodic, b.drives[4].phase},
           {b.nut_play[2], b.ball_play[0]},
           {b.laser.X_TL.translation().x(), camera.focal_px},
-          {camera.centre_px.x(), b.microscope.blur_px},
+          {camera.centre_px.x(), camera.k1, b.microscope.blur_px},
           {b.laser.peak_level, b.laser.waist_diameter, b.microscope.ambient_level},
           {b.part.X_WF.translation().y(), b.part.X_WF.linear()(0, 1)},
           {b.part.size, b.part.ripple, b.part.phase},

@@ -59,6 +59,8 @@ std::vector<Truth> truths() {
          const Vec2 by = b.microscope.camera.centre_px - is.microscope.camera.centre_px;
          return std::vector<double>{by.x(), by.y()};
        }},
+      {"distortion", &T::distortion,
+       [](const AsBuilt& b) { return std::vector<double>{b.microscope.camera.k1}; }},
       {"laser power", &T::laser_power,
        [=](const AsBuilt& b) { return share(b.laser.peak_level, is.laser.peak_level); }},
       {"waist", &T::waist,

@@ -54,6 +54,8 @@ TEST_F(WorldFile, AManufacturedMachineReadsBackAsTheSame) {
   EXPECT_DOUBLE_EQ(back.laser.waist_diameter, built.laser.waist_diameter);
   EXPECT_DOUBLE_EQ(back.microscope.camera.focal_px, built.microscope.camera.focal_px);
   EXPECT_EQ(back.microscope.camera.centre_px, built.microscope.camera.centre_px);
+  EXPECT_EQ(back.microscope.camera.k1, built.microscope.camera.k1);
+  EXPECT_NE(built.microscope.camera.k1, 0);
   EXPECT_DOUBLE_EQ(back.microscope.blur_px, built.microscope.blur_px);
   EXPECT_DOUBLE_EQ(back.microscope.ambient_level, built.microscope.ambient_level);
   EXPECT_DOUBLE_EQ(back.part.size, built.part.size);

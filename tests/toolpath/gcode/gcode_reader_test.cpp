@@ -243,5 +243,31 @@ TEST(GcodeReader, FortyThousandLinesTakeLessThanASecondOfProcessorTime) {
   EXPECT_LT(seconds, 1);  // 0.05 s measured, 0.35 s under the address sanitizer
 }
 
+TEST(GcodeReader, AnExponentIsNoFilament) {
+  EXPECT_THAT([] { parse("G0 X1\nG1 X30 F1e-30\n"); },
+              testing::ThrowsMessage<InputError>(HasSubstr("'F1e-30': F needs a finite decimal number")));
+  EXPECT_EQ(parse("G0X1\ng1x2e1f60\nG1X3E2F60\n").steps.size(), 3u) << "filament";
+}
+
+TEST(GcodeReader, ACarriageReturnEndsALineAndItsComment) {
+  const Program unix = parse("G0 X1 ; here\nG1 X2 F60 (there)\nG1 X3\n");
+  for (const char* text :
+       {"G0 X1 ; here\rG1 X2 F60 (there)\rG1 X3\r", "G0 X1 ; here\r\nG1 X2 F60 (there)\r\nG1 X3\r\n"}) {
+    const Program other = parse(text);
+    ASSERT_EQ(other.steps.size(), unix.steps.size());
+    for (std::size_t i = 0; i < unix.steps.size(); ++i) {
+      EXPECT_EQ(other.steps[i].line, unix.steps[i].line);
+      EXPECT_EQ(other.steps[i].X_WT.translation(), unix.steps[i].X_WT.translation());
+    }
+  }
+}
+
+TEST(GcodeReader, ALineOfMegabytesIsRefusedAtOnce) {
+  std::string text = "G0 X1\n";
+  for (int i = 0; i < 80'000; ++i) text += "G0 ";
+  EXPECT_THAT([&] { parse(text); },
+              testing::ThrowsMessage<InputError>(HasSubstr("p.gcode:2: the line has 240000 bytes")));
+}
+
 }  // namespace
 }  // namespace understudy::toolpath

@@ -224,6 +224,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"G43.4 G49 G0 X1", ":1:7", "'G49' cannot share a line with 'G43.4'"},
         Bad{"G0 B1 B2", ":1:7", "second B"}, Bad{"B1", ":1:1", "'B1' before any G0 or G1"},
         Bad{"G28\nG28 W1", ":2:5", "'W1' belongs to no command"},
+        Bad{"G0 C360001", ":1:4", "'C360001' turns 1000 times, more than 1000 in one move"},
+        Bad{"G91 G0 C-720000", ":1:8", "turns 2000 times"},
         Bad{"G0 C36000001", ":1:4", "'C36000001' leads to 36000001 deg, beyond 36000000 deg"},
         Bad{"G43 G0 X1", ":1:1", "unknown word 'G43'"}, Bad{"G92", ":1:1", "none of X Y Z B C E"}));
 

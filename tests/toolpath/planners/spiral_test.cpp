@@ -113,13 +113,18 @@ TEST(Spiral, EveryValueIsChecked) {
   ASSERT_EQ(rejection(plan()), "accepted");
   for (double SpiralPlan::*field :
        {&SpiralPlan::radius, &SpiralPlan::pitch, &SpiralPlan::gap, &SpiralPlan::strand_diameter,
-        &SpiralPlan::chord_tolerance, &SpiralPlan::feed, &SpiralPlan::approach_feed, &SpiralPlan::clearance,
+        &SpiralPlan::feed, &SpiralPlan::approach_feed, &SpiralPlan::clearance,
         &SpiralPlan::filament_diameter})
     for (const double bad : {0.0, -1.0, std::nan("")}) {
       SpiralPlan p = plan();
       p.*field = bad;
       EXPECT_THAT(rejection(p), HasSubstr("must be above 0")) << bad;
     }
+  for (const double bad : {0.0, 1e-15, 0.02, std::nan("")}) {
+    SpiralPlan p = plan();
+    p.chord_tolerance = bad;
+    EXPECT_THAT(rejection(p), HasSubstr("outside 0.001 to 10 mm")) << bad;
+  }
   SpiralPlan p = plan();
   p.lean = 70 * kDegree;
   EXPECT_THAT(rejection(p), HasSubstr("lean is 70 deg, outside 0 to 60 deg"));

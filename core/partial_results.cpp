@@ -1,0 +1,50 @@
+#include "core/partial_results.h"
+
+#include <mutex>
+#include <set>
+#include <system_error>
+#include <utility>
+
+namespace understudy {
+namespace {
+
+/// Never destroyed: a thread may outlive the static objects.
+struct Registry {
+  std::mutex mutex;
+  std::multiset<std::filesystem::path> paths;
+};
+Registry& registry() {
+  static auto* const the = new Registry;
+  return *the;
+}
+
+void take_away(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
+}  // namespace
+
+PartialResult::PartialResult(std::filesystem::path path) : path_(std::move(path)) {
+  const std::scoped_lock lock(registry().mutex);
+  registry().paths.insert(path_);
+}
+
+PartialResult::~PartialResult() {
+  const std::scoped_lock lock(registry().mutex);
+  if (keep_) return;
+  registry().paths.erase(registry().paths.find(path_));
+  take_away(path_);
+}
+
+void PartialResult::keep() {
+  const std::scoped_lock lock(registry().mutex);
+  if (!std::exchange(keep_, true)) registry().paths.erase(registry().paths.find(path_));
+}
+
+void remove_partial_results() {
+  registry().mutex.lock();  // for good
+  for (const auto& path : registry().paths) take_away(path);
+}
+
+}  // namespace understudy
