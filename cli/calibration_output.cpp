@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "core/file/output_file.h"
+#include "core/file/output_folder.h"
 #include "core/interrupt.h"
-#include "core/output_file.h"
-#include "core/output_folder.h"
 #include "machine/file/calibration_section.h"
 #include "report/calibration_summary.h"
 #include "report/page/calibration_page.h"

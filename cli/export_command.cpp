@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "machine/description.h"
 #include "machine/file/urdf_writer.h"
 

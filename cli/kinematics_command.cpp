@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "core/error.h"
-#include "core/number_table.h"
+#include "core/file/number_table.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "machine/pose_table.h"

@@ -17,8 +17,8 @@
 #include "cli/command.h"
 #include "core/error.h"
 #include "core/interrupt.h"
-#include "core/printable.h"
 #include "core/standard_streams.h"
+#include "core/text/printable.h"
 #include "core/version.h"
 
 namespace {
@@ -55,8 +55,7 @@ void check_first_word(const CLI::App& app, int argc, char** argv) {
 std::string footer() {
   const std::string status =
       "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed; "
-      "128 + the signal where "
-      "one ended it.\n";
+      "128 + the number of a signal that ended it.\n";
   const std::vector<std::string> left_out = cli::left_out_commands();
   if (left_out.empty())
     return status + "Start with: understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out";
@@ -101,7 +100,7 @@ int main(int argc, char** argv) {
   } catch (const InputError& e) {
     return fail(cli::kBadInput, e.what());
   } catch (const Interrupted&) {
-    fail(cli::kFailed, "interrupted: nothing unfinished is left");
+    fail(cli::kFailed, std::string(kInterrupted));
     die_of_interrupt();
     return cli::kFailed;
   } catch (const std::bad_alloc&) {

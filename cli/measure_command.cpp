@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 
 #include "core/error.h"
+#include "core/file/output_file.h"
 #include "core/interrupt.h"
-#include "core/output_file.h"
 
 namespace understudy::cli {
 

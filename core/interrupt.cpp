@@ -1,12 +1,13 @@
 #include "core/interrupt.h"
 
+#include <semaphore.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <string_view>
+#include <string>
 #include <thread>
 
 #include "core/error.h"
@@ -16,10 +17,11 @@ namespace understudy {
 namespace {
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
-constexpr std::chrono::milliseconds kPatience{800}, kTick{50};
+constexpr std::chrono::milliseconds kPatience{800};
 
 std::atomic<bool> flag{false};
 std::atomic<int> received{0};
+sem_t first_signal;  // a semaphore may be posted in a handler
 
 void die_of(int number) {
   std::signal(number, SIG_DFL);
@@ -38,21 +40,25 @@ void on_signal(int number) {
     std::signal(number, SIG_DFL);
     std::raise(number);
   }
+  ::sem_post(&first_signal);
 }
 
 /// Its own thread: it looks at the clock while the others work.
 void end_what_does_not_answer() {
-  while (received.load() == 0) std::this_thread::sleep_for(kTick);
+  while (::sem_wait(&first_signal) != 0) {
+  }
   std::this_thread::sleep_for(kPatience);
   remove_partial_results();
-  constexpr std::string_view kSaid = "interrupted: nothing unfinished is left\n";
-  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, kSaid.data(), kSaid.size());
+  std::string said(kInterrupted);
+  said += '\n';
+  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, said.data(), said.size());
   die_of(received.load());
 }
 
 }  // namespace
 
 void watch_for_interrupt() {
+  ::sem_init(&first_signal, 0, 0);
   for (const int number : kSignals)  // one that is ignored (nohup, a shell's background) stays so
     if (std::signal(number, on_signal) == SIG_IGN) std::signal(number, SIG_IGN);
   // The signals are for the working threads: this one only waits.

@@ -11,7 +11,7 @@
 #include <assimp/Importer.hpp>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "geometry/mesh.h"
 #include "geometry/stl_structure.h"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 
 namespace understudy::machine {
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "core/digest.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "kinematics/chain/chain_kind.h"
 #include "machine/accepted_errors.h"
 #include "machine/built_tolerances.h"

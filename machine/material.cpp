@@ -13,7 +13,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "machine/description.h"
 #include "machine/model_files.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/map_schema.h"
+#include "core/yaml/map_schema.h"
 
 namespace understudy::machine {
 

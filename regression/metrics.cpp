@@ -4,9 +4,9 @@
 #include <set>
 #include <string_view>
 
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "rehearsal/figures.h"
-#include "rehearsal/verdict.h"
+#include "rehearsal/findings/verdict.h"
 
 namespace understudy::regression {
 namespace {

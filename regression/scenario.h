@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "regression/metrics.h"
-#include "rehearsal/request.h"
+#include "rehearsal/request/request.h"
 
 namespace understudy::regression {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 
 namespace understudy::regression {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/yaml_map.h"
-#include "rehearsal/fault_request.h"
+#include "core/yaml/yaml_map.h"
+#include "rehearsal/request/fault_request.h"
 
 namespace understudy::regression {
 

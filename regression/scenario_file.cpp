@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "control/registration/pattern.h"
-#include "core/output_file.h"
-#include "core/yaml_map.h"
+#include "core/file/read_file.h"
+#include "core/yaml/yaml_map.h"
 #include "regression/scenario_faults.h"
 #include "rehearsal/run_twin.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/map_schema.h"
+#include "core/yaml/map_schema.h"
 #include "regression/scenario.h"
 
 namespace understudy::regression {

@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "core/file/run_journal.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
-#include "core/run_journal.h"
 #include "core/units.h"
-#include "rehearsal/input_digest.h"
 #include "rehearsal/rehearse.h"
+#include "rehearsal/request/input_digest.h"
 
 namespace understudy::regression {
 namespace {

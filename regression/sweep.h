@@ -7,7 +7,7 @@
 
 #include "core/progress.h"
 #include "regression/metrics.h"
-#include "rehearsal/request.h"
+#include "rehearsal/request/request.h"
 
 namespace understudy::regression {
 
@@ -28,7 +28,7 @@ struct SweepRow {
 
 /// Rehearses with seeds first..first+count-1 on `threads` threads. Rows are ordered by seed and do not depend
 /// on the number of threads. Throws what rehearse() throws, for the smallest seed that failed.
-/// `journal`: file that keeps the rows until all are there (core/run_journal.h), but for their metrics;
+/// `journal`: file that keeps the rows until all are there (core/file/run_journal.h), but for their metrics;
 /// empty: none.
 std::vector<SweepRow> sweep(const rehearsal::RehearsalRequest& request, std::uint64_t first, int count,
                             int threads, const Progress& progress = {}, const std::string& journal = {});

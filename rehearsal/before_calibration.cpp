@@ -8,7 +8,7 @@
 
 #include "control/motion/constraint_check.h"
 #include "core/error.h"
-#include "rehearsal/findings.h"
+#include "rehearsal/findings/findings.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -12,7 +12,7 @@
 #include "control/registration/part_fit.h"
 #include "core/frames.h"
 #include "machine/port.h"
-#include "rehearsal/finding.h"
+#include "rehearsal/findings/finding.h"
 #include "rehearsal/scene.h"
 
 namespace understudy::rehearsal {

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/built_tolerances.h"
-#include "rehearsal/findings.h"
+#include "rehearsal/findings/findings.h"
 
 namespace understudy::rehearsal {
 namespace {

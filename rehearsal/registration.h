@@ -8,9 +8,9 @@
 
 #include "control/motion/constraint_check.h"
 #include "control/registration/register_part.h"
-#include "rehearsal/finding.h"
+#include "rehearsal/findings/finding.h"
 #include "rehearsal/record.h"
-#include "rehearsal/request.h"
+#include "rehearsal/request/request.h"
 
 namespace understudy::rehearsal {
 

@@ -3,7 +3,7 @@
 
 #include "core/progress.h"
 #include "rehearsal/record.h"
-#include "rehearsal/request.h"
+#include "rehearsal/request/request.h"
 
 namespace understudy::rehearsal {
 

@@ -6,7 +6,7 @@
 
 #include "geometry/mesh.h"
 #include "rehearsal/record.h"
-#include "rehearsal/request.h"
+#include "rehearsal/request/request.h"
 #include "sim/deposition/workpiece.h"
 
 namespace understudy::rehearsal {

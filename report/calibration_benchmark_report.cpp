@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/plugin/child_process.h"
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "core/units.h"
 #include "core/version.h"
 #include "report/json_text.h"

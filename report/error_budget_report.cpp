@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/assert.h"
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "core/version.h"
 #include "report/json_text.h"
 

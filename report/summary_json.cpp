@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "rehearsal/figures.h"
-#include "rehearsal/finding_groups.h"
-#include "rehearsal/verdict.h"
+#include "rehearsal/findings/finding_groups.h"
+#include "rehearsal/findings/verdict.h"
 #include "report/json_text.h"
 
 namespace understudy::report {

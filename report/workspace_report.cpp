@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/file_unit.h"
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "core/yaml/file_unit.h"
 #include "report/json_text.h"
 
 namespace understudy::report {

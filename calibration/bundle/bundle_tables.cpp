@@ -11,8 +11,8 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "core/number_table.h"
-#include "core/output_file.h"
+#include "core/file/number_table.h"
+#include "core/file/read_file.h"
 
 namespace understudy::calibration {
 namespace {

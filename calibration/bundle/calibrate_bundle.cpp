@@ -14,7 +14,7 @@
 #include "calibration/strut_model.h"
 #include "core/digest.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "machine/built_tolerances.h"
 
 namespace understudy::calibration {

@@ -11,8 +11,8 @@
 
 #include "core/digest.h"
 #include "core/error.h"
-#include "core/number_table.h"
-#include "core/output_file.h"
+#include "core/file/number_table.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 
 namespace understudy::calibration {

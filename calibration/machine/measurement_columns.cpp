@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "core/number_table.h"
+#include "core/file/number_table.h"
 #include "core/units.h"
 
 namespace understudy::calibration {

@@ -12,8 +12,8 @@
 #include "calibration/machine/plausibility.h"
 #include "core/digest.h"
 #include "core/error.h"
-#include "core/number_table.h"
-#include "core/output_file.h"
+#include "core/file/number_table.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 
 namespace understudy::calibration {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "calibration/plugin/child_process.h"
-#include "core/json_depth.h"
+#include "core/text/json_depth.h"
 #include "core/units.h"
 
 namespace understudy::calibration::exchange {

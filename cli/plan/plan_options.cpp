@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/number_table.h"
-#include "core/output_file.h"
+#include "core/file/number_table.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
 

@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/seed_option.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
 #include "sim/as_built/as_built.h"

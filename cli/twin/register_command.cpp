@@ -13,8 +13,8 @@
 #include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
 #include "core/error.h"
+#include "core/file/output_file.h"
 #include "core/interrupt.h"
-#include "core/output_file.h"
 #include "core/units.h"
 #include "rehearsal/rehearse.h"
 

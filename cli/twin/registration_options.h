@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 
 #include "rehearsal/record.h"
-#include "rehearsal/request.h"
+#include "rehearsal/request/request.h"
 
 namespace understudy::cli {
 

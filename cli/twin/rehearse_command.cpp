@@ -11,12 +11,12 @@
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
+#include "core/file/output_file.h"
+#include "core/file/output_folder.h"
 #include "core/interrupt.h"
-#include "core/output_file.h"
-#include "core/output_folder.h"
-#include "rehearsal/finding_groups.h"
+#include "rehearsal/findings/finding_groups.h"
+#include "rehearsal/findings/verdict.h"
 #include "rehearsal/rehearse.h"
-#include "rehearsal/verdict.h"
 #include "report/page/write_results.h"
 
 namespace understudy::cli {

@@ -11,7 +11,7 @@
 #include "cli/machine_option.h"
 #include "cli/seed_option.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "report/picture/render_images.h"
 

@@ -10,8 +10,8 @@
 #include "cli/jobs_option.h"
 #include "cli/progress.h"
 #include "core/error.h"
-#include "core/output_file.h"
-#include "core/output_folder.h"
+#include "core/file/output_file.h"
+#include "core/file/output_folder.h"
 #include "regression/junit.h"
 #include "regression/run_scenario.h"
 #include "regression/scenario_file.h"
@@ -51,14 +51,15 @@ regression::RecordSink results_in(const fs::path& folder) {
   };
 }
 
-/// Each has a folder of its file's name.
-void check_folders(const std::vector<regression::Scenario>& scenarios) {
+/// Each has a folder of its file's name, whose older result may be replaced.
+void check_folders(const std::vector<regression::Scenario>& scenarios, const fs::path& folder) {
   std::map<std::string, fs::path> taken;
   for (const auto& scenario : scenarios) {
     const auto [other, is_new] = taken.emplace(scenario.file.stem().string(), scenario.file);
     if (!is_new)
       throw InputError(fmt::format("{} and {} would write into one folder of --out: rename one",
                                    other->second.string(), scenario.file.string()));
+    check_replaceable(folder / scenario.file.stem());
   }
 }
 
@@ -66,7 +67,7 @@ int run(const ScenarioRequest& request) {
   check_jobs(request.threads);
   std::vector<regression::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
   for (const auto& file : scenario_files(request.paths)) scenarios.push_back(regression::load_scenario(file));
-  if (!request.folder.empty()) check_folders(scenarios);
+  if (!request.folder.empty()) check_folders(scenarios, request.folder);
   if (!request.junit.empty()) check_writable(request.junit);
   std::vector<regression::ScenarioResult> results;
   int failed = 0;

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "core/map_schema.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "core/yaml/map_schema.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
 #include "machine/material.h"

@@ -11,7 +11,7 @@
 
 #include "control/registration/tool_clearance.h"
 #include "core/error.h"
-#include "core/number_table.h"
+#include "core/file/number_table.h"
 #include "core/units.h"
 
 namespace understudy::control {

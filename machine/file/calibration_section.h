@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "machine/calibrated_parameters.h"
 #include "machine/description.h"
 #include "machine/file/section_text.h"

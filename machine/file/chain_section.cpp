@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/digest.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
 #include "machine/file/tool_section.h"

@@ -2,7 +2,7 @@
 // with its range, drive, play and the body that it carries.
 #pragma once
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "machine/description.h"
 
 namespace understudy::machine {

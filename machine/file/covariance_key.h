@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 
 namespace understudy::machine {
 

@@ -1,7 +1,7 @@
 // The hexapod's part of machine.yaml: geometry of three-fold symmetry, and what struts and joints allow.
 #pragma once
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "machine/description.h"
 
 namespace understudy::machine {

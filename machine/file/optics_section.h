@@ -1,7 +1,7 @@
 // The parts of machine.yaml about seeing the gap: laser and microscope, and whether they see the dot at all.
 #pragma once
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "machine/description.h"
 
 namespace understudy::machine {

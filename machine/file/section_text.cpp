@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
 #include "machine/description.h"
 
 namespace understudy::machine {

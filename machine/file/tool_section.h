@@ -1,7 +1,7 @@
 // The parts of machine.yaml about what moves and what it weighs: drives, play, masses, the tool's bodies.
 #pragma once
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "machine/description.h"
 
 namespace understudy::machine {

@@ -12,8 +12,8 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
-#include "core/xml.h"
+#include "core/file/read_file.h"
+#include "core/text/xml.h"
 
 namespace understudy::machine {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/xml.h"
+#include "core/text/xml.h"
 
 namespace understudy::machine {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
 

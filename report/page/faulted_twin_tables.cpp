@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "core/units.h"
 #include "studies/gap/injected_fault.h"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "core/version.h"
 #include "report/chart/gap_benchmark_charts.h"
 #include "report/json_text.h"

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/stable_number.h"
+#include "core/text/stable_number.h"
 #include "core/units.h"
-#include "rehearsal/verdict.h"
+#include "rehearsal/findings/verdict.h"
 #include "report/picture/png.h"
 #include "report/summary_json.h"
 #include "report/trace_values.h"

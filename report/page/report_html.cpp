@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "rehearsal/verdict.h"
+#include "rehearsal/findings/verdict.h"
 #include "report/json_text.h"
 #include "report/markup.h"
 #include "report/page/page_parts.h"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "report/page/report_html.h"
 #include "report/picture/png.h"

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "sim/as_built/file_parts.h"
 #include "sim/as_built/world_file.h"
 

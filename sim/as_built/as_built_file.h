@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/map_schema.h"
+#include "core/yaml/map_schema.h"
 #include "sim/as_built/as_built.h"
 
 namespace understudy::sim {

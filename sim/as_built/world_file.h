@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 #include "sim/as_built/as_built.h"
 
 namespace understudy::sim {

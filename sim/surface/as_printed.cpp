@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/file/output_file.h"
+#include "core/file/output_folder.h"
 #include "core/interrupt.h"
-#include "core/output_file.h"
-#include "core/output_folder.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "sim/beads/bead_shape.h"

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/file/run_journal.h"
 #include "core/parallel.h"
-#include "core/run_journal.h"
 #include "machine/description.h"
-#include "rehearsal/input_digest.h"
 #include "rehearsal/rehearse.h"
+#include "rehearsal/request/input_digest.h"
 #include "sim/as_built/as_built.h"
 
 namespace understudy::studies {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "rehearsal/request.h"
+#include "rehearsal/request/request.h"
 #include "sim/as_built/truth_seeds.h"
 #include "studies/budget/sobol_indices.h"
 
@@ -23,7 +23,8 @@ struct BudgetRequest {
   int samples = 64;                   ///< pairs of worlds
   std::uint64_t first_seed = 1;       ///< of them, two each
   int threads = 1;                    ///< the result does not depend on it
-  std::string journal;  ///< file that keeps the answers until all are there (core/run_journal.h); empty: none
+  std::string
+      journal;  ///< file that keeps the answers until all are there (core/file/run_journal.h); empty: none
 };
 
 /// What is rehearsed, before it is.

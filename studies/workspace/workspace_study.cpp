@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/file_unit.h"
 #include "core/units.h"
+#include "core/yaml/file_unit.h"
 
 namespace understudy::studies {
 namespace {

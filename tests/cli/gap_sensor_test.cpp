@@ -8,7 +8,7 @@
 
 #include "control/gap/gap_reading.h"
 #include "control/gap/sensor_uncertainty.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/description.h"
 #include "sim/as_built/truth.h"

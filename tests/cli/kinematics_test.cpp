@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/number_table.h"
+#include "core/file/number_table.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {

@@ -12,8 +12,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/file/read_file.h"
 #include "core/frames.h"
-#include "core/output_file.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {

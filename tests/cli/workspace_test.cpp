@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {

@@ -1,7 +1,7 @@
 // Tolerances of what is no geometry: read in SI, and refused where they are none.
 #include "machine/built_tolerances.h"
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "tests/machine/edited_file.h"
 
 namespace understudy::machine {

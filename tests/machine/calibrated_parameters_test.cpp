@@ -1,7 +1,7 @@
 // What a machine file keeps of a calibration: comes back as it was written, and is refused where it is none.
 #include "machine/calibrated_parameters.h"
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "machine/file/calibration_section.h"

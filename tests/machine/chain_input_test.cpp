@@ -1,5 +1,5 @@
 // Mistakes in the files of open chains: one line with file, line, key, value and limit.
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "tests/machine/edited_file.h"
 #include "tests/machine/scara.h"
 

@@ -13,7 +13,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 
 namespace understudy::machine {

@@ -8,7 +8,7 @@
 
 #include <unistd.h>
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
 

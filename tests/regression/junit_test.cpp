@@ -8,7 +8,7 @@
 
 #include <unistd.h>
 
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 
 namespace understudy::regression {
 namespace {

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "regression/scenario_file.h"
 
 namespace understudy::regression {

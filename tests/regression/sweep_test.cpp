@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
 #include "machine/description.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::regression {
 namespace {
@@ -25,9 +27,8 @@ rehearsal::RehearsalRequest bottle() {
 
 /// The journal of a sweep that died after its second machine, whose row has a wrong verdict: whoever
 /// rehearses that machine again does not see the mark.
-std::string marked_journal() {
-  const std::string journal = (fs::path(testing::TempDir()) / "sweep-test.journal").string();
-  fs::remove(journal);
+std::string marked_journal(const TemporaryFolder& folder) {
+  const std::string journal = (folder / "journal").string();
   const auto dies = [](double share, const std::string&) {
     if (share > 0.5) throw MachineError("killed");
   };
@@ -42,7 +43,8 @@ std::string marked_journal() {
 }
 
 TEST(Sweep, AKilledOneGoesOnWithTheSameRows) {
-  const std::string journal = marked_journal();
+  const TemporaryFolder folder;
+  const std::string journal = marked_journal(folder);
   const auto resumed = sweep(bottle(), 1, 3, 1, {}, journal);
   EXPECT_FALSE(fs::exists(journal));
   const auto whole = sweep(bottle(), 1, 3, 1);
@@ -59,7 +61,8 @@ TEST(Sweep, AKilledOneGoesOnWithTheSameRows) {
 TEST(Sweep, AChangedInputBeginsAnewThoughTheFirstMachineDoesNotShowIt) {
   rehearsal::RehearsalRequest changed = bottle();
   changed.orientation_tolerance_deg = 44;
-  const auto anew = sweep(changed, 1, 3, 1, {}, marked_journal());
+  const TemporaryFolder folder;
+  const auto anew = sweep(changed, 1, 3, 1, {}, marked_journal(folder));
   const auto whole = sweep(changed, 1, 3, 1);
   EXPECT_EQ(anew[0].go, whole[0].go);
   EXPECT_EQ(anew[1].go, whole[1].go);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/description.h"
 #include "rehearsal/rehearse.h"

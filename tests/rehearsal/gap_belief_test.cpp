@@ -8,11 +8,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
 #include "kinematics/hexapod/hexapod.h"
 #include "rehearsal/rehearse.h"
 #include "rehearsal/run_figures.h"
 #include "sim/as_built/as_built_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -165,8 +167,7 @@ TEST(BeliefFigures, AreWeightedByThePath) {
 
 /// The bottle's line, its first 2.4 mm.
 Record bottle(const std::string& as_built, std::uint64_t seed, const std::string& mode) {
-  const auto folder = std::filesystem::temp_directory_path() / "gap-belief-test";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const std::string line =
       read_file(machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode");
   const std::string last = "E0.060344";
@@ -179,9 +180,7 @@ Record bottle(const std::string& as_built, std::uint64_t seed, const std::string
   request.seed = seed;
   request.gap_control = mode;
   request.keep_scene = request.compare_without_gap_control = false;
-  const Record record = rehearse(request);
-  std::filesystem::remove_all(folder);
-  return record;
+  return rehearse(request);
 }
 
 /// A machine as drawn whose camera's principal point is not: 64 px/mm (docs/gap-control.md), so 4 px are

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/rehearse.h"
 #include "rehearsal/run_figures.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/machine/calibrate_machine.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "report/page/calibration_page.h"
 #include "tests/calibration/machine/measured_machine.h"

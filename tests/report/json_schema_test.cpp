@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/yaml_map.h"
+#include "core/yaml/yaml_map.h"
 
 namespace understudy::report {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/gcode_block.h"
 #include "toolpath/gcode/gcode_lexer.h"

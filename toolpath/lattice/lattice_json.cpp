@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/json_depth.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
+#include "core/text/json_depth.h"
 #include "core/units.h"
 
 namespace understudy::toolpath {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/number_table.h"
-#include "core/output_file.h"
+#include "core/file/number_table.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 
 namespace understudy::toolpath {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 
 namespace understudy::toolpath {

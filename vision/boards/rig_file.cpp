@@ -5,10 +5,10 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/map_schema.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
-#include "core/yaml_map.h"
+#include "core/yaml/map_schema.h"
+#include "core/yaml/yaml_map.h"
 #include "vision/boards/rig_measurement.h"
 
 namespace understudy::vision {

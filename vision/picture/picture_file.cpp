@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 
 namespace understudy::vision {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/xml.h"
+#include "core/text/xml.h"
 #include "sim/plant/plant.h"
 
 namespace understudy::sim {

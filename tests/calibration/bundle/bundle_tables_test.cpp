@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::calibration {
 namespace {
@@ -17,10 +18,9 @@ using ::testing::ThrowsMessage;
 
 class BundleTables : public ::testing::Test {
  protected:
-  BundleTables() : file_(std::filesystem::path(::testing::TempDir()) / "bundle-table.csv") {
+  BundleTables() : file_(folder_ / "bundle-table.csv") {
     rig_.board.columns = 2, rig_.board.rows = 3, rig_.layers = 2;
   }
-  ~BundleTables() override { std::filesystem::remove(file_); }
 
   std::vector<vision::SeenBoard> corners(const std::string& text) {
     write_file(file_, text);
@@ -41,6 +41,7 @@ class BundleTables : public ::testing::Test {
   static constexpr const char* kTargets =
       "picture,pose,camera,target,u_px,v_px,c11_px2,c12_px2,c22_px2,radius_px\n";
 
+  TemporaryFolder folder_;
   std::filesystem::path file_;
   vision::CalibrationRig rig_;
 };

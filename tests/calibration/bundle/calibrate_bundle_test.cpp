@@ -9,7 +9,8 @@
 
 #include "calibration/machine/measurement_table.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "drawn_bundle.h"
 #include "vision/boards/rig_file.h"

@@ -10,7 +10,7 @@
 
 #include "calibration/machine/estimation_report.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "machine/file/calibration_section.h"
 #include "tests/calibration/machine/measured_machine.h"

@@ -9,7 +9,7 @@
 #include "calibration/machine/calibrate_machine.h"
 #include "calibration/machine/measurement_columns.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "tests/calibration/machine/measured_machine.h"
 

@@ -8,7 +8,7 @@
 
 #include "control/motion/constraint_check.h"
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "tests/control/five_axis_for_test.h"

@@ -3,7 +3,7 @@
 
 #include <regex>
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/random_vector.h"
 #include "core/units.h"
 #include "tests/machine/edited_file.h"

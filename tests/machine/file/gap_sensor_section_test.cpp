@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/random.h"
 #include "machine/file/section_text.h"
 #include "machine/optics_mounting.h"

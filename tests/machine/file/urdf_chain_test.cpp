@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/random_vector.h"
 #include "kinematics/chain/chain.h"
 #include "machine/file/urdf_writer.h"

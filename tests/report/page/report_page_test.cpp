@@ -10,7 +10,7 @@
 
 #include <unistd.h>
 
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "report/page/report_html.h"
 #include "tests/report/sample_record.h"
 

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "report/summary_json.h"
 #include "tests/report/sample_record.h"
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/random.h"
 #include "machine/file/calibration_section.h"
 #include "sim/as_built/as_built_file.h"

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "sim/as_built/as_built.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/plant/plant.h"

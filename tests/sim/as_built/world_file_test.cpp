@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "sim/as_built/as_built_file.h"
 
 namespace understudy::sim {

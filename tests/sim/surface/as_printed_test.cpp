@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "tests/geometry/test_solids.h"
 

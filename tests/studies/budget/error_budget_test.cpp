@@ -8,7 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
 #include "machine/description.h"
 
 namespace understudy::studies {

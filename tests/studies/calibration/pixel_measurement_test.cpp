@@ -9,7 +9,7 @@
 
 #include "calibration/machine/calibrate_machine.h"
 #include "calibration/pose_choice.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "sim/as_built/as_built.h"
 #include "studies/calibration/calibration_benchmark.h"

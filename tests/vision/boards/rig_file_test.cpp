@@ -6,7 +6,9 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::vision {
 namespace {
@@ -18,14 +20,13 @@ const std::string kExample = std::string(UNDERSTUDY_SOURCE_DIR) + "/examples/rig
 /// A file that is removed with the object.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& text)
-      : path_((std::filesystem::path(::testing::TempDir()) / "rig-file-test.yaml").string()) {
+  explicit TemporaryFile(const std::string& text) : path_((folder_ / "rig.yaml").string()) {
     write_file(path_, text);
   }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
   const std::string& path() const { return path_; }
 
  private:
+  TemporaryFolder folder_;
   std::string path_;
 };
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 #include "tests/vision/boards/drawn_picture.h"
 #include "tests/vision/boards/two_cameras.h"
 

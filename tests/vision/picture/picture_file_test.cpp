@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "core/file/output_file.h"
 
 namespace understudy::vision {
 namespace {

@@ -1,0 +1,224 @@
+#include "core/file/output_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/digest.h"
+#include "core/error.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
+
+namespace understudy {
+namespace fs = std::filesystem;
+namespace {
+
+/// Tells that the folder TARGET.part is ours, to be taken away; in TARGET it tells nothing.
+constexpr const char* kUnfinished = ".understudy-unfinished";
+constexpr std::size_t kDigest = 64;  // hexadecimal digits
+
+[[noreturn]] void refuse(const fs::path& target, const std::string& why) {
+  throw InputError(fmt::format("cannot write {}: {}", target.string(), why));
+}
+
+std::string text_of(int error) { return std::generic_category().message(error); }
+
+using Digests = std::map<std::string, std::string>;  // by name, relative to the folder
+
+Digests read_manifest(const fs::path& folder) {
+  Digests digests;
+  std::error_code ignored;
+  if (!fs::is_regular_file(folder / kManifest, ignored)) return digests;
+  std::istringstream lines(read_file(folder / kManifest));
+  for (std::string line; std::getline(lines, line);)
+    if (line.size() > kDigest + 2) digests[line.substr(kDigest + 2)] = line.substr(0, kDigest);
+  return digests;
+}
+
+bool is_folder(const fs::directory_entry& entry) { return entry.is_directory() && !entry.is_symlink(); }
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (!is_folder(entry) && entry.path() != folder / kUnfinished) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string manifest_of(const fs::path& folder) {
+  std::string text;
+  for (const fs::path& file : files_in(folder))
+    text += fmt::format("{}  {}\n", sha256_hex(read_file(file)), file.lexically_relative(folder).string());
+  return text;
+}
+
+/// What a user has put into the folder of an older result, in words; empty: nothing.
+std::string foreign_in(const fs::path& folder) {
+  const Digests ours = read_manifest(folder);
+  for (const fs::path& file : files_in(folder)) {
+    const std::string name = file.lexically_relative(folder).string();
+    if (name == kManifest && !ours.empty()) continue;
+    const auto known = ours.find(name);
+    if (known == ours.end()) return fmt::format("it holds {}, which no earlier run wrote", name);
+    if (fs::is_symlink(file) || sha256_hex(read_file(file)) != known->second)
+      return fmt::format("{} in it was changed since a run wrote it", name);
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string() + "/";
+    const auto first = ours.lower_bound(name);
+    if (is_folder(entry) && (first == ours.end() || !first->first.starts_with(name)))
+      return fmt::format("it holds {}, which no earlier run wrote", name);
+  }
+  return "";
+}
+
+/// Empty: it does not exist, or an earlier run wrote all that is in it.
+std::string why_not_replaceable(const fs::path& target) {
+  try {
+    const fs::file_status is = fs::symlink_status(target);
+    if (!fs::exists(is)) return "";
+    if (fs::is_symlink(is)) return "it is a link: name the folder that it leads to";
+    if (!fs::is_directory(is)) return "it is a file";
+    const std::string foreign = foreign_in(target);
+    return foreign.empty() ? "" : foreign + ": move it, or name another folder";
+  } catch (const fs::filesystem_error& e) {
+    return e.code().message();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
+/// Where the old result lies between the two steps of a replacement that cannot be one.
+std::string old_name(const fs::path& working) { return working.string() + ".old"; }
+
+/// After a run that was killed between those.
+void restore_old(const fs::path& working, const fs::path& target) {
+  std::error_code ignored;
+  if (fs::exists(fs::symlink_status(target, ignored))) return;
+  (void)::renameat2(AT_FDCWD, old_name(working).c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE);
+}
+
+/// The folder that was locked is not one that another run has renamed meanwhile.
+bool is_still(const fs::path& path, const Descriptor& file) {
+  struct stat named {
+  }, opened{};
+  return ::lstat(path.c_str(), &named) == 0 && ::fstat(file.get(), &opened) == 0 &&
+         named.st_ino == opened.st_ino && named.st_dev == opened.st_dev;
+}
+
+/// In one step, so that the old result or the new one lies under the target's name; in two where the file
+/// system cannot do that. errno, or 0.
+int exchange(const fs::path& working, const fs::path& target) {
+  const auto swap = [&](const char* from, const char* to, unsigned how) {
+    return ::renameat2(AT_FDCWD, from, AT_FDCWD, to, how) == 0 ? 0 : errno;
+  };
+  const int failure = swap(working.c_str(), target.c_str(), RENAME_EXCHANGE);
+  if (failure != EINVAL) return failure;
+  const std::string old = old_name(working);
+  if (const int moved = swap(target.c_str(), old.c_str(), 0); moved != 0) return moved;
+  if (const int moved = swap(working.c_str(), target.c_str(), 0); moved != 0) {
+    std::rename(old.c_str(), target.c_str());
+    return moved;
+  }
+  return swap(old.c_str(), working.c_str(), 0);
+}
+
+int move_new(const fs::path& working, const fs::path& target) {
+  if (::renameat2(AT_FDCWD, working.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL) return errno;
+  return std::rename(working.c_str(), target.c_str()) == 0 ? 0 : errno;
+}
+
+/// Removes what its manifest names; whatever else has come into it stays, with the folders that it lies in.
+void remove_result(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& [name, digest] : read_manifest(folder)) fs::remove(folder / name, ignored);
+  fs::remove(folder / kManifest, ignored);
+  fs::remove(folder / kUnfinished, ignored);
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
+    if (is_folder(entry)) folders.push_back(entry.path());
+  std::sort(folders.rbegin(), folders.rend());
+  for (const fs::path& inner : folders) fs::remove(inner, ignored);  // where it is empty
+  fs::remove(folder, ignored);
+}
+
+}  // namespace
+
+void check_replaceable(const fs::path& target) {
+  if (const std::string why = why_not_replaceable(target); !why.empty()) refuse(target, why);
+}
+
+OutputFolder::OutputFolder(fs::path target) : target_(std::move(target)) {
+  while (!target_.has_filename() && target_.has_parent_path() && target_ != target_.parent_path())
+    target_ = target_.parent_path();
+  if (target_.empty()) throw InputError("the output folder has no name");
+  if (!target_.has_filename() || target_.filename() == "." || target_.filename() == "..")
+    refuse(target_, "name a folder of its own");
+  working_ = target_;
+  working_ += ".part";
+  lock();
+  begin();
+}
+
+/// The lock is the folder itself: it ends with the process, however that dies.
+void OutputFolder::lock() {
+  std::error_code error;
+  if (target_.has_parent_path()) fs::create_directories(target_.parent_path(), error);
+  if (error) refuse(target_, error.message());
+  do {
+    if (::mkdir(working_.c_str(), 0777) != 0 && errno != EEXIST) refuse(target_, text_of(errno));
+    lock_ = Descriptor(::open(working_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    if (lock_.get() < 0) refuse(target_, working_.string() + ": " + text_of(errno));
+    if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) refuse(target_, "another run is writing it");
+  } while (!is_still(working_, lock_));
+}
+
+/// What a run that was killed has left is taken over.
+void OutputFolder::begin() {
+  std::error_code error;
+  if (!fs::is_empty(working_, error) && !fs::exists(working_ / kUnfinished, error))
+    refuse(target_, fmt::format("{} is in the way, and no earlier run left it", working_.string()));
+  partial_.emplace(working_);
+  restore_old(working_, target_);
+  check_replaceable(target_);
+  write_file(working_ / kUnfinished, "");
+  for (const auto& entry : fs::directory_iterator(working_, error))
+    if (entry.path().filename() != kUnfinished) fs::remove_all(entry.path(), error);
+}
+
+void OutputFolder::commit() {
+  std::error_code error;
+  write_file(working_ / kManifest, manifest_of(working_));
+  const auto stays = [&](const std::string& why) {
+    partial_->keep();
+    for (const fs::path& folder : {working_, target_}) fs::remove(folder / kUnfinished, error);
+    throw MachineError(
+        fmt::format("cannot write {}: {}; the result is in {}", target_.string(), why, working_.string()));
+  };
+  const bool replaces = fs::exists(fs::symlink_status(target_, error));
+  // What came into it while we worked is a user's.
+  if (const std::string why = why_not_replaceable(target_); !why.empty()) stays(why);
+  // Both are marked: whichever lies under TARGET.part when the process dies is taken away by the next run.
+  if (replaces && !std::ofstream(target_ / kUnfinished)) stays(text_of(errno));
+  if (const int failure = replaces ? exchange(working_, target_) : move_new(working_, target_); failure != 0)
+    stays(text_of(failure));
+  partial_->keep();
+  fs::remove(target_ / kUnfinished, error);
+  if (replaces) remove_result(working_);
+}
+
+}  // namespace understudy

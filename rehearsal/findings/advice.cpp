@@ -1,0 +1,152 @@
+#include "rehearsal/findings/advice.h"
+
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace understudy::rehearsal {
+namespace {
+
+/// The option that puts the program so much higher than in this run.
+std::string place_higher(double height_mm, const Record& record) {
+  const auto& [x, y, z] = record.place_mm;
+  constexpr double kSteps = 100;  // hundredths of a millimetre, rounded up
+  return fmt::format("`--place {:g},{:g},{:g}`", x, y, std::ceil(kSteps * (z + height_mm)) / kSteps);
+}
+
+std::string show_reach(const Record& record) {
+  return fmt::format("`understudy workspace --machine {}` shows what it reaches", record.machine_word);
+}
+
+std::string calibrate(const Record& record) {
+  return fmt::format(
+      "calibrate: measure the tool's pose at the poses that `understudy sample-poses --machine {0} -o "
+      "measured.csv` lists, then `understudy calibrate measured.csv --machine {0} -o calibrated.yaml` and "
+      "rehearse with `--machine calibrated.yaml`",
+      record.machine_word);
+}
+
+std::string move_into_reach(const Finding&, const Record& record) {
+  return "shift the program into reach with `--place X,Y,Z` (mm), or change these lines; " +
+         show_reach(record);
+}
+
+std::string lean_less(const Finding&, const Record& record) {
+  return fmt::format(
+      "lean the tool less there, or shift the program with `--place X,Y,Z` (mm); `understudy workspace "
+      "--machine {} --tilt 20` shows where it may lean by 20 degrees",
+      record.machine_word);
+}
+
+std::string avoid_singular_pose(const Finding&, const Record& record) {
+  return "lead the tool past the singular pose: lean it by a degree more, or shift the program with `--place "
+         "X,Y,Z` (mm); " +
+         show_reach(record);
+}
+
+/// The nozzle is lower than planned: by `height_mm` at the worst.
+std::string raise_nozzle(double height_mm, const Record& record) {
+  if (record.measures_gap && record.gap_control == "off")
+    return "let the machine measure the gap: `--gap-control start`";
+  if (record.measures_gap && record.gap_control == "start")
+    return "let the machine follow the surface along the path: `--gap-control continuous`";
+  return fmt::format("print higher: {}; or {}", place_higher(height_mm, record), calibrate(record));
+}
+
+std::string about_contact(const Finding& finding, const Record& record) {
+  if (finding.about.starts_with("nozzle"))
+    return raise_nozzle(record.gap_accepted_min_mm - finding.value, record);
+  return "give the two more room: lean the tool away, print what is tall last, or shift the program with "
+         "`--place X,Y,Z` (mm)";
+}
+
+std::string about_gap(const Finding& finding, const Record& record) {
+  if (finding.about == kStopped && record.fixture_name.empty())
+    return "if the print lies on a part, name it: `--fixture FILE.stl`; else look at the laser frames in the "
+           "report";
+  if (finding.about == kStopped)
+    return fmt::format(
+        "look at the laser frames in the report; is the part where the program expects it (`--place X,Y,Z`)? "
+        "If the dot "
+        "moves beside its line, laser and camera are not where the machine file has them: take pictures of "
+        "the dot over "
+        "a flat and run `understudy calibrate gap-sensor table.csv --machine {} -o ready.yaml` "
+        "(docs/gap-sensor-calibration.md)",
+        record.machine_word);
+  if (finding.about == kUncontrolled)
+    return "begin each bead with a straight move against the tool axis, as `understudy plan surface` does";
+  if (finding.about == kUnmeasured)
+    return "nothing, if these beads lie level with the one before; else begin them where the dot meets the "
+           "part";
+  return raise_nozzle(finding.limit - finding.value, record);
+}
+
+std::string about_adhesion(const Finding& finding, const Record& record) {
+  if (finding.about == kTooLow) return raise_nozzle(record.gap_accepted_min_mm - finding.value, record);
+  if (finding.about == kCold)
+    return "print the layer sooner, hotter (`M104 S...`) or with less fan (`M106 S...`)";
+  if (finding.about == kNothingBelow && record.fixture_name.empty())
+    return "if the print lies on a part, name it: `--fixture FILE.stl`; else move it onto the table with "
+           "`--place X,Y,Z` (mm)";
+  if (finding.about == kNothingBelow) return "move the program over the part with `--place X,Y,Z` (mm)";
+  if (record.measures_gap && record.gap_control != "continuous")
+    return raise_nozzle(0, record);  // what measures the gap mends it either way
+  return "print lower there: a first layer's height within the accepted gap, or `--place X,Y,Z` (mm)";
+}
+
+std::string about_accuracy(const Finding& finding, const Record& record) {
+  constexpr double kTolerable = 2;  // times the limit: more is no question of tolerance
+  if (finding.value > kTolerable * finding.limit) return calibrate(record);
+  return fmt::format("{}; or accept it with `{} {:g}`", calibrate(record),
+                     finding.about == kTip ? "--tip-tolerance" : "--orientation-tolerance",
+                     std::ceil(10 * finding.value) / 10);
+}
+
+std::string about_registration(const Finding&, const Record& record) {
+  return fmt::format(
+      "see in the report which places did not fit: is it this part, clamped as drawn and clean, and are the "
+      "machine "
+      "(`understudy calibrate`) and its gap sensor (`understudy calibrate gap-sensor`) calibrated? Is what "
+      "`part` "
+      "of the section tolerances of {} says of the clamped part true?",
+      record.machine_word);
+}
+
+using About = std::function<std::string(const Finding&, const Record&)>;
+
+About always(const char* text) {
+  return [text](const Finding&, const Record&) { return text; };
+}
+
+const std::map<std::string, About>& advice_by_kind() {
+  static const std::map<std::string, About> kinds{
+      {"strut_length", move_into_reach},
+      {"joint_limit", move_into_reach},
+      {"joint_angle", lean_less},
+      {"unreachable", move_into_reach},
+      {"singularity", avoid_singular_pose},
+      {"axis_velocity", always("lower the feed F there; else the print takes longer than programmed")},
+      {"axis_acceleration", always("lower the feed F there; else the print takes longer than programmed")},
+      {"collision", about_contact},
+      {"near_collision", always("nothing, if the machine's bodies are described as large as they are")},
+      {"accuracy", about_accuracy},
+      {"gap", about_gap},
+      {"registration", about_registration},
+      {"flow", always("lower the feed F where the bead begins and ends, or let the extruder start earlier")},
+      {"adhesion", about_adhesion},
+      {"sag", always("draw the strand slower and with more fan (`M106 S255`), or hold it at both ends")}};
+  return kinds;
+}
+
+}  // namespace
+
+std::string advice(const Finding& finding, const Record& record) {
+  if (finding.kind == "unreachable" && finding.about == kStopped)
+    return "mend what stopped it; everything after this line is not simulated";
+  const auto entry = advice_by_kind().find(finding.kind);
+  return entry == advice_by_kind().end() ? "" : entry->second(finding, record);
+}
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,64 @@
+// What a user asks of a rehearsal, as plain data.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "machine/default_machine.h"
+#include "rehearsal/request/fault_request.h"
+#include "sim/as_built/truth_seeds.h"
+
+namespace understudy::rehearsal {
+
+/// How a program of another machine is read (docs/gcode.md).
+struct DialectRequest {
+  std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
+  std::string extruder_letter = "E";        ///< E or A
+  int b_sign = 1, c_sign = 1;               ///< -1: the program counts that axis the other way round
+  std::string coordinates;                  ///< of rotary programs: tip, machine, crossing; empty: tip
+};
+
+/// What is asked about the surface as printed (docs/surface.md).
+struct SurfaceRequest {
+  std::string as_printed;               ///< .stl or .ply to write; empty: none
+  std::string intended;                 ///< STL that the print was to become, or a name under models/parts
+  std::vector<double> profile_mm;       ///< line from, to: six numbers in W; empty: none
+  std::vector<double> probe{0, 0, -1};  ///< direction in which the line looks for the surface
+};
+
+/// Whether the part is found by the gap sensor before the print (docs/registration.md).
+struct RegistrationRequest {
+  bool wanted = false;
+  std::string pattern;  ///< CSV of places; empty: chosen
+  int places = 9;       ///< of the chosen ones
+};
+
+struct RehearsalRequest {
+  std::string program;                             ///< path of a G-code file; empty: nothing is printed
+  std::string machine = machine::kDefaultMachine;  ///< name or path
+  std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
+  std::string engine = "mujoco";
+  std::string fixture;   ///< STL path, a name under models/parts, or empty: only the table
+  std::string material;  ///< name or path; empty: the machine's
+  std::string as_built;  ///< of sim::make_as_built; empty: sim::default_as_built
+  std::uint64_t seed = 1;
+  std::optional<sim::TruthSeeds> truth_seeds;  ///< of each group of truths; nothing: `seed` of all
+  std::string gap_control;  ///< off, start, continuous; empty: start on a machine that sees, else off
+  /// Largest true errors of a print that is good; without one, the machine file's.
+  std::optional<double> tip_tolerance_mm, orientation_tolerance_deg;
+  std::vector<FaultRequest> faults;               ///< what goes wrong with the machine on the way
+  std::vector<CameraFaultRequest> camera_faults;  ///< and with its gap sensor
+  DialectRequest dialect;
+  SurfaceRequest surface;
+  RegistrationRequest registration;
+  std::string command;      ///< for the record: how a user repeats this
+  double max_time = 86400;  ///< [s], of the program; what would take longer is refused
+  bool keep_scene = true;   ///< keep what pictures are drawn from; sweeps leave it out
+  bool compare_without_gap_control =
+      true;  ///< run the print again with gap control off, for open-loop figures
+};
+
+}  // namespace understudy::rehearsal

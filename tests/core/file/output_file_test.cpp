@@ -1,0 +1,45 @@
+#include "core/file/output_file.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/file/read_file.h"
+#include "tests/temporary_folder.h"
+
+namespace understudy {
+namespace {
+namespace fs = std::filesystem;
+
+class OutputFile : public ::testing::Test {
+ protected:
+  TemporaryFolder root_;
+};
+
+TEST_F(OutputFile, AFailedWriteLeavesTheOldFile) {
+  write_file(root_ / "a", "old");
+  fs::create_directory(root_ / "d");
+  EXPECT_THROW(write_file(root_ / "missing" / "a", "new"), InputError);
+  EXPECT_THROW(write_file(root_ / "d", "new"), InputError);
+  EXPECT_EQ(read_file(root_ / "a"), "old");
+  EXPECT_EQ(root_.entries(), 2);
+}
+
+TEST_F(OutputFile, AFullDiskIsNoBadInput) {
+  EXPECT_THROW(write_file("/dev/full", "x"), MachineError);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(OutputFile, LinksAndDevicesStayWhatTheyAre) {
+  write_file(root_ / "a", "old");
+  fs::create_symlink("a", root_ / "link");
+  write_file(root_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(root_ / "link"));
+  EXPECT_EQ(read_file(root_ / "a"), "new");
+  write_file("/dev/null", "x");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+}  // namespace
+}  // namespace understudy

@@ -1,0 +1,169 @@
+#include "core/file/output_folder.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/file/output_file.h"
+#include "core/file/read_file.h"
+#include "tests/temporary_folder.h"
+
+namespace understudy {
+namespace {
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class OutputFolderTest : public ::testing::Test {
+ protected:
+  void write_result(const std::string& name) const {
+    OutputFolder folder(root_ / "out");
+    write_file(folder.path() / "summary.json", name);
+    fs::create_directory(folder.path() / "pictures");
+    write_file(folder.path() / "pictures" / name, "x");
+    folder.commit();
+  }
+  std::string refusal(const fs::path& target) const {
+    try {
+      OutputFolder folder(target);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  TemporaryFolder root_;
+};
+
+TEST_F(OutputFolderTest, WithoutCommitNothingRemains) {
+  {
+    OutputFolder folder(root_ / "out");
+    write_file(folder.path() / "summary.json", "{}");
+    EXPECT_FALSE(fs::exists(root_ / "out"));
+  }
+  EXPECT_EQ(root_.entries(), 0);
+}
+
+TEST_F(OutputFolderTest, CommitReplacesAnOlderResultWhole) {
+  write_result("first");
+  write_result("second");
+  EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "second");
+  EXPECT_FALSE(fs::exists(root_ / "out" / "pictures" / "first"));
+  EXPECT_TRUE(fs::exists(root_ / "out" / "pictures" / "second"));
+  EXPECT_EQ(root_.entries(), 1);
+}
+
+TEST_F(OutputFolderTest, TheManifestIsWhatSha256sumChecks) {
+  write_result("first");
+  EXPECT_EQ(
+      std::system(("cd '" + (root_ / "out").string() + "' && sha256sum --quiet -c manifest.sha256").c_str()),
+      0);
+}
+
+TEST_F(OutputFolderTest, WhatAUserPutThereStaysAndIsNamed) {
+  fs::create_directories(root_ / "photos");
+  write_file(root_ / "photos" / "a.jpg", "precious");
+  write_file(root_ / "photos" / "summary.json", "{}");
+  EXPECT_THAT(refusal(root_ / "photos"), HasSubstr("a.jpg, which no earlier run wrote"));
+  EXPECT_EQ(read_file(root_ / "photos" / "a.jpg"), "precious");
+
+  write_result("first");
+  write_file(root_ / "out" / "notes.txt", "mine");
+  EXPECT_THAT(refusal(root_ / "out"), HasSubstr("notes.txt"));
+  fs::remove(root_ / "out" / "notes.txt");
+  write_file(root_ / "out" / "summary.json", "with my remarks");
+  EXPECT_THAT(refusal(root_ / "out"), HasSubstr("summary.json in it was changed"));
+  write_file(root_ / "out" / "summary.json", "first");
+  fs::create_directory(root_ / "out" / "more");
+  EXPECT_THAT(refusal(root_ / "out"), HasSubstr("more/"));
+  fs::remove(root_ / "out" / "more");
+  EXPECT_EQ(refusal(root_ / "out"), "accepted");
+}
+
+TEST_F(OutputFolderTest, WhatAppearsDuringTheRunStaysAndTheResultIsKeptBesideIt) {
+  OutputFolder folder(root_ / "out");
+  write_file(folder.path() / "summary.json", "new");
+  fs::create_directory(root_ / "out");
+  write_file(root_ / "out" / "thesis.tex", "precious");
+  try {
+    folder.commit();
+    FAIL() << "the thesis is gone";
+  } catch (const MachineError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("thesis.tex"));
+    EXPECT_THAT(error.what(), HasSubstr("the result is in"));
+  }
+  EXPECT_EQ(read_file(root_ / "out" / "thesis.tex"), "precious");
+  EXPECT_EQ(read_file(root_ / "out.part" / "summary.json"), "new");
+}
+
+TEST_F(OutputFolderTest, ASecondRunIntoTheSameFolderIsRefusedAtOnce) {
+  const OutputFolder first(root_ / "out");
+  EXPECT_THAT(refusal(root_ / "out"), HasSubstr("another run is writing it"));
+  EXPECT_TRUE(fs::exists(first.path()));
+}
+
+TEST_F(OutputFolderTest, WhatAKilledRunLeftIsTakenOver) {
+  write_result("first");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    OutputFolder folder(root_ / "out");
+    write_file(folder.path() / "half", "x");
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "first");
+  EXPECT_TRUE(fs::exists(root_ / "out.part" / "half"));
+  write_result("second");
+  EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "second");
+  EXPECT_EQ(root_.entries(), 1);
+}
+
+TEST_F(OutputFolderTest, AnOldResultThatLiesBetweenTwoRenamesComesBack) {
+  write_result("first");
+  fs::rename(root_ / "out", root_ / "out.part.old");
+  { const OutputFolder next(root_ / "out"); }
+  EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "first");
+  EXPECT_EQ(root_.entries(), 1);
+}
+
+TEST_F(OutputFolderTest, ARunThatWasKilledAfterItsRenameHasWrittenItsResult) {
+  write_result("first");
+  write_file(root_ / "out" / ".understudy-unfinished", "");
+  write_result("second");
+  EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "second");
+  EXPECT_EQ(root_.entries(), 1);
+  EXPECT_FALSE(fs::exists(root_ / "out" / ".understudy-unfinished"));
+}
+
+TEST_F(OutputFolderTest, ARefusalLeavesNothing) {
+  fs::create_directory(root_ / "photos");
+  write_file(root_ / "photos" / "a.jpg", "precious");
+  EXPECT_THROW(OutputFolder(root_ / "photos"), InputError);
+  EXPECT_THROW(check_replaceable(root_ / "photos"), InputError);
+  EXPECT_NO_THROW(check_replaceable(root_ / "out"));
+  EXPECT_EQ(root_.entries(), 1);
+}
+
+TEST_F(OutputFolderTest, AFolderOfTheSameNameAsOursThatIsNotStays) {
+  fs::create_directory(root_ / "out.part");
+  write_file(root_ / "out.part" / "a.jpg", "precious");
+  EXPECT_THAT(refusal(root_ / "out"), HasSubstr("in the way"));
+  EXPECT_EQ(read_file(root_ / "out.part" / "a.jpg"), "precious");
+}
+
+TEST_F(OutputFolderTest, AFolderThatCannotBeMadeIsBadInput) {
+  write_file(root_ / "file", "x");
+  EXPECT_NE(refusal(root_ / "file" / "out"), "accepted");
+  EXPECT_THAT(refusal(root_ / "file"), HasSubstr("it is a file"));
+  for (const char* target : {"/proc/understudy", "/", "//", ".", "..", "/.."})
+    EXPECT_NE(refusal(target), "accepted") << target;
+  EXPECT_THROW(OutputFolder(""), InputError);
+}
+
+}  // namespace
+}  // namespace understudy

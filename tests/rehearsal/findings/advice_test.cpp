@@ -1,0 +1,63 @@
+#include "rehearsal/findings/advice.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace understudy::rehearsal {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+Finding too_low(double gap_mm) {
+  return {"gap", Severity::error, 22, 6, gap_mm, 0.1, "mm", "the nozzle runs too low", 0, kTooLow};
+}
+
+Record on_a_machine(bool measures_gap, const char* gap_control) {
+  Record record;
+  record.machine_word = "models/mine/machine.yaml";
+  record.measures_gap = measures_gap;
+  record.gap_control = gap_control;
+  record.gap_accepted_min_mm = 0.1;
+  return record;
+}
+
+TEST(Advice, AMachineThatSeesIsToldToMeasureTheGapAndThenToFollowIt) {
+  EXPECT_THAT(advice(too_low(0.082), on_a_machine(true, "off")), HasSubstr("`--gap-control start`"));
+  EXPECT_THAT(advice(too_low(0.082), on_a_machine(true, "start")), HasSubstr("`--gap-control continuous`"));
+  EXPECT_THAT(advice(too_low(0.082), on_a_machine(true, "continuous")), HasSubstr("`understudy calibrate "));
+}
+
+// 0.018 mm are missing: hundredths, rounded up, on top of where the program stands now.
+TEST(Advice, AMachineThatDoesNotSeeIsToldHowMuchHigher) {
+  Record record = on_a_machine(false, "off");
+  EXPECT_THAT(advice(too_low(0.082), record), HasSubstr("`--place 0,0,0.02`"));
+  record.place_mm = {5, -2, 0.5};
+  EXPECT_THAT(advice(too_low(0.082), record), HasSubstr("`--place 5,-2,0.52`"));
+}
+
+TEST(Advice, CommandsNameTheMachineAsItWasAskedFor) {
+  const Finding error{"accuracy", Severity::error, 0, 0, 0.74, 0.5, "mm", "", 0, kTip};
+  const std::string text = advice(error, on_a_machine(true, "start"));
+  EXPECT_THAT(text, HasSubstr("calibrate measured.csv --machine models/mine/machine.yaml "));
+  EXPECT_THAT(text, HasSubstr("`--tip-tolerance 0.8`"));
+}
+
+TEST(Advice, ABeadOverNothingAsksForThePart) {
+  Finding loose{"adhesion", Severity::error, 6, 1, 5, 0.2, "mm", "", 0, kNothingBelow};
+  Record record = on_a_machine(true, "start");
+  EXPECT_THAT(advice(loose, record), HasSubstr("`--fixture "));
+  record.fixture_name = "bottle";
+  EXPECT_THAT(advice(loose, record), Not(HasSubstr("--fixture")));
+}
+
+TEST(Advice, EveryKindOfFindingHasSome) {
+  for (const char* kind :
+       {"strut_length", "joint_angle", "joint_limit", "axis_velocity", "axis_acceleration", "singularity",
+        "unreachable", "collision", "near_collision", "accuracy", "gap", "adhesion", "sag", "flow"})
+    EXPECT_THAT(advice({kind, Severity::error, 1, 0, 0, 0, "", ""}, Record()), Not(IsEmpty())) << kind;
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

@@ -1,0 +1,58 @@
+// What the observers saw, as findings.
+#include "rehearsal/findings/findings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+/// 0.6 mm that lie 0.22 mm over the part, held by what follows; a bead is 0.8 mm wide there.
+sim::UnsupportedStretch high_start() {
+  sim::UnsupportedStretch stretch;
+  stretch.line = 11;
+  stretch.length = from_mm(0.6);
+  stretch.width = from_mm(0.8);
+  stretch.volume = 1e-11;
+  stretch.worst_gap = from_mm(0.22);
+  stretch.held_at_end = true;
+  return stretch;
+}
+
+std::vector<Finding> findings_of_stretch(const sim::UnsupportedStretch& stretch) {
+  TwinSetup setup;
+  setup.machine = machine::load_machine("hexapod");
+  TwinRun run;
+  run.result.completed = true;
+  run.loose = {stretch};
+  return findings_of(run, setup, control::GapControl::off);
+}
+
+TEST(Findings, ALineThatBeginsTooHighIsAWarning) {
+  const auto findings = findings_of_stretch(high_start());
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].severity, Severity::warning);
+  EXPECT_EQ(findings[0].gcode_line, 11);
+  EXPECT_NEAR(findings[0].value, 0.22, 1e-12);
+  EXPECT_NEAR(findings[0].limit, 0.2, 1e-12) << "Song 2015: a bead laid higher does not stick";
+  EXPECT_THAT(findings[0].message, testing::HasSubstr("0.220 mm over the surface, above 0.200 mm"));
+}
+
+TEST(Findings, AGrooveOfThePrintIsNone) {
+  sim::UnsupportedStretch groove = high_start();
+  groove.held_at_start = groove.on_printed = true;
+  EXPECT_TRUE(findings_of_stretch(groove).empty());
+}
+
+TEST(Findings, WhatNothingHoldsIsAnError) {
+  sim::UnsupportedStretch loose = high_start();
+  loose.held_at_end = false;
+  const auto findings = findings_of_stretch(loose);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].severity, Severity::error);
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

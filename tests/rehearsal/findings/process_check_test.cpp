@@ -1,0 +1,98 @@
+#include "rehearsal/findings/process_check.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "rehearsal/fixture.h"
+#include "tests/geometry/test_solids.h"
+#include "toolpath/gcode/gcode.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(const std::string& text, const std::string& material = "abs") {
+  const auto machine = machine::load_machine("hexapod");
+  toolpath::GcodeOptions options;
+  options.X_WT_home = machine.X_WB * machine.X_BT_home;
+  const auto program = toolpath::parse_gcode(text, "p.gcode", options);
+  try {
+    check_process(program, machine, machine::load_material(material));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ProcessCheck, ExtrusionBeforeAnyTemperatureNamesTheLine) {
+  EXPECT_THAT(refusal("G1 X5 E0.2 F300\n"), HasSubstr("p.gcode:1: extrudes before any nozzle temperature"));
+  EXPECT_EQ(refusal("M109 S230\nG1 X5 E0.2 F300\n"), "accepted");
+  EXPECT_EQ(refusal("G1 X5 F300\n"), "accepted") << "travel needs no heat";
+}
+
+// ABS is solid below 105 C, PLA below 60 C (docs/reference.md#cooling).
+TEST(ProcessCheck, ExtrusionOfSolidMaterialNamesTemperatureAndLimit) {
+  EXPECT_THAT(
+      refusal("M104 S90\nG1 X5 E0.2 F300\n"),
+      HasSubstr("p.gcode:2: extrudes at 90.0 C, where abs is solid: its glass transition is at 105.0 C"));
+  EXPECT_EQ(refusal("M104 S90\nG1 X5 E0.2 F300\n", "pla"), "accepted");
+}
+
+// 1.75 mm filament has 2.405 mm2; five bores of 0.4 mm squared are 4 mm2.
+TEST(ProcessCheck, AnAbsurdFlowNamesTheBead) {
+  EXPECT_THAT(refusal("M104 S230\nG1 X10 E20 F300\n"), HasSubstr("a bead of 4.81 mm2, more than 4.00 mm2"));
+  EXPECT_EQ(refusal("M104 S230\nG1 X10 E16 F300\n"), "accepted");
+}
+
+TEST(ProcessCheck, APrimeAtAStandstillIsNoBead) {
+  EXPECT_EQ(refusal("M104 S230\nG1 E30 F300\nG1 X10 E31\n"), "accepted");
+  EXPECT_THAT(refusal("M104 S230\nG1 E130 F300\n"), HasSubstr("more than 100 mm"));
+}
+
+TEST(ProcessCheck, WhatARetractionTookBackIsNotCountedTwice) {
+  EXPECT_EQ(refusal("M104 S230\nG1 E10 F300\nG1 E2\nG1 X2 E10.1\n"), "accepted");
+}
+
+TEST(ProcessCheck, FilamentDrawnOutOfTheHotEndIsRefused) {
+  EXPECT_THAT(refusal("M104 S230\nG1 X10 E1 F300\nG1 X20 E-59\n"),
+              HasSubstr("p.gcode:3: 60.00 mm of filament are drawn back, more than 50 mm"));
+}
+
+class Fixture : public testing::Test {
+ protected:
+  ~Fixture() override { std::filesystem::remove(path_); }
+  std::string refusal_of_box(const Vec3& low, const Vec3& high) {
+    const geometry::Triangles box = geometry::box(low, high);
+    const geometry::Mesh mesh(box.vertices, box.triangles);
+    std::ofstream(path_, std::ios::binary) << geometry::write_stl(mesh, "box");
+    try {
+      read_fixture(path_.string(), machine::load_machine("hexapod"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  const std::filesystem::path path_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("fixture.") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".stl");
+};
+
+TEST_F(Fixture, StandsOnTheTable) {
+  EXPECT_EQ(refusal_of_box({-0.01, -0.01, 0}, {0.01, 0.01, 0.02}), "accepted");
+  EXPECT_THAT(refusal_of_box({-0.01, -0.01, -0.003}, {0.01, 0.01, 0.02}),
+              HasSubstr("reaches 3.000 mm below the table's top"));
+}
+
+// The hexapod's home tip is 50 mm above the table.
+TEST_F(Fixture, DoesNotStandWhereTheMachineIsAtHome) {
+  EXPECT_THAT(refusal_of_box({-0.01, -0.01, 0}, {0.01, 0.01, 0.06}),
+              HasSubstr("stands where the nozzle of hexapod is at home"));
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal
