@@ -15,6 +15,7 @@ enum Exit : int { kGood = 0, kNo = 1, kBadInput = 2, kFailed = 3 };
 using Action = std::function<int()>;
 
 void add_rehearse(CLI::App& app, Action& action);
+void add_verify(CLI::App& app, Action& action);
 void add_register(CLI::App& app, Action& action);
 void add_scenario(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);
@@ -43,5 +44,7 @@ std::vector<std::string> left_out_commands();
 /// Words of the command line, quoted where a shell needs it: how a user repeats this run.
 void remember_command_line(int argc, char** argv);
 const std::string& command_line();
+/// The words again.
+std::vector<std::string> split_command_line(const std::string& line);
 
 }  // namespace understudy::cli

@@ -1,5 +1,6 @@
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/command.h"
 
@@ -25,5 +26,24 @@ void remember_command_line(int argc, char** argv) {
 }
 
 const std::string& command_line() { return remembered; }
+
+std::vector<std::string> split_command_line(const std::string& line) {
+  std::vector<std::string> words;
+  bool in_word = false, in_quotes = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == ' ' && !in_quotes) {
+      in_word = false;
+      continue;
+    }
+    if (!in_word) words.emplace_back();
+    in_word = true;
+    if (c == '\'')
+      in_quotes = !in_quotes;
+    else
+      words.back() += c == '\\' && !in_quotes && i + 1 < line.size() ? line[++i] : c;
+  }
+  return words;
+}
 
 }  // namespace understudy::cli

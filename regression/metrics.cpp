@@ -92,8 +92,10 @@ constexpr const char* kFigures[] = {"print.duration_s",
                                     "surface.deviation_p95_um",
                                     "engine.timestep_s",
                                     "engine.steps",
-                                    "engine.real_time_factor",
-                                    "engine.closure_max_um"};
+                                    "engine.closure_max_um",
+                                    "timing.simulated_s",
+                                    "timing.wall_s",
+                                    "timing.real_time_factor"};
 // What a series of machines knows besides the summaries (run_scenario.h).
 constexpr const char* kSeriesFigures[] = {"approach.min_gap_mm"};
 constexpr const char* kTexts[] = {"verdict",
@@ -130,7 +132,9 @@ Metrics metrics_of(const rehearsal::Record& record) {
   metrics["grade"] = word(rehearsal::grade_of(record));
   metrics["exit_status"] = record.go ? 0.0 : 1.0;
   std::set<std::string> sections;
-  for (const rehearsal::Figure& figure : rehearsal::figures(record)) {
+  std::vector<rehearsal::Figure> figures = rehearsal::figures(record);
+  for (const rehearsal::Figure& figure : rehearsal::timing_figures(record)) figures.push_back(figure);
+  for (const rehearsal::Figure& figure : figures) {
     sections.insert(figure.section);
     const std::string name = figure.section + "." + figure.name;
     if (const auto* number = std::get_if<double>(&figure.value))

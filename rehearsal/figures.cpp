@@ -138,7 +138,6 @@ void add(const EngineFigures& engine, Figures& to) {
   to.text("version", engine.version);
   to.put("timestep_s", engine.timestep_s);
   to.count("steps", engine.steps);
-  to.put("real_time_factor", engine.real_time_factor);
   to.put("closure_max_um", engine.closure_max_um);
 }
 
@@ -170,6 +169,17 @@ std::vector<Figure> figures(const Record& record) {
   if (record.surface) add(*record.surface, all);
   if (record.engine) add(*record.engine, all);
   add(record.provenance, all);
+  return all.take();
+}
+
+std::vector<Figure> timing_figures(const Record& record) {
+  Figures all;
+  if (!record.timing) return {};
+  all.section("timing");
+  all.put("simulated_s", record.timing->simulated_s);
+  all.put("wall_s", record.timing->wall_s);
+  if (record.timing->wall_s > 0)
+    all.put("real_time_factor", record.timing->simulated_s / record.timing->wall_s);
   return all.take();
 }
 

@@ -22,5 +22,8 @@ struct Figure {
 
 /// Section by section in the order of the contract; what is absent is left out.
 std::vector<Figure> figures(const Record& record);
+/// Section "timing"; empty where nothing was simulated. Not in the summary, which is the same for equal
+/// inputs.
+std::vector<Figure> timing_figures(const Record& record);
 
 }  // namespace understudy::rehearsal

@@ -99,8 +99,11 @@ struct EngineFigures {
   std::string name, version;
   double timestep_s = 0;
   std::uint64_t steps = 0;
-  double real_time_factor = 0;
   double closure_max_um = 0;
+};
+/// By the clock on the wall: the one part of a record that differs from run to run.
+struct TimingFigures {
+  double simulated_s = 0, wall_s = 0;
 };
 struct Provenance {
   std::string version, machine_sha256, program_sha256;
@@ -171,6 +174,7 @@ struct Record {
   std::optional<SurfaceFigures> surface;
   std::optional<RegistrationFigures> registration;  ///< where it was asked for
   std::optional<EngineFigures> engine;
+  std::optional<TimingFigures> timing;
   Provenance provenance;
 
   std::string as_built;  ///< every true parameter, as the file that --as-built reads

@@ -78,6 +78,7 @@ void fill_figures(const TwinRun& run, const TwinRun* without, const machine::Mac
   record.print = print_figures(run, truth);
   record.collision = run.collision;
   record.engine = run.engine;
+  record.timing = run.timing;
   record.accuracy = run.accuracy;
   const auto& open_loop = without ? without->accuracy : run.accuracy;
   if (record.accuracy && open_loop) record.accuracy->open_loop_tip_max_um = open_loop->tip_max_um;

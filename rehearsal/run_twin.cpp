@@ -147,7 +147,7 @@ control::PrintResult not_printed(const RegistrationRun& registration) {
   return result;
 }
 
-EngineFigures engine_of(const sim::Plant& plant, const sim::SimulatedPort& port, double wall) {
+EngineFigures engine_of(const sim::Plant& plant, const sim::SimulatedPort& port) {
   const std::string engine = plant.engine();
   const auto space = engine.find(' ');
   EngineFigures figures;
@@ -155,7 +155,6 @@ EngineFigures engine_of(const sim::Plant& plant, const sim::SimulatedPort& port,
   figures.version = space == std::string::npos ? "" : engine.substr(space + 1);
   figures.timestep_s = plant.timestep();
   figures.steps = port.steps();
-  figures.real_time_factor = plant.time() / wall;
   figures.closure_max_um = to_um(port.closure_max());
   return figures;
 }
@@ -251,7 +250,8 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   }
   run.altered_frames = port.altered_frames();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
-  run.engine = engine_of(*plant, port, wall.count());
+  run.engine = engine_of(*plant, port);
+  run.timing = {plant->time(), wall.count()};
   return run;
 }
 

@@ -62,6 +62,7 @@ struct TwinRun {
   std::vector<sim::AirStrand> strands;
   std::shared_ptr<sim::Workpiece> workpiece;  ///< as printed
   EngineFigures engine;
+  TimingFigures timing;
 };
 
 struct RunOptions {

@@ -1,5 +1,7 @@
 #include "rehearsal/surface.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -45,6 +47,9 @@ void measure_deviation(const SurfaceTask& task, const sim::Workpiece& workpiece,
       to_um(deviation.largest));
 }
 
+/// Neither shorter nor infinite nor not a number.
+bool is_length(const Vec3& v, double least) { return v.norm() >= least && std::isfinite(v.norm()); }
+
 Finding not_measured(const std::string& why) {
   Finding f;
   f.kind = "unreachable";
@@ -63,10 +68,10 @@ SurfaceTask prepare_surface(const SurfaceRequest& request) {
     throw InputError("--as-printed " + file + ": ends in neither .stl nor .ply");
   if (!request.intended.empty()) task.intended = geometry::read_stl(machine::find_fixture(request.intended));
   const auto& v = request.profile_mm;
-  if (!v.empty() && (v.size() != 6 || Vec3(v[3] - v[0], v[4] - v[1], v[5] - v[2]).norm() < 1e-3))
+  if (!v.empty() && (v.size() != 6 || !is_length(Vec3(v[3] - v[0], v[4] - v[1], v[5] - v[2]), 1e-3)))
     throw InputError("--profile: six numbers that tell two points apart, x,y,z,x,y,z in mm");
   if (request.probe.size() != 3 ||
-      !(Vec3(request.probe[0], request.probe[1], request.probe[2]).norm() > 1e-9))
+      !is_length(Vec3(request.probe[0], request.probe[1], request.probe[2]), 1e-9))
     throw InputError("--probe: three numbers that are a direction, x,y,z");
   return task;
 }

@@ -3,8 +3,11 @@
 #include <GL/osmesa.h>
 
 #include <array>
+#include <cstdlib>
 #include <mutex>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -23,6 +26,14 @@ void load(Function& function, const char* name) {
   if (!function) throw MachineError(std::string("OSMesa does not provide ") + name);
 }
 
+/// Mesa dereferences a null pointer where it does not know the driver.
+void check_driver() {
+  const char* asked = std::getenv("GALLIUM_DRIVER");
+  const std::string_view word = asked ? asked : "";
+  if (!word.empty() && word != "llvmpipe" && word != "softpipe")
+    throw MachineError("GALLIUM_DRIVER is '" + std::string(word) + "', not llvmpipe or softpipe: unset it");
+}
+
 }  // namespace
 
 struct GlContext::Handle {
@@ -32,6 +43,7 @@ struct GlContext::Handle {
 };
 
 GlContext::GlContext() : handle_(std::make_unique<Handle>()) {
+  check_driver();
   const std::lock_guard lock(context_mutex());
   const int attributes[] = {OSMESA_FORMAT,
                             OSMESA_RGBA,

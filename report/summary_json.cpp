@@ -80,6 +80,14 @@ Json summary_value(const rehearsal::Record& record) {
   return summary;
 }
 
+std::string timing_json(const rehearsal::Record& record) {
+  Json timing;
+  timing["schema"] = "understudy.timing/1";
+  for (const rehearsal::Figure& figure : rehearsal::timing_figures(record))
+    timing[figure.name] = figure_value(figure);
+  return to_text(timing, 2) + "\n";
+}
+
 std::string summary_json(const rehearsal::Record& record) { return to_text(summary_value(record), 2) + "\n"; }
 
 }  // namespace understudy::report

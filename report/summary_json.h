@@ -14,4 +14,8 @@ namespace understudy::report {
 nlohmann::ordered_json summary_value(const rehearsal::Record& record);
 std::string summary_json(const rehearsal::Record& record);
 
+/// What differs from run to run: how long it took.
+std::string timing_json(const rehearsal::Record& record);
+constexpr const char* kTimingFile = "timing.json";
+
 }  // namespace understudy::report

@@ -11,6 +11,7 @@
 #include "control/motion/motion_planner.h"
 #include "control/motion/path_kinematics.h"
 #include "core/error.h"
+#include "core/interrupt.h"
 
 namespace understudy::control {
 
@@ -164,6 +165,7 @@ class Checker {
   }
 
   void plan(const Step& step) {
+    stop_if_interrupted();
     if (!plannable_) return;
     try {
       planner_.push(step);

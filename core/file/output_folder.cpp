@@ -158,6 +158,15 @@ void remove_result(const fs::path& folder) {
 
 }  // namespace
 
+std::string why_not_as_written(const fs::path& folder) {
+  if (!fs::is_directory(folder)) throw InputError(fmt::format("{} is no folder of results", folder.string()));
+  const Digests ours = read_manifest(folder);
+  if (ours.empty()) return fmt::format("it has no {}", kManifest);
+  for (const auto& [name, digest] : ours)
+    if (!fs::is_regular_file(folder / name)) return fmt::format("{} is missing", name);
+  return foreign_in(folder);
+}
+
 void check_replaceable(const fs::path& target) {
   if (const std::string why = why_not_replaceable(target); !why.empty()) refuse(target, why);
 }

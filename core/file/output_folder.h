@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "core/file/descriptor.h"
 #include "core/partial_results.h"
@@ -36,6 +37,10 @@ class OutputFolder {
   Descriptor lock_;  ///< of the working folder
   std::optional<PartialResult> partial_;
 };
+
+/// Why `folder` is not as a run left it: a file that is missing, was changed or came into it, or no manifest
+/// at all. Empty: it is. Throws InputError where it cannot be read.
+std::string why_not_as_written(const std::filesystem::path& folder);
 
 /// Throws InputError where an OutputFolder could not replace `target`: to be asked of many before long work.
 void check_replaceable(const std::filesystem::path& target);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/digest.h"
+#include "core/error.h"
+#include "core/file/outside.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
@@ -214,7 +216,11 @@ void read_urdf_chain(YamlMap& map, MachineDescription& machine) {
   const Pose X_LT = read_tool_mount(map);
   if (map.recording()) model.kinematics.chain.axes.resize(1);  // one axis for all
   if (!map.complete()) return;
-  const auto path = machine.file.parent_path() / file;
+  const auto folder = machine.file.parent_path(), path = folder / file;
+  if (!may_be_named_from(folder, path))
+    throw InputError(map.place("urdf"), fmt::format("{} is '{}', outside the machine file's folder: copy it "
+                                                    "there, or set {}=1 if you trust this file",
+                                                    map.path("urdf"), file, kAllowOutside));
   const UrdfArm arm = read_urdf(path, base, tool);
   machine.sha256 = sha256_hex(machine.sha256 + sha256_hex(read_file(path)));  // the machine is both files
   model.kinematics.chain = arm.chain;

@@ -3,9 +3,11 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <string_view>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
@@ -49,6 +51,17 @@ class QuietConsole final : public console_bridge::OutputHandler {
 
 constexpr int kLinksMax = 1000;  // docs/limits.md
 constexpr std::size_t kBytesMax = 64'000'000;
+constexpr std::size_t kNameMax = 100;
+constexpr double kMassMax = 1e4;     // [kg], as machine files have it
+constexpr double kInertiaMax = 1e6;  // [kg m^2]: ten tons ten metres away
+
+/// Other programs' files hold it as a column, a key, a word: nothing in it may end one of these.
+bool is_axis_name(const std::string& name) {
+  return name.size() <= kNameMax && std::all_of(name.begin(), name.end(), [](char c) {
+           return std::isalnum(static_cast<unsigned char>(c)) ||
+                  std::string_view(" -_./").find(c) != std::string_view::npos;
+         });
+}
 
 class UrdfReader {
  public:
@@ -159,6 +172,11 @@ void UrdfReader::place_links(const urdf::LinkConstSharedPtr& from, const Pose& X
 
 void UrdfReader::add_axis(const urdf::Joint& joint, int parent) {
   const std::string place = "joint '" + joint.name + "'";
+  if (!is_axis_name(joint.name))
+    fail(place +
+         fmt::format(
+             ": of an axis' name, {} characters or fewer, letters, digits, spaces and - _ . / are allowed",
+             kNameMax));
   if (joint.mimic) fail(fmt::format("{} mimics '{}': not supported", place, joint.mimic->joint_name));
   if (joint.type == urdf::Joint::PLANAR) fail(place + " has the type planar: not supported");
   if (joint.type == urdf::Joint::FLOATING) fail(place + " has the type floating: not supported");
@@ -216,7 +234,12 @@ LinkMass UrdfReader::link_mass(const urdf::Link& link, int axis) const {
   I << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz, given.izz;
   if (!std::isfinite(given.mass) || given.mass < 0)
     fail(fmt::format("{}: mass is {} kg, must not be negative", place, given.mass));
+  if (given.mass > kMassMax)
+    fail(fmt::format("{}: mass is {} kg, more than {}", place, given.mass, kMassMax));
   if (!I.allFinite()) fail(place + ": inertia holds a number that is not finite");
+  if (I.cwiseAbs().maxCoeff() > kInertiaMax)
+    fail(fmt::format("{}: inertia holds {} kg m^2, more than {}", place, I.cwiseAbs().maxCoeff(),
+                     kInertiaMax));
   // Of a body, no principal moment is larger than the two others together. Files round to a few digits.
   const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(I).eigenvalues();
   constexpr double kRounded = 1e-2;

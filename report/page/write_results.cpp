@@ -57,6 +57,7 @@ void write_frames(const std::vector<rehearsal::FrameRecord>& frames, const fs::p
 void write_results(const rehearsal::Record& record, const std::vector<Illustration>& pictures,
                    const fs::path& folder) {
   write_file(folder / "summary.json", summary_json(record));
+  if (record.timing) write_file(folder / kTimingFile, timing_json(record));
   write_file(folder / "report.html", report_html(record, pictures));
   if (!record.as_built.empty()) write_file(folder / "as-built.yaml", record.as_built);
   if (!record.trace.empty()) write_file(folder / "trace.csv", trace_csv(record));

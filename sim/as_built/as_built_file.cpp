@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/file/read_file.h"
+#include "core/text/printable.h"
 #include "core/units.h"
 #include "core/yaml/yaml_map.h"
 #include "sim/as_built/file_parts.h"
@@ -132,8 +133,8 @@ MapSchema as_built_schema() {
 }
 
 std::string write_as_built(const AsBuilt& built) {
-  return fmt::format("# As built: {}, seed {}. Every parameter that the plant uses.\n", built.source,
-                     built.seed) +
+  return fmt::format("# As built: {}, seed {}. Every parameter that the plant uses.\n",
+                     printable(built.source), built.seed) +
          geometry_text(built) + write_world(built);
 }
 

@@ -21,10 +21,9 @@ using ::testing::HasSubstr;
 const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 const std::string kBottle = "rehearse " + kSource + "/scenarios/song-bottle.gcode --fixture bottle ";
 
-/// The summary without what is a time or names the output folder.
+/// The summary without what names the output folder.
 std::string comparable(const std::string& summary) {
   auto json = nlohmann::json::parse(summary);
-  json["engine"].erase("real_time_factor");
   json["provenance"].erase("command");
   return json.dump();
 }

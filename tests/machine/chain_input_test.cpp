@@ -1,4 +1,6 @@
 // Mistakes in the files of open chains: one line with file, line, key, value and limit.
+#include <filesystem>
+
 #include "core/file/read_file.h"
 #include "tests/machine/edited_file.h"
 #include "tests/machine/scara.h"
@@ -27,6 +29,17 @@ TEST_F(ChainInput, ARangeThatEndsBeforeItBegins) {
                     HasSubstr("axes[2].range_deg begins at 150 and ends at -45 deg, not above it")));
   EXPECT_THAT(scara("- name: quill", "range_mm: [-105, 60]", "range_mm: [60, 60]"),
               AllOf(HasSubstr(kInThatLine), HasSubstr("axes[4].range_mm begins at 60 and ends at 60 mm")));
+}
+
+// A stranger's machine file must not make us read the user's other files, and tell of them in a message.
+TEST_F(ChainInput, AUrdfOutsideTheMachinesFolder) {
+  std::filesystem::copy_file(kModels + "offset-wrist-arm/arm.urdf", folder_ / "arm.urdf");
+  const std::string text = read_file(kModels + "offset-wrist-arm/machine.yaml");
+  EXPECT_EQ(error_of(text), "accepted");
+  for (const std::string& name : {std::string("../other/arm.urdf"), kModels + "offset-wrist-arm/arm.urdf"})
+    EXPECT_THAT(error_of(edited(text, "geometry:", "arm.urdf", name)),
+                AllOf(HasSubstr(kInThatLine), HasSubstr("outside the machine file's folder")))
+        << name;
 }
 
 TEST_F(ChainInput, AHomeOutsideItsRange) {

@@ -129,7 +129,8 @@ void add_run(Record& record) {
   record.accuracy = AccuracyFigures{88.123456, 109.4, 121.987654, 1.6, 431.25};
   record.gap = GapFigures{0.13, 0.412345678, 0.1312345, 0.101, 0.1288, 0.1611, 0.9925, 10};
   record.collision = CollisionFigures{1.8412, "heater block and part", 0.1011, 184211, 31};
-  record.engine = EngineFigures{"mujoco", "2.2.2", 0.0005, 36004, 17.25, 0.071};
+  record.engine = EngineFigures{"mujoco", "2.2.2", 0.0005, 36004, 0.071};
+  record.timing = TimingFigures{18.002, 1.25};
   record.frames = sample_frames();
 }
 

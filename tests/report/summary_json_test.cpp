@@ -45,7 +45,7 @@ TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
   EXPECT_EQ(keys(summary["collision"]),
             (Keys{"min_clearance_mm", "closest", "nozzle_clearance_mm", "checks", "pairs"}));
   EXPECT_EQ(keys(summary["engine"]),
-            (Keys{"name", "version", "timestep_s", "steps", "real_time_factor", "closure_max_um"}));
+            (Keys{"name", "version", "timestep_s", "steps", "closure_max_um"}));
   EXPECT_EQ(keys(summary["provenance"]),
             (Keys{"version", "machine_sha256", "program_sha256", "seed", "as_built", "command"}));
 }
@@ -105,8 +105,7 @@ TEST(SummaryJson, ANumberThatIsNotFiniteIsOurOwnMistake) {
       [](Record& r, double v) { r.accuracy->tip_max_um = v; },
       [](Record& r, double v) { r.gap->start_mm = v; },
       [](Record& r, double v) { r.gap->open_loop_start_mm = v; },
-      [](Record& r, double v) { r.collision->min_clearance_mm = v; },
-      [](Record& r, double v) { r.engine->real_time_factor = v; }};
+      [](Record& r, double v) { r.collision->min_clearance_mm = v; }};
   for (const double value : bad)
     for (const auto& put : places) {
       Record record = sample_go();

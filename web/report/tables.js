@@ -97,7 +97,7 @@ const kFigureLabels = {
   min_clearance_mm: 'Least clearance, but for the nozzle over its work', closest: 'These two',
   nozzle_clearance_mm: 'Nozzle to what it prints on, least', checks: 'Checks', pairs: 'Pairs of bodies',
   name: 'Name', version: 'Version', timestep_s: 'Time step', steps: 'Steps',
-  real_time_factor: 'Simulated time / wall time', closure_max_um: 'Loop closure error, largest',
+  closure_max_um: 'Loop closure error, largest',
 };
 
 function figureText(key, value) {

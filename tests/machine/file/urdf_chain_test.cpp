@@ -248,6 +248,26 @@ TEST_F(UrdfFile, LoopsIslandsAndDepthsAreRefused) {
   EXPECT_THAT(complaint_of("<robot>" + deep), HasSubstr("nested more than 500 deep"));
 }
 
+// A name becomes a column of CSV and a key of YAML; a mass, a quotient of forces.
+TEST_F(UrdfFile, NamesAndMassesThatOthersCannotReadAreRefused) {
+  const auto named = [&](const std::string& name) {
+    return complaint(joint(name, "revolute", "base", "arm", kAxis + kLimit) +
+                     joint("b", "prismatic", "arm", "tool", kAxis + kLimit));
+  };
+  for (const char* name : {"a&#10;b", "a, b", "a: b", "a}", "&quot;a", "a#b", "\xc3\xa4"})
+    EXPECT_THAT(named(name), HasSubstr("letters, digits, spaces and - _ . / are allowed")) << name;
+  EXPECT_THAT(named(std::string(101, 'a')), HasSubstr("100 characters or fewer"));
+  const auto of = [&](const std::string& mass, const std::string& moment) {
+    return complaint_of(
+        "<robot name='r'><link name='base'/><link name='arm'/><link name='tool'><inertial><mass value='" +
+            mass + "'/><inertia ixx='" + moment + "' iyy='" + moment + "' izz='" + moment +
+            "' ixy='0' ixz='0' iyz='0'/></inertial></link>" + kGood + "</robot>",
+        "base", "tool");
+  };
+  EXPECT_THAT(of("1e300", "1"), HasSubstr("mass is 1e+300 kg, more than 10000"));
+  EXPECT_THAT(of("1", "1e300"), HasSubstr("inertia holds 1e+300 kg m^2, more than 1000000"));
+}
+
 TEST_F(UrdfFile, MoreAxesThanAMachineHasAreRefused) {
   std::string links, joints;
   for (int i = 0; i < 9; ++i) {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "rehearsal/record.h"
+#include "rehearsal/request/request.h"
+
+namespace understudy::cli {
+
+/// Rehearses with progress on standard error, and writes the results into an existing folder.
+rehearsal::Record rehearse_into(const rehearsal::RehearsalRequest& request,
+                                const std::filesystem::path& folder);
+
+}  // namespace understudy::cli

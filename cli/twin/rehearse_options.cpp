@@ -1,0 +1,157 @@
+#include "cli/twin/rehearse_options.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "cli/machine_option.h"
+#include "cli/seed_option.h"
+#include "cli/twin/registration_options.h"
+#include "core/error.h"
+
+namespace understudy::cli {
+namespace {
+
+void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
+  command
+      .add_option("--tip-tolerance", request.tip_tolerance_mm,
+                  "mm: a print whose tip is off by more is a no-go; without it the machine file's")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option(
+          "--orientation-tolerance", request.orientation_tolerance_deg,
+          "degrees: a print whose tool is turned away by more is a no-go; without it the machine file's")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
+  command.add_option("--place", dialect.place_mm, "X,Y,Z in mm: where the program's origin stands")
+      ->delimiter(',')
+      ->group("Programs of other machines");
+  command.add_option("--extruder-letter", dialect.extruder_letter, "letter of the filament's axis: E or A")
+      ->capture_default_str()
+      ->group("Programs of other machines");
+  command.add_option("--b-sign", dialect.b_sign, "-1: the program counts B the other way round")
+      ->check(CLI::IsMember({-1, 1}))
+      ->capture_default_str()
+      ->group("Programs of other machines");
+  command.add_option("--c-sign", dialect.c_sign, "-1: the program counts C the other way round")
+      ->check(CLI::IsMember({-1, 1}))
+      ->capture_default_str()
+      ->group("Programs of other machines");
+  command
+      .add_option(
+          "--coordinates", dialect.coordinates,
+          "what X Y Z mean beside B C: tip (on the work), machine (the slides), crossing (the slides of a "
+          "machine whose turning axes cross at the program's origin)")
+      ->group("Programs of other machines");
+}
+
+void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
+  command
+      .add_option("--as-printed", surface.as_printed,
+                  "write the printed part: FILE.stl, or FILE.ply with its "
+                  "deviation from --intended as colour")
+      ->group("Surface of the print");
+  command
+      .add_option("--intended", surface.intended,
+                  "what the print was to become: an STL in mm, or a name "
+                  "under models/parts")
+      ->group("Surface of the print");
+  command.add_option("--profile", surface.profile_mm, "x,y,z,x,y,z in mm: measure Ra and Rz along this line")
+      ->delimiter(',')
+      ->expected(6)
+      ->group("Surface of the print");
+  command
+      .add_option("--probe", surface.probe, "x,y,z: the direction in which the line looks for the surface")
+      ->delimiter(',')
+      ->expected(3)
+      ->group("Surface of the print");
+}
+
+void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
+  command.add_option("program", request.program, "G-code, with the tool's orientation at each point")
+      ->required();
+  add_machine_option(command, request.machine);
+  command.add_option(
+      "--before", request.before,
+      "the machine before its calibration, a name or a machine.yaml: the same print on the same "
+      "twin, driven by that; the report compares tip errors");
+  command
+      .add_option("--engine", request.engine,
+                  "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
+      ->capture_default_str();
+  command
+      .add_option("--fixture", request.fixture,
+                  "the inserted part: an STL in mm, or a name under models/parts")
+      ->check([](const std::string& word) { return word.empty() ? "is empty: leave the option out" : ""; });
+  command.add_option("--material", request.material,
+                     "filament: a name under models/materials or a file; the machine's own unless given");
+  command.add_option(
+      "--as-built", request.as_built,
+      "the machine that stands there: the drawing (nominal), off by the tolerances of manufacture "
+      "(manufactured) or those left after a calibration (sampled), or a file of as-built parameters; "
+      "calibrated: what the calibration of --machine leaves open; without it calibrated where --machine "
+      "has a calibration, else sampled");
+  command.add_option("--seed", request.seed, "of the as-built errors and of all noise")
+      ->check(seed_check())
+      ->capture_default_str();
+  command.add_option(
+      "--gap-control", request.gap_control,
+      "off; start: close the gap before each print move by laser and camera; continuous: and follow "
+      "it along the path; start where the machine has them");
+  auto* find = command
+                   .add_flag("--register", request.registration.wanted,
+                             "first find the part by laser and camera, and print where it stands")
+                   ->group("Finding the part");
+  add_registration_options(command, request.registration);
+  for (const char* option : {"--pattern", "--places"}) command.get_option(option)->needs(find);
+  add_tolerances(command, request);
+  add_dialect(command, request.dialect);
+  add_surface(command, request.surface);
+  command
+      .add_option("--max-time", request.max_time,
+                  "seconds that the program may take at least; more is refused")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_flag("!--no-pictures", request.keep_scene,
+                   "leave the drawings of machine and part out of the report");
+}
+
+}  // namespace
+
+void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
+  add_request(command, options.request);
+  command.add_option("--out", options.folder, "folder of results")->capture_default_str();
+}
+
+RehearseOptions read_rehearse_command(const std::string& command_line) {
+  std::vector<std::string> words = split_command_line(command_line);
+  if (words.size() < 3 || words[1] != "rehearse")
+    throw InputError("'" + command_line + "' is no command of understudy rehearse");
+  RehearseOptions options;
+  CLI::App app;
+  add_rehearse_options(app, options);
+  words.erase(words.begin(), words.begin() + 2);
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  try {
+    app.parse(words);
+  } catch (const CLI::Error& error) {
+    throw InputError("'" + command_line + "': " + error.what());
+  }
+  return options;
+}
+
+std::string among_results(const std::string& file, const std::string& folder, const std::string& working) {
+  namespace fs = std::filesystem;
+  if (file.empty()) return file;
+  const auto whole = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
+  const fs::path name = whole(file).lexically_relative(whole(fs::path(folder) / "."));
+  if (name.empty() || *name.begin() == "..") return file;
+  fs::create_directories((working / name).parent_path());
+  return (working / name).string();
+}
+
+}  // namespace understudy::cli

@@ -1,0 +1,28 @@
+// The options of `understudy rehearse`, for whoever runs that command or reads its words in a record.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+
+#include "rehearsal/request/request.h"
+
+namespace understudy::cli {
+
+struct RehearseOptions {
+  rehearsal::RehearsalRequest request;
+  std::string folder = "rehearsal";  ///< of results
+};
+
+/// `options` must outlive `command`.
+void add_rehearse_options(CLI::App& command, RehearseOptions& options);
+
+/// What a command line asks for, `understudy rehearse ...` word by word as command_line() joined them.
+/// Throws InputError for any other command and for words that are not understood.
+RehearseOptions read_rehearse_command(const std::string& command_line);
+
+/// `file` where it lies outside of `folder`; else its place in `working`, where that folder is being made.
+std::string among_results(const std::string& file, const std::string& folder, const std::string& working);
+
+}  // namespace understudy::cli
