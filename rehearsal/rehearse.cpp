@@ -24,6 +24,7 @@
 #include "rehearsal/gap_belief.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/request/input_digest.h"
+#include "rehearsal/request/memory_need.h"
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
@@ -85,6 +86,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   TwinSetup setup;
   setup.machine = machine::load_machine(request.machine, setup.calibrated);
+  check_memory(request);
   if (!request.program.empty())
     setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
   toolpath::check_duration(setup.program, (setup.machine.X_WB * setup.machine.X_BT_home).translation(),

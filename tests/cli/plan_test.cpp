@@ -146,8 +146,9 @@ TEST(PlanWaypoints, SetsALayerOnTheTable) {
 }
 
 TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
-  const Folder folder;
+  const Folder folder, inputs;
   const std::string out = " -o " + (folder / "x.gcode");
+  const std::string far = inputs.write("far.txt", "1e300 0 5 0 0 1\n1e300 0 6 0 0 1\n");
   for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
            {"plan surface crown_core --rows 0", "--rows"},
            {"plan surface crown_core --rows 2 --pitch -1", "--pitch -1 is outside 0..100"},
@@ -157,6 +158,7 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan waypoints /nonexistent.txt", "/nonexistent.txt"},
            {"plan waypoints " + kSource + "/README.md --up w", "--up 'w' is not x, y, z, -x, -y or -z"},
            {"plan waypoints " + kSource + "/LICENSE", "LICENSE:2:34: 'Apache' is not a finite number"},
+           {"plan waypoints " + far + " --machine arm", "cannot be written, beyond 100000 mm"},
            {"plan lattice box:20x20 ", "'box:20x20' is not a box of three sides in mm"},
            {"plan lattice box:20x20x20 --strut 4", "strut length is 4 mm, outside 5 to 11 mm"},
            {"plan lattice box:20x20x20 --place 1,2", "--place '1,2' is not X,Y,Z in mm"},

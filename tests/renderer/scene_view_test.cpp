@@ -1,5 +1,7 @@
 #include "renderer/scene_view.h"
 
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -28,6 +30,20 @@ TEST(SceneView, ShowsTheShapeInItsColourOnTheBackground) {
   const auto middle = pixel(p, 100, 75), corner = pixel(p, 2, 2);
   EXPECT_GT(middle[0], 1.7 * middle[1]);
   EXPECT_EQ(corner, (std::array<int, 3>{255, 255, 255}));
+}
+
+// Mesa ends the process where it does not know the driver.
+TEST(SceneView, ADriverThatMesaDoesNotHaveIsRefused) {
+  ::setenv("GALLIUM_DRIVER", "nope", 1);
+  try {
+    (void)render_picture(red_ball());
+    FAIL() << "drawn";
+  } catch (const MachineError& error) {
+    EXPECT_STREQ(error.what(), "GALLIUM_DRIVER is 'nope', not llvmpipe or softpipe: unset it");
+  }
+  ::setenv("GALLIUM_DRIVER", "llvmpipe", 1);
+  EXPECT_NO_THROW(render_picture(red_ball()));
+  ::unsetenv("GALLIUM_DRIVER");
 }
 
 TEST(SceneView, UpIsUpAndRightIsRight) {

@@ -1,0 +1,12 @@
+// How much memory a computation may take, so that it can be refused before it begins.
+#pragma once
+
+#include <cstdint>
+
+namespace understudy {
+
+/// [bytes] that this process can still get without swapping: what the system has free, the process' own limit
+/// (ulimit -v) and that of its control group, whichever is least. 0 where the system does not tell.
+std::uint64_t available_memory();
+
+}  // namespace understudy
