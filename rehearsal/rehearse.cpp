@@ -31,6 +31,7 @@
 #include "rehearsal/surface.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/as_built/truth.h"
+#include "toolpath/crowding.h"
 #include "toolpath/duration.h"
 #include "toolpath/gcode/gcode.h"
 
@@ -91,6 +92,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
     setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
   toolpath::check_duration(setup.program, (setup.machine.X_WB * setup.machine.X_BT_home).translation(),
                            request.max_time);
+  toolpath::check_crowding(setup.program);
   if (setup.machine.tool.prints()) {
     setup.material =
         machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);

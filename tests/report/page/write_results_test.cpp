@@ -39,11 +39,11 @@ class WriteResults : public testing::Test {
 TEST_F(WriteResults, WritesEveryFileOfARun) {
   write_results(sample_go(), sample_pictures(), folder_);
   const auto written = files();
-  for (const char* name :
-       {"summary.json", "report.html", "trace.csv", "frames/approach.csv", "frames/approach-01.png",
-        "frames/approach-10.png", "pictures/picture-01.png", "pictures/picture-02.png"})
+  for (const char* name : {"summary.json", "timing.json", "report.html", "trace.csv", "frames/approach.csv",
+                           "frames/approach-01.png", "frames/approach-10.png", "pictures/picture-01.png",
+                           "pictures/picture-02.png"})
     EXPECT_TRUE(written.contains(name)) << name;
-  EXPECT_EQ(written.size(), 3u + 11u + 2u);
+  EXPECT_EQ(written.size(), 4u + 11u + 2u);
   EXPECT_EQ(written.at("summary.json"), summary_json(sample_go()));
 }
 
