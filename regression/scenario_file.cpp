@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -181,6 +182,12 @@ void read_dialect(YamlMap& map, DialectRequest& dialect) {
   }
   if (map.has("extruder_letter"))
     dialect.extruder_letter = map.word("extruder_letter", {"E", "A"}, "the word of the filament");
+  if (map.has("ignored")) {
+    std::istringstream words(map.text("ignored", "commands to pass over with their lines, joined by commas"));
+    for (std::string word; std::getline(words, word, ',');) dialect.ignored.push_back(word);
+  }
+  if (map.has("temperature_c"))
+    dialect.temperature_c = map.number("temperature_c", {100, 450}, "of the nozzle from the start on");
   const auto sign = [&map](const char* key, const char* about) {
     return map.number(key, {}, about) < 0 ? -1 : 1;
   };

@@ -61,6 +61,7 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   for (int i = 0; i < 3; ++i) gcode.offset_W[i] = from_mm(dialect.place_mm[static_cast<std::size_t>(i)]);
   gcode.b_sign = dialect.b_sign;
   gcode.c_sign = dialect.c_sign;
+  gcode.ignored = dialect.ignored;
   if (dialect.coordinates.empty()) return gcode;
   using Coordinates = toolpath::RotaryWords::Coordinates;
   const std::map<std::string, Coordinates> words{
@@ -72,6 +73,20 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
     throw InputError("coordinates '" + dialect.coordinates + "': " + machine.name + " has no rotary words");
   gcode.rotary->coordinates = word->second;
   return gcode;
+}
+
+/// With the temperature that the request asks for ahead of it.
+toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
+  const toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
+  toolpath::Program program = toolpath::read_gcode(request.program, options);
+  if (!request.dialect.temperature_c) return program;
+  toolpath::Step heat;
+  heat.kind = toolpath::StepKind::temperature;
+  heat.X_WT = options.X_WT_home;
+  heat.temperature = *request.dialect.temperature_c + kCelsiusZero;
+  heat.wait = true;
+  program.steps.insert(program.steps.begin(), heat);
+  return program;
 }
 
 machine::AcceptedErrors accepted_errors(const RehearsalRequest& request) {
@@ -88,8 +103,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
   TwinSetup setup;
   setup.machine = machine::load_machine(request.machine, setup.calibrated);
   check_memory(request);
-  if (!request.program.empty())
-    setup.program = toolpath::read_gcode(request.program, gcode_options(request.dialect, setup.machine));
+  if (!request.program.empty()) setup.program = read_program(request, setup.machine);
   toolpath::check_duration(setup.program, (setup.machine.X_WB * setup.machine.X_BT_home).translation(),
                            request.max_time);
   toolpath::check_crowding(setup.program);

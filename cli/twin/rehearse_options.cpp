@@ -1,6 +1,7 @@
 #include "cli/twin/rehearse_options.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +14,11 @@
 
 namespace understudy::cli {
 namespace {
+
+std::string upper(std::string word) {
+  for (char& c : word) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return word;
+}
 
 void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
   command
@@ -32,6 +38,19 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
       ->group("Programs of other machines");
   command.add_option("--extruder-letter", dialect.extruder_letter, "letter of the filament's axis: E or A")
       ->capture_default_str()
+      ->group("Programs of other machines");
+  command
+      .add_option(
+          "--ignore", dialect.ignored,
+          "commands to pass over with their lines, such as M428,START_PRINT: of what they do the twin "
+          "knows nothing")
+      ->delimiter(',')
+      ->transform(upper)
+      ->group("Programs of other machines");
+  command
+      .add_option("--temperature", dialect.temperature_c,
+                  "C: the nozzle's from the start on, where a macro of the printer sets it")
+      ->check(CLI::Range(100., 450.))
       ->group("Programs of other machines");
   command.add_option("--b-sign", dialect.b_sign, "-1: the program counts B the other way round")
       ->check(CLI::IsMember({-1, 1}))

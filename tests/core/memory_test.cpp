@@ -26,7 +26,7 @@ TEST(AvailableMemory, KeepsToTheLimitOfTheProcess) {
     const rlimit limit{used + 50'000'000, used + 50'000'000};
     ::setrlimit(RLIMIT_AS, &limit);
     const std::uint64_t left = available_memory();
-    ::_exit(left <= 50'000'000 && left > 30'000'000 ? 0 : 1);
+    ::_exit(left < 60'000'000 && left > 30'000'000 ? 0 : 1);
   }
   int status = -1;
   ::waitpid(child, &status, 0);

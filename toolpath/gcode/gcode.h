@@ -1,10 +1,10 @@
 // G-code as printers use it, with tool orientation per point (docs/gcode.md).
 //
-// Words: G0 G1 G4 G20 G21 G28 G90 G91 G92 G93 G94, M82 M83 M104 M109 M106 M107 M221 M30 and T, modal, with ;
-// and ( ) comments, E for filament length; what slicers write beside it and the twin has no use for is a
-// list. Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K alone, the tool axis; or two of A
-// B C, the turning axes of a machine that has them, with G43.4 and G49. Lengths mm (or inch under G20),
-// angles degrees, feeds mm/min.
+// Words: G0 to G4, G10 G11 G17 to G21 G28 G90 to G94, M2 M6 M30 M82 M83 M104 M106 M107 M109 M207 M220 M221
+// and T, modal, with ; and ( ) comments, E for filament length; what slicers write beside it and the twin has
+// no use for is a list (gcode_words.cpp). Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K
+// alone, the tool axis; or two of A B C, the turning axes of a machine that has them, with G43.4 and G49.
+// Lengths mm (or inch under G20), angles degrees, feeds mm/min.
 #pragma once
 
 #include <filesystem>
@@ -48,11 +48,14 @@ struct GcodeOptions {
   char extruder_letter = 'E';  ///< of filament: E or A
   Vec3 offset_W{0, 0, 0};      ///< [m], the program's origin in W
   int b_sign = 1, c_sign = 1;  ///< -1: the program counts that axis the other way round
+  /// Commands to pass over with their lines, upper case: "M428", "START_PRINT".
+  std::vector<std::string> ignored = {};
 };
 
-/// Throws InputError with file, line and column for an unknown word, a malformed or non-finite number, a
-/// quaternion or axis that is not of unit length, a G1 before any feed, a file without any move. Extrusion
-/// that does not move the tip has no path to run a feed along: its step carries `duration` = |E| / F instead.
+/// Throws InputError with file, line and column for unknown words (all of the file's in one), a malformed or
+/// non-finite number, a quaternion or axis that is not of unit length, a G1 before any feed, a file without
+/// any move. Extrusion that does not move the tip has no path to run a feed along: its step carries
+/// `duration` = |E| / F instead.
 Program read_gcode(const std::filesystem::path& path, const GcodeOptions& options);
 Program parse_gcode(const std::string& text, const std::string& file, const GcodeOptions& options);
 

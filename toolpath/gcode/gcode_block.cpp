@@ -1,5 +1,6 @@
 #include "toolpath/gcode/gcode_block.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -10,81 +11,7 @@
 namespace understudy::toolpath {
 namespace {
 
-// Commands of one group exclude each other on a line (the modal groups of RS-274, and the S word's users).
-enum class Group { motion, units, coordinates, distance, feed_mode, extrusion, process, end };
-
-struct Meaning {
-  char letter;
-  double number;
-  Command command;
-  Group group;
-};
-
-constexpr Meaning kMeanings[] = {
-    {'G', 0, Command::rapid, Group::motion},
-    {'G', 1, Command::linear, Group::motion},
-    {'G', 4, Command::dwell, Group::motion},
-    {'G', 20, Command::inches, Group::units},
-    {'G', 21, Command::millimetres, Group::units},
-    {'G', 28, Command::home, Group::motion},
-    {'G', 43.4, Command::tip_coordinates, Group::coordinates},
-    {'G', 49, Command::machine_coordinates, Group::coordinates},
-    {'G', 90, Command::absolute, Group::distance},
-    {'G', 91, Command::relative, Group::distance},
-    {'G', 92, Command::set_position, Group::motion},
-    {'G', 93, Command::inverse_time, Group::feed_mode},
-    {'G', 94, Command::per_minute, Group::feed_mode},
-    {'M', 82, Command::absolute_extrusion, Group::extrusion},
-    {'M', 83, Command::relative_extrusion, Group::extrusion},
-    {'M', 104, Command::heat, Group::process},
-    {'M', 109, Command::heat_and_wait, Group::process},
-    {'M', 106, Command::fan_on, Group::process},
-    {'M', 107, Command::fan_off, Group::process},
-    {'M', 221, Command::flow, Group::process},
-    {'M', 30, Command::end, Group::end},
-};
-constexpr const char* kParameters = "XYZBCEFWIJKPST";
-
-/// What slicers write for a firmware and the twin has no use for: limits are the machine description's, there
-/// is no heated bed, no display, and motors stay on.
-struct WithoutEffect {
-  double number;  // of M
-  const char* parameters;
-};
-constexpr WithoutEffect kWithoutEffect[] = {
-    {17, "XYZE"},       // motors on
-    {18, "XYZES"},      // motors off
-    {84, "XYZES"},      // motors off
-    {73, "PRQSCD"},     // progress shown
-    {105, "T"},         // temperature asked for
-    {140, "ST"},        // bed temperature
-    {190, "SRT"},       // and wait
-    {201, "XYZETF"},    // largest accelerations
-    {203, "XYZET"},     // largest feeds
-    {204, "SPRT"},      // accelerations
-    {205, "XYZEBSTJ"},  // jerk, junction deviation, least feeds
-    {862.1, "PQT"},     // checks of nozzle, model, firmware
-    {862.2, "PQ"},     {862.3, "PQ"}, {862.4, "PQ"},
-    {862.5, "PQ"},     {862.6, "PQ"}, {900, "KLT"},  // pressure advance
-};
-
-const WithoutEffect* idle_command(const Word& word) {
-  for (const WithoutEffect& w : kWithoutEffect)
-    if (word.letter == 'M' && !word.bare && w.number == word.value) return &w;
-  return nullptr;
-}
-
-const Meaning* meaning_of(const Word& word) {
-  for (const Meaning& m : kMeanings)
-    if (m.letter == word.letter && m.number == word.value) return &m;
-  return nullptr;
-}
-
-Group group_of(Command command) {
-  for (const Meaning& m : kMeanings)
-    if (m.command == command) return m.group;
-  return Group::end;
-}
+constexpr const char* kParameters = "XYZBCEFWIJKRPST";
 
 }  // namespace
 
@@ -100,7 +27,9 @@ Block::Block(std::vector<Word> words, const std::string& file, int line, Letters
 
 bool Block::read_without_effect(const std::vector<Word>& words) {
   const std::size_t first = !words.empty() && words.front().letter == 'N' ? 1 : 0;
-  const WithoutEffect* command = first < words.size() ? idle_command(words[first]) : nullptr;
+  if (first >= words.size() || words[first].bare || words[first].quoted) return false;
+  const WithoutEffect* command =
+      understudy::toolpath::without_effect(words[first].letter, words[first].value);
   if (command == nullptr) return false;
   for (std::size_t i = first; i < words.size(); ++i) {
     const Word& word = words[i];
@@ -124,8 +53,8 @@ void Block::check_numbers() const {
 void Block::add(const Word& word, bool first) {
   if (word.letter == 'N' && first && !word.bare) return;  // a line number says nothing
   if ((word.letter == 'G' || word.letter == 'M') && !word.bare && !word.quoted) {
-    const Meaning* meaning = meaning_of(word);
-    if (meaning == nullptr) fail(word, fmt::format("unknown word '{}'", word.text));
+    const Meaning* meaning = meaning_of(word.letter, word.value);
+    if (meaning == nullptr) throw UnknownWord({file_, line_, word.column}, std::string(word.text));
     words_.push_back({word, true, meaning->command, false});
     return;
   }
@@ -136,7 +65,7 @@ void Block::add(const Word& word, bool first) {
   else if (const auto turn = letters_.rotary.find(word.letter); turn != std::string::npos)
     parameter.letter = "BC"[turn];
   if (std::strchr(kParameters, parameter.letter) == nullptr && !word.bare)
-    fail(word, fmt::format("unknown word '{}'", word.text));
+    throw UnknownWord({file_, line_, word.column}, std::string(word.text));
   if (find(parameter.letter) != nullptr)
     fail(word, fmt::format("'{}': the line has a second {}", word.text, word.letter));
   words_.push_back({parameter, false, {}, false});
@@ -185,6 +114,15 @@ const Word* Block::take(char letter) {
     return &entry.word;
   }
   return nullptr;
+}
+
+std::optional<Word> Block::extract(char letter) {
+  const auto entry = std::find_if(words_.begin(), words_.end(),
+                                  [&](const Entry& e) { return !e.is_command && e.word.letter == letter; });
+  if (entry == words_.end()) return std::nullopt;
+  const Word word = entry->word;
+  words_.erase(entry);
+  return word;
 }
 
 const Word* Block::find_any(const char* letters) const {

@@ -1,37 +1,15 @@
 // The words of one line, each of which somebody must use: nothing is skipped in silence.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "toolpath/gcode/gcode_lexer.h"
+#include "toolpath/gcode/gcode_words.h"
 
 namespace understudy::toolpath {
-
-/// What G and M words the dialect knows.
-enum class Command {
-  rapid,                // G0
-  linear,               // G1
-  dwell,                // G4
-  inches,               // G20
-  millimetres,          // G21
-  home,                 // G28
-  tip_coordinates,      // G43.4
-  machine_coordinates,  // G49
-  absolute,             // G90
-  relative,             // G91
-  set_position,         // G92
-  inverse_time,         // G93
-  per_minute,           // G94
-  absolute_extrusion,   // M82
-  relative_extrusion,   // M83
-  heat,                 // M104
-  heat_and_wait,        // M109
-  fan_on,               // M106
-  fan_off,              // M107
-  flow,                 // M221
-  end,                  // M30
-};
 
 /// How a dialect uses letters.
 struct Letters {
@@ -39,10 +17,20 @@ struct Letters {
   char extruder = 'E';  ///< is read as E
 };
 
+/// A word that the dialect does not know.
+class UnknownWord : public InputError {
+ public:
+  UnknownWord(const Place& place, const std::string& word)
+      : InputError(place, "unknown word '" + word + "'"), word_(word) {}
+  const std::string& word() const { return word_; }
+
+ private:
+  std::string word_;
+};
+
 class Block {
  public:
-  /// Throws InputError for a word that the dialect does not know, a letter given twice, or two commands that
-  /// exclude each other.
+  /// Throws UnknownWord, and InputError for a letter given twice, or two commands that exclude each other.
   Block(std::vector<Word> words, const std::string& file, int line, Letters letters);
 
   bool empty() const { return words_.empty(); }
@@ -57,6 +45,8 @@ class Block {
   const Word* find(char letter) const;
   /// The same, now marked as used.
   const Word* take(char letter);
+  /// The same, no longer among the words; nothing where there is none.
+  std::optional<Word> extract(char letter);
   /// Any of the letters, not marked.
   const Word* find_any(const char* letters) const;
   /// Throws InputError for the first parameter that nobody took.

@@ -75,26 +75,37 @@ class LineLexer {
     at_ = close + 1;
   }
 
-  // Sign, digits, point, digits; no exponent, for E is a word of its own.
+  // Sign, digits, point, digits. E is a word of its own; a small e after a capital word's digits is an
+  // exponent.
   double number(std::size_t word_start) {
     const std::size_t start = at_;
     if (at_ < line_.size() && (line_[at_] == '+' || line_[at_] == '-')) ++at_;
     std::size_t digits = 0, points = 0;
     for (; at_ < line_.size() && (is_digit(line_[at_]) || line_[at_] == '.'); ++at_)
       ++(line_[at_] == '.' ? points : digits);
-    if (digits == 0 || points > 1 || is_exponent(word_start)) fail_number(word_start);
+    if (digits == 0 || points > 1) fail_number(word_start);
+    const bool exponent = is_exponent(word_start);
+    if (exponent) skip_exponent(word_start);
     const std::size_t first = line_[start] == '+' ? start + 1 : start;
     double value = 0;
     const auto [end, error] =
-        std::from_chars(line_.data() + first, line_.data() + at_, value, std::chars_format::fixed);
-    // The one way for digits without an exponent to be out of range upwards; downwards they are zero.
-    if (error == std::errc::result_out_of_range && is_huge(line_.substr(first, at_ - first)))
+        std::from_chars(line_.data() + first, line_.data() + at_, value,
+                        exponent ? std::chars_format::general : std::chars_format::fixed);
+    // Without an exponent, digits before the point are the one way out of range upwards; downwards is zero.
+    if (error == std::errc::result_out_of_range && (exponent || is_huge(line_.substr(first, at_ - first))))
       fail_number(word_start);
     if (end != line_.data() + at_ || !std::isfinite(value)) fail_number(word_start);
     return value;
   }
 
-  /// F1e-30: a small e that ends a number of a capital word is no filament.
+  void skip_exponent(std::size_t word_start) {
+    ++at_;
+    if (at_ < line_.size() && (line_[at_] == '+' || line_[at_] == '-')) ++at_;
+    if (at_ >= line_.size() || !is_digit(line_[at_])) fail_number(word_start);
+    while (at_ < line_.size() && is_digit(line_[at_])) ++at_;
+  }
+
+  /// X1e-06: a small e that follows the number of a capital word is no filament.
   bool is_exponent(std::size_t word_start) const {
     return at_ < line_.size() && line_[at_] == 'e' && line_[word_start] < 'a';
   }

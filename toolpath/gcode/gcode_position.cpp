@@ -21,6 +21,9 @@ constexpr double kLargestTurn = 3.6e7 * kDegree;                 // [rad]
 // What is left of a tip that does not move when slides and table move around it: rounding, not a path.
 constexpr double kNoPath = 1e-12;  // [m]
 
+constexpr double kArcTolerance = 2e-6;  // [m], a fiftieth of what a printer places
+constexpr int kMostArcTurns = 100;
+
 constexpr const char* kOrientationWords = "WIJK";
 constexpr const char* kRotaryWords = "BC";
 
@@ -159,6 +162,58 @@ void GcodePosition::move(Block& block, double unit, bool relative) {
     X_WT_ = pose_at_programmed();
   } else {
     X_WT_ = make_pose(Mat3(X_WT_.linear()), programmed_);
+  }
+}
+
+std::vector<Vec3> GcodePosition::move_along_arc(Block& block, double unit, bool relative, int normal,
+                                                bool clockwise) {
+  const Word* other = block.find_any("WBC");
+  if (other != nullptr)
+    block.fail(*other, fmt::format("'{}': an arc keeps the tool's orientation", other->text));
+  if (coordinates_ != Coordinates::tip)
+    block.fail("an arc needs X Y Z of the tip (G43.4): here they are slides");
+  Arc arc;
+  arc.from = programmed_;
+  arc.normal = normal;
+  arc.clockwise = clockwise;
+  read_lengths(block, unit, relative);
+  arc.to = programmed_;
+  if (const auto turns = block.extract('P')) {
+    if (!(turns->value >= 1 && turns->value <= kMostArcTurns && turns->value == std::floor(turns->value)))
+      block.fail(*turns,
+                 fmt::format("'{}': a whole number of turns from 1 to {}", turns->text, kMostArcTurns));
+    arc.turns = turns->value;
+  }
+  read_centre(block, unit, arc);
+  X_WT_ = make_pose(Mat3(X_WT_.linear()), programmed_);
+  return arc_points(arc, kArcTolerance);
+}
+
+/// I J K count from the start; those across the plane's normal only.
+void GcodePosition::read_centre(Block& block, double unit, Arc& arc) const {
+  const auto radius = block.extract('R');
+  bool offsets = false;
+  arc.centre = arc.from;
+  for (int i = 0; i < 3; ++i) {
+    const auto word = block.extract("IJK"[i]);
+    if (!word) continue;
+    if (i == arc.normal || radius)
+      block.fail(*word,
+                 fmt::format("'{}': an arc has R or the centre's two offsets in its plane", word->text));
+    arc.centre[i] += length_of(block, *word, unit);
+    offsets = true;
+  }
+  if (radius) {
+    const auto centre = arc_centre(arc, length_of(block, *radius, unit));
+    if (!centre)
+      block.fail(*radius, fmt::format("'{}': no arc of this radius joins points {:.6g} mm apart",
+                                      radius->text, to_mm((arc.to - arc.from).norm())));
+    arc.centre = *centre;
+  } else if (!offsets) {
+    block.fail("an arc without a centre: give its offsets I J K from the start, or R");
+  } else if (const auto mismatch = arc_mismatch(arc)) {
+    block.fail(fmt::format("no arc: its ends differ by {:.6g} mm in their distance from the centre",
+                           to_mm(*mismatch)));
   }
 }
 

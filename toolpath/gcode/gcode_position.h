@@ -4,8 +4,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "toolpath/gcode/gcode.h"
+#include "toolpath/gcode/gcode_arc.h"
 #include "toolpath/gcode/gcode_block.h"
 
 namespace understudy::toolpath {
@@ -33,6 +35,9 @@ class GcodePosition {
   void rename(Block& block, double unit);
   /// Position and orientation of a G0 or G1.
   void move(Block& block, double unit, bool relative);
+  /// Position of a G2 or G3 in the plane across axis `normal`: where its chords end, in W; the orientation
+  /// stays.
+  std::vector<Vec3> move_along_arc(Block& block, double unit, bool relative, int normal, bool clockwise);
 
  private:
   using Coordinates = RotaryWords::Coordinates;
@@ -44,6 +49,7 @@ class GcodePosition {
   Pose pose_at_programmed() const;
   void refuse_two_orientations(const Block& block) const;
   void read_lengths(Block& block, double unit, bool relative);
+  void read_centre(Block& block, double unit, Arc& arc) const;
   bool read_turns(Block& block, bool relative);
   std::optional<Quat> read_orientation(Block& block) const;
   void require_turns(const Word& word, const Block& block, bool both_given) const;

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -28,6 +31,56 @@ std::string_view take_line(std::string_view& rest) {
   return line;
 }
 
+int column_of(std::string_view line) { return static_cast<int>(line.find_first_not_of(" \t")) + 1; }
+
+/// The command that a line begins with: "G1", "START_PRINT".
+std::string first_command(std::string_view line) {
+  if (const std::string word = command_in_words(line); !word.empty()) return word;
+  const std::size_t start = std::min(line.find_first_not_of(" \t"), line.size());
+  const std::size_t end = std::min(line.find_first_not_of("0123456789.", start + 1), line.size());
+  std::string word(line.substr(start, end - start));
+  if (!word.empty()) word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
+bool is_passed_over(std::string_view line, const GcodeOptions& options) {
+  if (is_line_without_effect(line)) return true;
+  return !options.ignored.empty() && std::ranges::count(options.ignored, first_command(line)) > 0;
+}
+
+/// Told together, so that a user need not mend a program word by word.
+class UnknownWords {
+ public:
+  void add(const UnknownWord& error) {
+    if (!first_) first_.emplace(error);
+    const auto [known, is_new] = counts_.try_emplace(error.word(), Count{0, error.place().line});
+    ++known->second.lines;
+    if (is_new) order_.push_back(error.word());
+  }
+  void fail_if_any() const {
+    if (!first_) return;
+    if (order_.size() == 1 && counts_.at(order_[0]).lines == 1) throw UnknownWord(*first_);
+    std::string all;
+    for (std::size_t i = 0; i < order_.size() && i < kShown; ++i) {
+      const auto& [lines, first] = counts_.at(order_[i]);
+      all += fmt::format("{}'{}' ({} from line {})", i ? ", " : "", order_[i],
+                         lines == 1 ? "1 line" : fmt::format("{} lines", lines), first);
+    }
+    if (order_.size() > kShown) all += fmt::format(" and {} more", order_.size() - kShown);
+    throw InputError(first_->place(),
+                     fmt::format("unknown words {}: mend these lines, or pass over them by --ignore", all));
+  }
+
+ private:
+  static constexpr std::size_t kShown = 20;
+  struct Count {
+    int lines, first;
+  };
+  std::optional<UnknownWord> first_;
+  std::map<std::string, Count> counts_;
+  std::vector<std::string> order_;
+};
+
 }  // namespace
 
 Program parse_gcode(const std::string& text, const std::string& file, const GcodeOptions& options) {
@@ -37,6 +90,7 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
   GcodeState state(options);
   const Letters letters{options.rotary ? options.rotary->letters : "", options.extruder_letter};
   program.steps.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
+  UnknownWords unknown;
   std::string_view rest = text;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // byte order mark of some editors
   for (int line = 1; !rest.empty(); ++line) {
@@ -44,9 +98,20 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
     if (words.size() > kLineMax)
       throw InputError(Place{file, line},
                        fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
-    Block block(lex_line(words, file, line), file, line, letters);
-    state.run(block, program.steps);
+    if (is_passed_over(words, options)) continue;
+    try {
+      if (const std::string word = command_in_words(words); !word.empty())
+        throw UnknownWord({file, line, column_of(words)}, word);
+      Block block(lex_line(words, file, line), file, line, letters);
+      state.run(block, program.steps);
+    } catch (const UnknownWord& error) {
+      unknown.add(error);
+    } catch (const InputError&) {
+      unknown.fail_if_any();  // what follows a line that was not read may be wrong because of it
+      throw;
+    }
   }
+  unknown.fail_if_any();
   for (const Step& step : program.steps)
     if (moves(step)) return program;
   throw InputError(Place{file},

@@ -8,11 +8,12 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr const char* kMotionWords = "XYZBCEWIJK";
+constexpr const char* kMotionWords = "XYZBCEWIJKR";
 // No spool is longer; keeps sums finite.
-constexpr double kLargestExtruder = 1e6;            // [m]
-constexpr double kLongestDwell = 86400;             // [s]
-constexpr int kLeastFlow = 1, kLargestFlow = 1000;  // [%]
+constexpr double kLargestExtruder = 1e6;                  // [m]
+constexpr double kLongestDwell = 86400;                   // [s]
+constexpr double kLongestRetraction = 1;                  // [m]
+constexpr int kLeastPercent = 1, kLargestPercent = 1000;  // of M220 and M221
 
 bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
 
@@ -22,7 +23,7 @@ GcodeState::GcodeState(const GcodeOptions& options) : position_(options) {}
 
 void GcodeState::run(Block& block, std::vector<Step>& steps) {
   if (block.empty()) return;
-  if (ended_) block.fail("a word after M30, the end of the program");
+  if (ended_) block.fail("a word after the end of the program (M2, M30)");
   if (block.without_effect()) return;
   set_modes(block);
   set_feed(block);
@@ -44,6 +45,11 @@ void GcodeState::set_modes(const Block& block) {
   if (block.find(Command::relative_extrusion) != nullptr) relative_extrusion_ = true;
   if (block.find(Command::rapid) != nullptr) motion_ = Motion::rapid;
   if (block.find(Command::linear) != nullptr) motion_ = Motion::linear;
+  if (block.find(Command::clockwise_arc) != nullptr) motion_ = Motion::clockwise_arc;
+  if (block.find(Command::counterclockwise_arc) != nullptr) motion_ = Motion::counterclockwise_arc;
+  if (block.find(Command::plane_xy) != nullptr) plane_normal_ = 2;
+  if (block.find(Command::plane_zx) != nullptr) plane_normal_ = 1;
+  if (block.find(Command::plane_yz) != nullptr) plane_normal_ = 0;
   if (block.find(Command::inverse_time) != nullptr) inverse_time_ = true;
   // A feed does not survive a change of what it means.
   if (block.find(Command::inverse_time) != nullptr) feed_.reset();
@@ -53,6 +59,7 @@ void GcodeState::set_modes(const Block& block) {
 
 void GcodeState::set_feed(Block& block) {
   duration_.reset();
+  if (block.find(Command::retraction) != nullptr) return;  // its F is that of G10
   const Word* word = block.take('F');
   if (word == nullptr) return;
   const bool homing = block.find(Command::home) != nullptr;
@@ -65,7 +72,7 @@ void GcodeState::set_feed(Block& block) {
     feed_ = feed;
     return;
   }
-  const bool moves = (motion_ == Motion::linear && block.find_any(kMotionWords) != nullptr) ||
+  const bool moves = ((motion_ == Motion::linear || is_arc()) && block.find_any(kMotionWords) != nullptr) ||
                      (motion_ == Motion::rapid && block.find('E') != nullptr);
   if (!moves)
     block.fail(*word, fmt::format("'{}': under G93 an F belongs to the G1 move of its line", word->text));
@@ -73,34 +80,72 @@ void GcodeState::set_feed(Block& block) {
 }
 
 void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
-  const Word* heat = block.find(Command::heat);
-  const Word* wait = block.find(Command::heat_and_wait);
-  const Word* fan = block.find(Command::fan_on);
   select_tool(block);
-  if (const Word* command = heat != nullptr ? heat : wait) {
-    const Word* s = block.take('S');
-    if (s == nullptr) block.fail(*command, fmt::format("'{}' needs S, the temperature in C", command->text));
-    if (s->value < 0) block.fail(*s, fmt::format("'{}': the nozzle temperature is below 0 C", s->text));
-    steps.push_back(step(StepKind::temperature, block.line()));
-    steps.back().temperature = s->value + kCelsiusZero;
-    steps.back().wait = wait != nullptr;
+  set_nozzle(block, steps);
+  set_fan(block, steps);
+  set_retraction(block);
+  if (const Word* flow = block.find(Command::flow)) flow_ = percent(block, *flow, "flow") / 100;
+  if (const Word* speed = block.find(Command::speed)) speed_ = percent(block, *speed, "speed") / 100;
+}
+
+void GcodeState::set_nozzle(Block& block, std::vector<Step>& steps) {
+  const Word* wait = block.find(Command::heat_and_wait);
+  const Word* command = wait != nullptr ? wait : block.find(Command::heat);
+  if (command == nullptr) return;
+  const Word* s = block.take('S');
+  if (s == nullptr && wait != nullptr) s = block.take('R');  // waits while it cools, too
+  if (s == nullptr) block.fail(*command, fmt::format("'{}' needs S, the temperature in C", command->text));
+  if (s->value < 0) block.fail(*s, fmt::format("'{}': the nozzle temperature is below 0 C", s->text));
+  steps.push_back(step(StepKind::temperature, block.line()));
+  steps.back().temperature = s->value + kCelsiusZero;
+  steps.back().wait = wait != nullptr;
+}
+
+/// P names a fan; all but the first cool something else.
+void GcodeState::set_fan(Block& block, std::vector<Step>& steps) {
+  const Word* on = block.find(Command::fan_on);
+  const Word* off = block.find(Command::fan_off);
+  if (on == nullptr && off == nullptr) return;
+  const Word* p = block.take('P');
+  const bool other = p != nullptr && p->value != 0;
+  if (on == nullptr) {
+    if (!other) steps.push_back(step(StepKind::fan, block.line()));
+    return;
   }
-  if (fan != nullptr) {
-    const Word* s = block.take('S');
-    if (s == nullptr) block.fail(*fan, fmt::format("'{}' needs S, the fan's speed from 0 to 255", fan->text));
-    if (s->value < 0 || s->value > 255)
-      block.fail(*s, fmt::format("'{}': the fan's speed is outside 0 to 255", s->text));
-    steps.push_back(step(StepKind::fan, block.line()));
-    steps.back().fan = s->value / 255;
-  }
-  if (block.find(Command::fan_off) != nullptr) steps.push_back(step(StepKind::fan, block.line()));
-  if (const Word* flow = block.find(Command::flow)) {
-    const Word* s = block.take('S');
-    if (s == nullptr) block.fail(*flow, fmt::format("'{}' needs S, the flow in percent", flow->text));
-    if (s->value < kLeastFlow || s->value > kLargestFlow)
-      block.fail(*s, fmt::format("'{}': the flow is outside {} to {} %", s->text, kLeastFlow, kLargestFlow));
-    flow_ = s->value / 100;
-  }
+  const Word* s = block.take('S');
+  if (s == nullptr) block.fail(*on, fmt::format("'{}' needs S, the fan's speed from 0 to 255", on->text));
+  if (s->value < 0 || s->value > 255)
+    block.fail(*s, fmt::format("'{}': the fan's speed is outside 0 to 255", s->text));
+  if (other) return;
+  steps.push_back(step(StepKind::fan, block.line()));
+  steps.back().fan = s->value / 255;
+}
+
+double GcodeState::percent(Block& block, const Word& command, const char* what) const {
+  const Word* s = block.take('S');
+  if (s == nullptr) block.fail(command, fmt::format("'{}' needs S, the {} in percent", command.text, what));
+  if (s->value < kLeastPercent || s->value > kLargestPercent)
+    block.fail(
+        *s, fmt::format("'{}': the {} is outside {} to {} %", s->text, what, kLeastPercent, kLargestPercent));
+  return s->value;
+}
+
+/// M207: what the firmware does at G10.
+void GcodeState::set_retraction(Block& block) {
+  const Word* command = block.find(Command::retraction);
+  if (command == nullptr) return;
+  const Word *s = block.take('S'), *f = block.take('F');
+  block.take('Z');  // a hop that the slicer adds to its own moves
+  if (s == nullptr || f == nullptr)
+    block.fail(*command,
+               fmt::format("'{}' needs S, the length in mm, and F, the feed in mm/min", command->text));
+  const double length = length_of(block, *s, unit_), feed = f->value * unit_ / 60;
+  if (length < 0 || length > kLongestRetraction)
+    block.fail(*s,
+               fmt::format("'{}': the length is outside 0 to {:g} mm", s->text, to_mm(kLongestRetraction)));
+  if (!(feed > 0)) block.fail(*f, fmt::format("'{}': the feed must be above 0", f->text));
+  retraction_ = length;
+  retraction_feed_ = feed;
 }
 
 /// T alone, or with what concerns one tool. Machines here have one extruder; whether a program calls it T0 or
@@ -110,7 +155,7 @@ void GcodeState::select_tool(Block& block) {
   if (tool == nullptr) return;
   const bool of_command = block.find(Command::heat) != nullptr ||
                           block.find(Command::heat_and_wait) != nullptr ||
-                          block.find(Command::flow) != nullptr;
+                          block.find(Command::flow) != nullptr || block.find(Command::tool_change) != nullptr;
   if (!of_command && !block.alone(*tool)) return;
   block.take('T');
   if (tool->value != 0 && tool->value != 1)
@@ -124,10 +169,12 @@ void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
   if (block.find(Command::dwell) != nullptr) return dwell(block, steps);
   if (block.find(Command::home) != nullptr) return home(block, steps);
   if (block.find(Command::set_position) != nullptr) return set_position(block);
+  if (block.find(Command::retract) != nullptr || block.find(Command::unretract) != nullptr)
+    return retract(block, steps);
   const Word* word = block.find_any(kMotionWords);
   if (word != nullptr && motion_ == Motion::none)
     block.fail(*word, fmt::format("'{}' before any G0 or G1", word->text));
-  if (word != nullptr) return move(block, steps);
+  if (word != nullptr) return is_arc() ? move_along_arc(block, steps) : move(block, steps);
   const Word* code = block.find(motion_ == Motion::rapid ? Command::rapid : Command::linear);
   // A lone "G1 F1500" is how slicers set the feed; a lone "G1" is a line that lost its words.
   if (code != nullptr && block.find('F') == nullptr)
@@ -146,6 +193,24 @@ void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
     block.fail(word, fmt::format("'{}': the dwell is outside 0 to {} s", word.text, kLongestDwell));
   steps.push_back(step(StepKind::dwell, block.line()));
   steps.back().duration = duration;
+}
+
+/// G10 and G11 as firmwares have them, by the length of M207.
+void GcodeState::retract(Block& block, std::vector<Step>& steps) {
+  const bool back = block.find(Command::unretract) != nullptr;
+  const Word& code = *block.find(back ? Command::unretract : Command::retract);
+  if (!block.alone(code))
+    block.fail(code, fmt::format("'{}' with other words sets offsets or tables: not read", code.text));
+  if (!retraction_)
+    block.fail(code, fmt::format("'{}' retracts by a length that the program does not say: "
+                                 "add M207 with S (mm) and F (mm/min) before it",
+                                 code.text));
+  if (back != retracted_) return;  // a second one does nothing
+  retracted_ = !back;
+  Step next = step(back ? StepKind::print : StepKind::move, block.line());
+  next.filament = (back ? 1 : -1) * *retraction_;
+  next.duration = *retraction_ / retraction_feed_;
+  if (next.filament != 0) steps.push_back(next);
 }
 
 void GcodeState::home(Block& block, std::vector<Step>& steps) {
@@ -177,13 +242,32 @@ void GcodeState::move(Block& block, std::vector<Step>& steps) {
   steps.push_back(next);
 }
 
+/// Equal chords: of filament and time each takes its share.
+void GcodeState::move_along_arc(Block& block, std::vector<Step>& steps) {
+  const std::vector<Vec3> ends =
+      position_.move_along_arc(block, unit_, relative_, plane_normal_, motion_ == Motion::clockwise_arc);
+  Step chord = step(StepKind::move, block.line());
+  chord.filament = fed_filament(block);
+  if (chord.filament > 0) chord.kind = StepKind::print;
+  set_pace(block, chord);
+  const auto count = static_cast<double>(ends.size());
+  chord.filament /= count;
+  chord.duration /= count;
+  for (const Vec3& end_W : ends) {
+    chord.X_WT.translation() = end_W;
+    steps.push_back(chord);
+  }
+}
+
 void GcodeState::set_pace(const Block& block, Step& step) const {
   if (inverse_time_ && !duration_) block.fail("G93 needs F, one over the move's minutes, on every G1 line");
   if (!inverse_time_ && !feed_)
-    block.fail(fmt::format("{} without a feed: no F on this line or before it",
-                           motion_ == Motion::linear ? "G1" : "G0 with E"));
-  step.duration = duration_.value_or(0);
-  step.feed = inverse_time_ ? 0 : *feed_;
+    block.fail(fmt::format("{} without a feed: no F on this line or before it", motion_ == Motion::rapid
+                                                                                    ? "G0 with E"
+                                                                                : is_arc() ? "an arc"
+                                                                                           : "G1"));
+  step.duration = duration_.value_or(0) / speed_;
+  step.feed = inverse_time_ ? 0 : speed_ * *feed_;
 }
 
 double GcodeState::fed_filament(Block& block) {

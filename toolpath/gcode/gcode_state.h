@@ -20,7 +20,7 @@ class GcodeState {
   void run(Block& block, std::vector<Step>& steps);
 
  private:
-  enum class Motion { none, rapid, linear };
+  enum class Motion { none, rapid, linear, clockwise_arc, counterclockwise_arc };
 
   void set_modes(const Block& block);
   void set_feed(Block& block);
@@ -28,19 +28,31 @@ class GcodeState {
   void run_motion(Block& block, std::vector<Step>& steps);
   void dwell(Block& block, std::vector<Step>& steps);
   void home(Block& block, std::vector<Step>& steps);
+  void set_nozzle(Block& block, std::vector<Step>& steps);
+  void set_fan(Block& block, std::vector<Step>& steps);
+  double percent(Block& block, const Word& command, const char* what) const;
   void select_tool(Block& block);
+  void set_retraction(Block& block);
+  void retract(Block& block, std::vector<Step>& steps);
   void set_position(Block& block);
   void move(Block& block, std::vector<Step>& steps);
+  void move_along_arc(Block& block, std::vector<Step>& steps);
+  bool is_arc() const { return motion_ == Motion::clockwise_arc || motion_ == Motion::counterclockwise_arc; }
   void set_pace(const Block& block, Step& step) const;
 
   double fed_filament(Block& block);
   Step step(StepKind kind, int line) const;
 
   GcodePosition position_;
-  double extruder_ = 0;         // [m], reading of E
-  double flow_ = 1;             // filament fed for one that is programmed (M221)
-  std::optional<double> tool_;  // number of the only extruder, once a line has said it
-  double unit_ = kMillimetre;   // [m]
+  double extruder_ = 0;               // [m], reading of E
+  double flow_ = 1;                   // filament fed for one that is programmed (M221)
+  double speed_ = 1;                  // of feeds, for what is programmed (M220)
+  std::optional<double> retraction_;  // [m], of G10 (M207)
+  double retraction_feed_ = 0;        // [m/s]
+  bool retracted_ = false;            // by G10
+  int plane_normal_ = 2;              // of arcs (G17, G18, G19)
+  std::optional<double> tool_;        // number of the only extruder, once a line has said it
+  double unit_ = kMillimetre;         // [m]
   bool relative_ = false;
   bool relative_extrusion_ = false;
   bool inverse_time_ = false;

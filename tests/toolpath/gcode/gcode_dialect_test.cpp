@@ -136,7 +136,7 @@ TEST(GcodeDialect, WhatSlicersWriteForAFirmwareIsReadAndWithoutEffect) {
   EXPECT_THAT(rejection("M862.3 P \"MK3S\n"), HasSubstr("not closed"));
   EXPECT_THAT(rejection("G1 X \"1\"\n"), HasSubstr("needs a finite decimal number"));
   EXPECT_THAT(rejection("M206 X1\n"), HasSubstr("unknown word 'M206'"));
-  EXPECT_THAT(rejection("G0 X1\nM30\nM84\n"), StartsWith("p.gcode:3:1: a word after M30"));
+  EXPECT_THAT(rejection("G0 X1\nM30\nM84\n"), StartsWith("p.gcode:3:1: a word after the end"));
 }
 
 TEST(GcodeDialect, TheProgramsOriginIsShiftedAndG92SetsItsReadings) {

@@ -173,10 +173,11 @@ INSTANTIATE_TEST_SUITE_P(
     Words, BadGcode,
     ::testing::Values(
         Bad{"G0 X1\n G5 X1", ":2:2", "unknown word 'G5'"}, Bad{"G0 X1 Q5", ":1:7", "unknown word 'Q5'"},
-        Bad{"G92.1", ":1:1", "unknown word 'G92.1'"}, Bad{"M117 (hello)", ":1:1", "unknown word 'M117'"},
+        Bad{"G92.1", ":1:1", "unknown word 'G92.1'"},
+        Bad{"G0 X1\nhello there", ":2:1", "unknown word 'HELLO'"},
         Bad{"T2", ":1:1", "'T2': the machine has one extruder"}, Bad{"G0 X1 N5", ":1:7", "unknown word 'N5'"},
         Bad{"G0 X1 B12.5", ":1:7", "'B12.5': this machine has no rotary axes"},
-        Bad{"G0 c3", ":1:4", "no rotary axes"}, Bad{"%", ":1:1", "'%' starts no word"},
+        Bad{"G0 c3", ":1:4", "no rotary axes"}, Bad{"%5", ":1:1", "'%' starts no word"},
         Bad{"G0 X1 \x01", ":1:7", "'\\x01' starts no word"},
         Bad{"G0 XNaN", ":1:4", "'XNaN': X needs a finite decimal number"},
         Bad{"G0 X1 Yinf", ":1:7", "'Yinf': Y needs a finite"}, Bad{"G0 X", ":1:4", "'X': X needs"},
@@ -244,8 +245,14 @@ TEST(GcodeReader, FortyThousandLinesTakeLessThanASecondOfProcessorTime) {
 }
 
 TEST(GcodeReader, AnExponentIsNoFilament) {
-  EXPECT_THAT([] { parse("G0 X1\nG1 X30 F1e-30\n"); },
-              testing::ThrowsMessage<InputError>(HasSubstr("'F1e-30': F needs a finite decimal number")));
+  const auto steps = parse("G0 X1\nG1 X1.5e1 Y-2e-06 F1e+3\n").steps;
+  EXPECT_NEAR(steps[1].X_WT.translation().x(), 0.015, 1e-12);
+  EXPECT_NEAR(steps[1].X_WT.translation().y(), -2e-9, 1e-15);
+  EXPECT_NEAR(steps[1].feed, 1 / 60., 1e-12);
+  for (const char* bad : {"X1e", "X1e-", "X1e400", "X1.e+x"})
+    EXPECT_THAT([&] { parse(std::string("G0 ") + bad); },
+                testing::ThrowsMessage<InputError>(HasSubstr("X needs a finite decimal number")))
+        << bad;
   EXPECT_EQ(parse("G0X1\ng1x2e1f60\nG1X3E2F60\n").steps.size(), 3u) << "filament";
 }
 

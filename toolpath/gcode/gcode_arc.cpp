@@ -1,0 +1,87 @@
+#include "toolpath/gcode/gcode_arc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace understudy::toolpath {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kLongestChord = kTurn / 16;  // [rad]
+// Files have three digits of a millimetre; arcs that were fitted to chords are off by some more.
+constexpr double kRounded = 0.02e-3, kRoundedShare = 2e-3;  // [m]; of the radius
+
+struct Plane {
+  int u, v;  // axes of a right-handed frame with the normal
+};
+Plane plane_of(int normal) { return {(normal + 1) % 3, (normal + 2) % 3}; }
+
+Vec2 in_plane(const Vec3& p, const Plane& plane) { return {p[plane.u], p[plane.v]}; }
+
+double angle_of(const Vec2& v) { return std::atan2(v.y(), v.x()); }
+
+/// Above 0 and at most a turn, counter-clockwise.
+double turn_between(double from, double to) {
+  double turn = std::fmod(to - from, kTurn);
+  if (turn <= 0) turn += kTurn;
+  return turn;
+}
+
+double sweep_of(const Arc& arc, const Vec2& from, const Vec2& to) {
+  const bool whole = (from - to).norm() < 1e-9;
+  const double a = angle_of(from), b = angle_of(to);
+  const double turn = whole ? kTurn : arc.clockwise ? turn_between(b, a) : turn_between(a, b);
+  return (arc.clockwise ? -1 : 1) * (turn + kTurn * (arc.turns - 1));
+}
+
+}  // namespace
+
+std::optional<Vec3> arc_centre(const Arc& arc, double radius) {
+  const Plane plane = plane_of(arc.normal);
+  const Vec2 from = in_plane(arc.from, plane), chord = in_plane(arc.to, plane) - from;
+  const double half = chord.norm() / 2;
+  if (half < 1e-9 || half > std::abs(radius) + kRounded) return std::nullopt;
+  const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
+  // Left of the chord for the shorter way counter-clockwise.
+  const Vec2 left = Vec2(-chord.y(), chord.x()) / (2 * half);
+  const Vec2 centre = from + chord / 2 + ((radius < 0) != arc.clockwise ? -height : height) * left;
+  Vec3 result = arc.from;
+  result[plane.u] = centre.x(), result[plane.v] = centre.y();
+  return result;
+}
+
+std::optional<double> arc_mismatch(const Arc& arc) {
+  const Plane plane = plane_of(arc.normal);
+  const Vec2 centre = in_plane(arc.centre, plane);
+  const double r0 = (in_plane(arc.from, plane) - centre).norm(),
+               r1 = (in_plane(arc.to, plane) - centre).norm();
+  const double difference = std::abs(r1 - r0);
+  if (r0 > 1e-9 && difference <= std::max(kRounded, kRoundedShare * r0)) return std::nullopt;
+  return difference;
+}
+
+std::vector<Vec3> arc_points(const Arc& arc, double tolerance) {
+  const Plane plane = plane_of(arc.normal);
+  const Vec2 centre = in_plane(arc.centre, plane);
+  const Vec2 from = in_plane(arc.from, plane) - centre, to = in_plane(arc.to, plane) - centre;
+  const double r0 = from.norm(), r1 = to.norm(), sweep = sweep_of(arc, from, to);
+  const double largest = std::max(r0, r1);
+  const double chord =
+      largest > tolerance ? std::min(kLongestChord, 2 * std::acos(1 - tolerance / largest)) : kLongestChord;
+  const int count = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / chord - 1e-9)));
+  std::vector<Vec3> points;
+  points.reserve(static_cast<std::size_t>(count));
+  for (int i = 1; i < count; ++i) {
+    const double share = static_cast<double>(i) / count, angle = angle_of(from) + share * sweep;
+    const double radius = r0 + share * (r1 - r0);
+    Vec3 p = arc.from + share * (arc.to - arc.from);
+    p[plane.u] = centre.x() + radius * std::cos(angle);
+    p[plane.v] = centre.y() + radius * std::sin(angle);
+    points.push_back(p);
+  }
+  points.push_back(arc.to);
+  return points;
+}
+
+}  // namespace understudy::toolpath

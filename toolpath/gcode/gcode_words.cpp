@@ -1,0 +1,167 @@
+#include "toolpath/gcode/gcode_words.h"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
+namespace understudy::toolpath {
+namespace {
+
+constexpr Meaning kMeanings[] = {
+    {'G', 0, Command::rapid, Group::motion},
+    {'G', 1, Command::linear, Group::motion},
+    {'G', 2, Command::clockwise_arc, Group::motion},
+    {'G', 3, Command::counterclockwise_arc, Group::motion},
+    {'G', 4, Command::dwell, Group::motion},
+    {'G', 10, Command::retract, Group::motion},
+    {'G', 11, Command::unretract, Group::motion},
+    {'G', 17, Command::plane_xy, Group::plane},
+    {'G', 18, Command::plane_zx, Group::plane},
+    {'G', 19, Command::plane_yz, Group::plane},
+    {'G', 20, Command::inches, Group::units},
+    {'G', 21, Command::millimetres, Group::units},
+    {'G', 28, Command::home, Group::motion},
+    {'G', 43.4, Command::tip_coordinates, Group::coordinates},
+    {'G', 49, Command::machine_coordinates, Group::coordinates},
+    {'G', 90, Command::absolute, Group::distance},
+    {'G', 91, Command::relative, Group::distance},
+    {'G', 92, Command::set_position, Group::motion},
+    {'G', 93, Command::inverse_time, Group::feed_mode},
+    {'G', 94, Command::per_minute, Group::feed_mode},
+    {'M', 2, Command::end, Group::end},
+    {'M', 6, Command::tool_change, Group::process},
+    {'M', 30, Command::end, Group::end},
+    {'M', 82, Command::absolute_extrusion, Group::extrusion},
+    {'M', 83, Command::relative_extrusion, Group::extrusion},
+    {'M', 104, Command::heat, Group::process},
+    {'M', 109, Command::heat_and_wait, Group::process},
+    {'M', 106, Command::fan_on, Group::process},
+    {'M', 107, Command::fan_off, Group::process},
+    {'M', 207, Command::retraction, Group::process},
+    {'M', 220, Command::speed, Group::process},
+    {'M', 221, Command::flow, Group::process},
+};
+
+constexpr WithoutEffect kWithoutEffect[] = {
+    {'G', 29, "ABCEFHIJKLNOPQRSTUVWXYZ"},  // levelling of the bed
+    {'G', 40, ""},                         // cutter compensation off
+    {'G', 54, ""},                         // the first origin, which is the only one
+    {'G', 61, ""},                         // exact path
+    {'G', 64, "PQ"},                       // blended path
+    {'G', 80, "ABCEFHIJKLNOPQRSTUVWXYZ"},  // canned cycles off; Prusa's levelling
+    {'M', 0, "PS"},                        // a stop for the operator
+    {'M', 1, "PS"},
+    {'M', 5, ""},            // spindle off
+    {'M', 9, ""},            // coolant off
+    {'M', 17, "XYZE"},       // motors on
+    {'M', 18, "XYZES"},      // motors off
+    {'M', 73, "PRQSCDTL"},   // progress shown
+    {'M', 75, ""},           // print timer
+    {'M', 76, ""},           //
+    {'M', 77, ""},           //
+    {'M', 84, "XYZES"},      // motors off
+    {'M', 105, "T"},         // temperature asked for
+    {'M', 110, "N"},         // line number
+    {'M', 114, "DER"},       // position asked for
+    {'M', 115, "UVP"},       // firmware asked for
+    {'M', 119, ""},          // end switches asked for
+    {'M', 140, "STP"},       // bed temperature
+    {'M', 141, "SP"},        // chamber temperature
+    {'M', 142, "PROSUV"},    // chamber cooling
+    {'M', 150, "RUBWPIKS"},  // lights
+    {'M', 155, "S"},         // reports of temperature
+    {'M', 190, "SRTP"},      // bed temperature, and wait
+    {'M', 191, "SR"},        // chamber temperature, and wait
+    {'M', 201, "XYZETFPS"},  // largest accelerations
+    {'M', 203, "XYZET"},     // largest feeds
+    {'M', 204, "SPRT"},      // accelerations
+    {'M', 205, "XYZEBSTJ"},  // jerk, junction deviation, least feeds
+    {'M', 300, "SP"},        // a beep
+    {'M', 302, "SP"},        // cold extrusion
+    {'M', 400, "SPU"},       // wait for the moves before
+    {'M', 412, "SHRD"},      // filament sensor
+    {'M', 413, "S"},         // power-loss recovery
+    {'M', 420, "SZVLTC"},    // levelling on or off
+    {'M', 501, ""},          // stored settings
+    {'M', 593, "XYFD"},      // input shaping
+    {'M', 862.1, "PQT"},     // checks of nozzle, model, firmware
+    {'M', 862.2, "PQ"},      //
+    {'M', 862.3, "PQ"},      //
+    {'M', 862.4, "PQ"},      //
+    {'M', 862.5, "PQ"},      //
+    {'M', 862.6, "PQ"},      //
+    {'M', 900, "KLTM"},      // pressure advance
+};
+
+/// Of Klipper and its macros, for all that begin so.
+constexpr std::string_view kWordsWithoutEffect[] = {"EXCLUDE_OBJECT",       "SET_PRESSURE_ADVANCE",
+                                                    "SET_VELOCITY_LIMIT",   "SET_PRINT_STATS_INFO",
+                                                    "TIMELAPSE_TAKE_FRAME", "BED_MESH_",
+                                                    "SET_INPUT_SHAPER",     "RESPOND"};
+
+char upper(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+std::string_view trimmed(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first == std::string_view::npos ? "" : line.substr(first, line.find_last_not_of(" \t") + 1 - first);
+}
+
+/// A line number says nothing.
+std::string_view without_number(std::string_view line) {
+  line = trimmed(line);
+  if (line.size() < 2 || upper(line[0]) != 'N' || !is_digit(line[1])) return line;
+  const auto end = std::find_if_not(line.begin() + 1, line.end(), is_digit);
+  return trimmed(line.substr(static_cast<std::size_t>(end - line.begin())));
+}
+
+bool begins_with_command(std::string_view line, std::string_view number) {
+  return line.size() > number.size() && upper(line[0]) == 'M' && line.substr(1).starts_with(number) &&
+         (line.size() == number.size() + 1 ||
+          !(is_digit(line[number.size() + 1]) || line[number.size() + 1] == '.'));
+}
+
+}  // namespace
+
+const Meaning* meaning_of(char letter, double number) {
+  const auto found = std::find_if(std::begin(kMeanings), std::end(kMeanings),
+                                  [&](const Meaning& m) { return m.letter == letter && m.number == number; });
+  return found == std::end(kMeanings) ? nullptr : &*found;
+}
+
+Group group_of(Command command) {
+  return std::find_if(std::begin(kMeanings), std::end(kMeanings),
+                      [&](const Meaning& m) { return m.command == command; })
+      ->group;
+}
+
+const WithoutEffect* without_effect(char letter, double number) {
+  const auto found =
+      std::find_if(std::begin(kWithoutEffect), std::end(kWithoutEffect),
+                   [&](const WithoutEffect& w) { return w.letter == letter && w.number == number; });
+  return found == std::end(kWithoutEffect) ? nullptr : &*found;
+}
+
+bool is_line_without_effect(std::string_view line) {
+  line = without_number(line);
+  if (line == "%") return true;
+  for (const std::string_view text : {"117", "118", "486"})
+    if (begins_with_command(line, text)) return true;
+  const std::string word = command_in_words(line);
+  return !word.empty() && std::any_of(std::begin(kWordsWithoutEffect), std::end(kWordsWithoutEffect),
+                                      [&](std::string_view known) { return word.starts_with(known); });
+}
+
+std::string command_in_words(std::string_view line) {
+  line = without_number(line);
+  if (line.size() < 2 || !is_letter(line[0]) || !(is_letter(line[1]) || line[1] == '_')) return "";
+  std::string word;
+  for (const char c : line) {
+    if (!is_letter(c) && !is_digit(c) && c != '_') break;
+    word += upper(c);
+  }
+  return word;
+}
+
+}  // namespace understudy::toolpath
