@@ -15,6 +15,7 @@ enum Exit : int { kGood = 0, kNo = 1, kBadInput = 2, kFailed = 3 };
 using Action = std::function<int()>;
 
 void add_rehearse(CLI::App& app, Action& action);
+void add_inspect(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_register(CLI::App& app, Action& action);
 void add_scenario(CLI::App& app, Action& action);

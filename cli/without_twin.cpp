@@ -11,8 +11,8 @@ void add_twin_commands(CLI::App&, Action&) {}
 void add_export_mjcf(CLI::App&, Action&) {}
 
 std::vector<std::string> left_out_commands() {
-  return {"rehearse",    "verify", "register",  "scenario",  "sweep", "sample-poses",
-          "sample-gaps", "render", "workspace", "benchmark", "schema"};
+  return {"rehearse",     "inspect",     "verify", "register",  "scenario",  "sweep",
+          "sample-poses", "sample-gaps", "render", "workspace", "benchmark", "schema"};
 }
 
 std::vector<HealthCheck> twin_self_test() {

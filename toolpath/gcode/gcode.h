@@ -40,6 +40,12 @@ struct RotaryWords {
   std::function<Vec3(const Vec3& p_WT, double b, double c)> slides;
 };
 
+/// A word that the dialect does not know, and the lines that have it.
+struct UnknownWordCount {
+  std::string word;
+  int lines = 0, first_line = 0;
+};
+
 struct GcodeOptions {
   Pose X_WT_home = Pose::Identity();  ///< where the tool starts and where G28 takes it
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
@@ -50,6 +56,8 @@ struct GcodeOptions {
   int b_sign = 1, c_sign = 1;  ///< -1: the program counts that axis the other way round
   /// Commands to pass over with their lines, upper case: "M428", "START_PRINT".
   std::vector<std::string> ignored = {};
+  /// Where unknown words are counted, whose lines are then passed over; null: they are errors. Not owned.
+  std::vector<UnknownWordCount>* unknown = nullptr;
 };
 
 /// Throws InputError with file, line and column for unknown words (all of the file's in one), a malformed or

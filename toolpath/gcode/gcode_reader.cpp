@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <optional>
 #include <string_view>
 
@@ -53,32 +52,29 @@ class UnknownWords {
  public:
   void add(const UnknownWord& error) {
     if (!first_) first_.emplace(error);
-    const auto [known, is_new] = counts_.try_emplace(error.word(), Count{0, error.place().line});
-    ++known->second.lines;
-    if (is_new) order_.push_back(error.word());
+    const auto known = std::ranges::find(counts_, error.word(), &UnknownWordCount::word);
+    if (known != counts_.end())
+      ++known->lines;
+    else
+      counts_.push_back({error.word(), 1, error.place().line});
   }
   void fail_if_any() const {
     if (!first_) return;
-    if (order_.size() == 1 && counts_.at(order_[0]).lines == 1) throw UnknownWord(*first_);
+    if (counts_.size() == 1 && counts_[0].lines == 1) throw UnknownWord(*first_);
     std::string all;
-    for (std::size_t i = 0; i < order_.size() && i < kShown; ++i) {
-      const auto& [lines, first] = counts_.at(order_[i]);
-      all += fmt::format("{}'{}' ({} from line {})", i ? ", " : "", order_[i],
-                         lines == 1 ? "1 line" : fmt::format("{} lines", lines), first);
-    }
-    if (order_.size() > kShown) all += fmt::format(" and {} more", order_.size() - kShown);
+    for (std::size_t i = 0; i < counts_.size() && i < kShown; ++i)
+      all += fmt::format("{}'{}' ({} line{} from line {})", i ? ", " : "", counts_[i].word, counts_[i].lines,
+                         counts_[i].lines == 1 ? "" : "s", counts_[i].first_line);
+    if (counts_.size() > kShown) all += fmt::format(" and {} more", counts_.size() - kShown);
     throw InputError(first_->place(),
                      fmt::format("unknown words {}: mend these lines, or pass over them by --ignore", all));
   }
+  const std::vector<UnknownWordCount>& counts() const { return counts_; }
 
  private:
   static constexpr std::size_t kShown = 20;
-  struct Count {
-    int lines, first;
-  };
   std::optional<UnknownWord> first_;
-  std::map<std::string, Count> counts_;
-  std::vector<std::string> order_;
+  std::vector<UnknownWordCount> counts_;
 };
 
 }  // namespace
@@ -107,11 +103,14 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
     } catch (const UnknownWord& error) {
       unknown.add(error);
     } catch (const InputError&) {
-      unknown.fail_if_any();  // what follows a line that was not read may be wrong because of it
+      if (!options.unknown) unknown.fail_if_any();  // this may come of a line that was not read
       throw;
     }
   }
-  unknown.fail_if_any();
+  if (options.unknown)
+    *options.unknown = unknown.counts();
+  else
+    unknown.fail_if_any();
   for (const Step& step : program.steps)
     if (moves(step)) return program;
   throw InputError(Place{file},

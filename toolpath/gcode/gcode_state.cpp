@@ -92,8 +92,8 @@ void GcodeState::set_nozzle(Block& block, std::vector<Step>& steps) {
   const Word* wait = block.find(Command::heat_and_wait);
   const Word* command = wait != nullptr ? wait : block.find(Command::heat);
   if (command == nullptr) return;
-  const Word* s = block.take('S');
-  if (s == nullptr && wait != nullptr) s = block.take('R');  // waits while it cools, too
+  const auto cooling = wait != nullptr ? block.extract('R') : std::nullopt;  // waits while it cools, too
+  const Word* s = cooling ? &*cooling : block.take('S');
   if (s == nullptr) block.fail(*command, fmt::format("'{}' needs S, the temperature in C", command->text));
   if (s->value < 0) block.fail(*s, fmt::format("'{}': the nozzle temperature is below 0 C", s->text));
   steps.push_back(step(StepKind::temperature, block.line()));
@@ -135,7 +135,7 @@ void GcodeState::set_retraction(Block& block) {
   const Word* command = block.find(Command::retraction);
   if (command == nullptr) return;
   const Word *s = block.take('S'), *f = block.take('F');
-  block.take('Z');  // a hop that the slicer adds to its own moves
+  block.extract('Z');  // a hop that the slicer adds to its own moves
   if (s == nullptr || f == nullptr)
     block.fail(*command,
                fmt::format("'{}' needs S, the length in mm, and F, the feed in mm/min", command->text));

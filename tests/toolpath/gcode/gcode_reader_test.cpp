@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"M109 S-1", ":1:6", "below 0 C"}, Bad{"M106", ":1:1", "needs S"},
         Bad{"M106 S256", ":1:6", "outside 0 to 255"}, Bad{"G4", ":1:1", "either P"},
         Bad{"G4 P1 S1", ":1:1", "either P"}, Bad{"G4 S-1", ":1:4", "outside 0 to 86400 s"},
-        Bad{"G28\nM30\nG0 X1", ":3:1", "after M30"}));
+        Bad{"G28\nM30\nG0 X1", ":3:1", "after the end"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Size, BadGcode,

@@ -1,0 +1,43 @@
+// A look at a program before it is rehearsed.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rehearsal/request/request.h"
+#include "toolpath/gcode/gcode.h"
+#include "toolpath/inspection/program_summary.h"
+#include "toolpath/inspection/reading_quality.h"
+
+namespace understudy::rehearsal {
+
+/// One way to read a program's rotary words (docs/gcode.md).
+struct RotaryReading {
+  std::string coordinates;  ///< tip, machine, crossing
+  int b_sign = 1, c_sign = 1;
+  toolpath::ReadingQuality quality;
+};
+
+struct Inspection {
+  int lines = 0;
+  std::vector<toolpath::UnknownWordCount> unknown;  ///< their lines are passed over here
+  std::map<std::string, std::string> slicer_facts;  ///< from comments
+  toolpath::ProgramSummary summary;                 ///< under the first of `readings`, if there are any
+  std::vector<RotaryReading> readings;              ///< the most likely first; none without rotary words
+  std::optional<double> nozzle;                     ///< [m], that the slicer worked for
+  double machine_nozzle = 0;                        ///< [m]
+  /// How it may be rehearsed: dialect, place on the table, words to ignore, temperature.
+  RehearsalRequest request;
+};
+
+/// Reads `program` as for `machine`; unknown words are counted, not refused. Readings are ranked by how far
+/// the printed path leaves the plane across the tool, and by the longest printed step (the sum of both
+/// ranks). Throws InputError as read_gcode() does.
+Inspection inspect(const std::string& program, const std::string& machine);
+
+/// "understudy rehearse ..." with the options that differ from their defaults.
+std::string rehearse_command(const RehearsalRequest& request, const std::string& folder);
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,107 @@
+#include "rehearsal/inspection/inspect.h"
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/file/output_file.h"
+#include "core/units.h"
+#include "tests/temporary_folder.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class Inspect : public testing::Test {
+ protected:
+  std::string file(const std::string& text) const {
+    write_file(folder / "p.gcode", text);
+    return (folder / "p.gcode").string();
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(Inspect, AProgramOfAnotherTablesCornerIsPutOnThisOne) {
+  const std::string program = file(
+      "M83\nSTART_PRINT X=1\nG0 X100 Y100 Z0.3\nG1 X120 E1 F600\nG1 Y110 E1\nM428\nM428\n"
+      "; first_layer_temperature = 215,210\n; nozzle_diameter = 0.6\n");
+  const Inspection found = inspect(program, "hexapod");
+  ASSERT_EQ(found.unknown.size(), 2u);
+  EXPECT_EQ(found.unknown[1].word, "M428");
+  EXPECT_EQ(found.unknown[1].lines, 2);
+  EXPECT_EQ(found.unknown[1].first_line, 6);
+  EXPECT_NEAR(found.nozzle.value(), 0.6e-3, 1e-12);
+  EXPECT_EQ(
+      rehearse_command(found.request, "out"),
+      "understudy rehearse " + program +
+          " --machine hexapod --place -110,-105,0 --ignore START_PRINT,M428 --temperature 215 --out out");
+}
+
+TEST_F(Inspect, WhatNeedsNothingIsRehearsedAsItIs) {
+  const std::string program = file("M104 S200\nM83\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n");
+  EXPECT_EQ(rehearse_command(inspect(program, "arm").request, "p"),
+            "understudy rehearse " + program + " --machine arm --out p");
+}
+
+/// Rings on a dome of 20 mm round a centre at z = 5 mm, the tool square to it, written for a head whose signs
+/// and coordinates are these. Seen from the work the tool is turned by Rz(C) Ry(B).
+std::string dome(const std::string& coordinates, int b_sign, int c_sign) {
+  std::string text = "M104 S200\nM83\nG0 X0 Y0 Z30 B0 C0\n";
+  for (double lean = 15; lean <= 45; lean += 3)
+    for (int i = 0; i <= 60; ++i) {
+      // A wave across the rings: a ring alone would not tell the sense of C.
+      const double c = 2 * std::numbers::pi * i / 60, b = from_deg(lean + 2 * std::sin(5 * c));
+      const Vec3 axis(std::sin(b) * std::cos(c), std::sin(b) * std::sin(c), std::cos(b));
+      Vec3 p = Vec3(0, 0, 5) + 20 * axis;
+      if (coordinates == "crossing") {
+        const Mat3 R =
+            (Eigen::AngleAxisd(c, Vec3::UnitZ()) * Eigen::AngleAxisd(b, Vec3::UnitY())).toRotationMatrix();
+        p = R.transpose() * p;
+      }
+      text += fmt::format("G{} X{:.5f} Y{:.5f} Z{:.5f} B{:.5f} C{:.5f}{} F600\n", i ? 1 : 0, p.x(), p.y(),
+                          p.z(), b_sign * to_deg(b), c_sign * to_deg(c), i ? " E0.1" : "");
+    }
+  return text;
+}
+
+TEST_F(Inspect, TheReadingThatAProgramWasWrittenForIsTheFirst) {
+  for (const char* coordinates : {"tip", "crossing"})
+    for (const int b : {1, -1})
+      for (const int c : {1, -1}) {
+        const Inspection found = inspect(file(dome(coordinates, b, c)), "five-axis");
+        ASSERT_FALSE(found.readings.empty());
+        const RotaryReading& best = found.readings.front();
+        EXPECT_EQ(fmt::format("{} {} {}", best.coordinates, best.b_sign, best.c_sign),
+                  fmt::format("{} {} {}", coordinates, b, c));
+        EXPECT_LT(to_deg(best.quality.out_of_layer), 2);
+        EXPECT_NEAR(to_deg(found.summary.tilt_max), 47, 0.1);
+      }
+}
+
+TEST_F(Inspect, AProgramOfOthersIsReadAsItsPathShows) {
+  const fs::path data =
+      fs::path(UNDERSTUDY_SOURCE_DIR).parent_path() / "shared/data/five-axis-gcode/simple_curve.gcode";
+  if (!fs::exists(data)) GTEST_SKIP() << "the folder shared/data is not beside the repository";
+  const Inspection found = inspect(data.string(), "five-axis");
+  EXPECT_EQ(found.request.dialect.coordinates, "crossing");
+  EXPECT_EQ(found.request.dialect.b_sign, -1);
+  EXPECT_EQ(found.request.dialect.c_sign, -1);
+  EXPECT_THAT(found.unknown, ElementsAre());
+}
+
+TEST_F(Inspect, WhatCannotBeReadIsRefused) {
+  EXPECT_THROW(inspect((folder / "none").string(), "hexapod"), InputError);
+  EXPECT_THROW(inspect(file("G0 X1.2.3\n"), "hexapod"), InputError);
+  EXPECT_THROW(inspect(file("G0 X1 B5\n"), "hexapod"), InputError);
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

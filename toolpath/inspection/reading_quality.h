@@ -1,0 +1,19 @@
+// How much like a print a reading of a program's rotary words looks.
+#pragma once
+
+#include "toolpath/program.h"
+
+namespace understudy::toolpath {
+
+struct ReadingQuality {
+  int moves = 0;            ///< that print, and that the angle is told from: where the tool leans, if it does
+  double longest_step = 0;  ///< [m], of one move that prints: a wrong reading tears the path
+  /// [rad], median of the angle by which the path leaves the plane across the tool's axis: a print runs along
+  /// its layer, and the tool stands on it.
+  double out_of_layer = 0;
+};
+
+/// `start_W` [m]: the tip before the first step.
+ReadingQuality reading_quality(const Program& program, const Vec3& start_W);
+
+}  // namespace understudy::toolpath
