@@ -38,13 +38,20 @@ std::string text_of(int error) { return std::generic_category().message(error); 
 
 using Digests = std::map<std::string, std::string>;  // by name, relative to the folder
 
+/// A manifest is a file like any other: what is changed in it must not reach beyond its folder.
+bool leads_outside(const fs::path& name) {
+  const fs::path inside = name.lexically_normal();
+  return inside.is_absolute() || inside.empty() || *inside.begin() == "..";
+}
+
 Digests read_manifest(const fs::path& folder) {
   Digests digests;
   std::error_code ignored;
   if (!fs::is_regular_file(folder / kManifest, ignored)) return digests;
   std::istringstream lines(read_file(folder / kManifest));
   for (std::string line; std::getline(lines, line);)
-    if (line.size() > kDigest + 2) digests[line.substr(kDigest + 2)] = line.substr(0, kDigest);
+    if (line.size() > kDigest + 2 && !leads_outside(line.substr(kDigest + 2)))
+      digests[line.substr(kDigest + 2)] = line.substr(0, kDigest);
   return digests;
 }
 

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
@@ -55,6 +56,21 @@ TEST_F(OutputFolderTest, CommitReplacesAnOlderResultWhole) {
   EXPECT_FALSE(fs::exists(root_ / "out" / "pictures" / "first"));
   EXPECT_TRUE(fs::exists(root_ / "out" / "pictures" / "second"));
   EXPECT_EQ(root_.entries(), 1);
+}
+
+TEST_F(OutputFolderTest, WhatAManifestNamesOutsideItsFolderStays) {
+  write_result("first");
+  fs::create_directory(root_ / "a");
+  for (const char* name : {"mine", "a/mine"}) write_file(root_ / name, "a user's");
+  const std::string digest = sha256_hex("a user's");
+  const std::string manifest = read_file(root_ / "out" / kManifest);
+  write_file(root_ / "out" / kManifest, manifest + digest + "  ../mine\n" + digest +
+                                            "  pictures/../../a/mine\n" + digest + "  " +
+                                            (root_ / "mine").string() + "\n");
+  write_result("second");
+  EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "second");
+  EXPECT_TRUE(fs::exists(root_ / "mine"));
+  EXPECT_TRUE(fs::exists(root_ / "a" / "mine"));
 }
 
 TEST_F(OutputFolderTest, TheManifestIsWhatSha256sumChecks) {
