@@ -3,15 +3,16 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "control/registration/tool_clearance.h"
 #include "core/error.h"
 #include "core/file/number_table.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 
 namespace understudy::control {
@@ -131,14 +132,19 @@ std::vector<ProbingPlace> choose_places(const geometry::Mesh& part, const PartTo
   return chosen;
 }
 
+// No machine is so large, and squares of much larger distances have no number.
+constexpr double kFarthest = 100;  // [m]
+
 std::vector<ProbingPlace> read_pattern(const std::filesystem::path& path, const geometry::Mesh& part,
                                        const ProbingCheck& check) {
-  std::ifstream in(path);
-  if (!in) throw InputError({path.string(), 0, 0}, "cannot be read");
+  std::istringstream in(read_file(path));
   std::vector<ProbingPlace> places;
   for (const NumberRow& row : read_number_table(in, path.string(), {"x_mm", "y_mm", "z_mm"})) {
     const Place at{path.string(), row.line, 0};
     const Vec3 p = kMillimetre * Vec3(row.values[0], row.values[1], row.values[2]);
+    if (p.cwiseAbs().maxCoeff() > kFarthest)
+      throw InputError(at, fmt::format("({:g}, {:g}, {:g}) mm is beyond {:g} mm", row.values[0],
+                                       row.values[1], row.values[2], to_mm(kFarthest)));
     const geometry::SurfacePoint nearest = part.nearest(p);
     if (!(nearest.distance <= kOffPart))
       throw InputError(at,

@@ -121,6 +121,7 @@ TEST(Pattern, RefusesWhatThePartDoesNotCarry) {
   EXPECT_THAT(refusal(std::string(kGood) + "19.5,0,20\n"), AllOf(HasSubstr(":8"), HasSubstr("ends")));
   EXPECT_THAT(refusal("0,0,20\n5,5,20\n"), AllOf(HasSubstr("2 places"), HasSubstr("6")));
   EXPECT_THAT(refusal("0,zero,20\n"), HasSubstr(":2"));
+  EXPECT_THAT(refusal("0,0,20\n1e308,0,20\n"), AllOf(HasSubstr(":3"), HasSubstr("beyond 100000 mm")));
 }
 
 }  // namespace
