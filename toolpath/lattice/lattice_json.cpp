@@ -22,6 +22,7 @@ const std::map<std::string, double> kUnits = {
     {"millimeter", kMillimetre}, {"centimeter", 1e-2}, {"meter", 1.0}, {"inch", kInch}};
 
 constexpr std::size_t kEntriesMax = 100'000;  // docs/limits.md
+constexpr double kFarthest = 1000;            // [m], likewise
 
 class LatticeReader {
  public:
@@ -80,6 +81,8 @@ class LatticeReader {
       if (!value.is_number() || !std::isfinite(value.get<double>()))
         fail(name, fmt::format("has {} {}, it must be a finite number", axis, value.dump()));
       node.position[k] = unit_ * value.get<double>();
+      if (std::abs(node.position[k]) > kFarthest)
+        fail(name, fmt::format("has {} at {:g} m, beyond {:g} m", axis, node.position[k], kFarthest));
     }
     const json& grounded = member(entry, "is_grounded", name);
     if (grounded.is_boolean())
