@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "toolpath/gcode/gcode_limits.h"
+
 namespace understudy::toolpath {
 namespace {
 
 constexpr const char* kMotionWords = "XYZBCEWIJKR";
-// No spool is longer; keeps sums finite.
-constexpr double kLargestExtruder = 1e6;                  // [m]
 constexpr double kLongestDwell = 86400;                   // [s]
 constexpr double kLongestRetraction = 1;                  // [m]
 constexpr int kLeastPercent = 1, kLargestPercent = 1000;  // of M220 and M221

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
+#include "toolpath/gcode/gcode_limits.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -67,6 +68,9 @@ class Writer {
     if (step.filament != 0) {
       // The reading is what is rounded, so the error does not add up over the program.
       extruder_ += checked(step.filament);
+      if (std::abs(extruder_) > kLargestExtruder)
+        throw InputError(fmt::format("step {}: {:.6g} mm of filament cannot be written, beyond {:.6g} mm",
+                                     steps_ + 1, to_mm(extruder_), to_mm(kLargestExtruder)));
       text += " E" + millimetres(extruder_);
     }
     if (timed || feed != feed_) text += " F" + feed;
