@@ -27,7 +27,7 @@ std::string struts_text(const kinematics::HexapodGeometry& g) {
 std::string axes_text(const kinematics::Chain& chain) {
   std::string out = mount_text("tool", chain.X_OT_zero) + mount_text("work", chain.X_OS_zero) + "  axes:\n";
   for (const kinematics::ChainAxis& axis : chain.axes) {
-    out += fmt::format("    - {{axis: {}, direction: {}", axis.name, unit_text(axis.direction));
+    out += fmt::format("    - {{axis: {}, direction: {}", quoted_text(axis.name), unit_text(axis.direction));
     if (axis.angle) out += fmt::format(", point_mm: {}", vector_text(axis.point, kMillimetre));
     out += "}\n";
   }

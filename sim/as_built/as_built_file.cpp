@@ -10,6 +10,7 @@
 #include "core/text/printable.h"
 #include "core/units.h"
 #include "core/yaml/yaml_map.h"
+#include "machine/file/section_text.h"
 #include "sim/as_built/file_parts.h"
 #include "sim/as_built/world_file.h"
 
@@ -107,7 +108,7 @@ std::string geometry_text(const AsBuilt& built) {
                                 vector_text(X_OS.translation(), kMillimetre), rotation_text(X_OS));
   for (std::size_t i = 0; i < built.chain.axes.size(); ++i) {
     const kinematics::ChainAxis& axis = built.chain.axes[i];
-    out += fmt::format("  - {{axis: {}, direction: {}, point_mm: {}, ", axis.name,
+    out += fmt::format("  - {{axis: {}, direction: {}, point_mm: {}, ", machine::quoted_text(axis.name),
                        vector_text(axis.direction, 1), vector_text(axis.point, kMillimetre));
     out += axis.angle ? fmt::format("zero_deg: {}, play_arcmin: {}}}\n", to_deg(built.axis_zero[i]),
                                     60 * to_deg(built.axis_play[i]))
