@@ -104,7 +104,13 @@ void add_axis_joint(XMLElement& robot, const Chain& chain, int axis, const AxisD
 /// A frame fixed to an axis' link.
 void add_end(XMLElement& robot, const Chain& chain, const std::string& name, int axis, const Pose& X_O) {
   add_element(robot, "link", {{"name", name}});
-  XMLElement& mount = add_joint(robot, name + "_mount", "fixed");
+  const auto taken = [&](const std::string& joint) {
+    return std::any_of(chain.axes.begin(), chain.axes.end(),
+                       [&](const ChainAxis& a) { return a.name == joint; });
+  };
+  std::string joint = name + "_mount";
+  while (taken(joint)) joint += '_';
+  XMLElement& mount = add_joint(robot, joint, "fixed");
   add_element(mount, "parent", {{"link", link_name(chain, axis)}});
   add_element(mount, "child", {{"link", name}});
   add_element(mount, "origin",
