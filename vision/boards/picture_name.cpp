@@ -26,6 +26,9 @@ std::size_t digits_of(const std::string& field, std::size_t colon) {
 
 PictureName::PictureName(const std::string& pattern, const std::vector<std::string>& words)
     : pattern_(pattern), words_(words.size()) {
+  for (const char c : pattern)
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0)
+      throw InputError("a control character is no part of a file's name");
   const std::size_t slash = pattern.rfind('/');
   const std::size_t last_part = slash == std::string::npos ? 0 : slash + 1;
   std::vector<bool> seen(words.size(), false);

@@ -151,6 +151,13 @@ std::string list(std::initializer_list<double> values) {
   return text.str() + "]";
 }
 
+/// In single quotes, as YAML has it.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
 std::string list_mm(const Vec3& v) { return list({to_mm(v.x()), to_mm(v.y()), to_mm(v.z())}); }
 
 }  // namespace
@@ -204,8 +211,8 @@ std::string rig_yaml(const RigDescription& d, const std::string& comment) {
   if (u.boards.print_scale > 0) out << "\n  board_print_permille: " << u.boards.print_scale / kMilli;
   if (u.boards.flatness > 0) out << "\n  board_flatness_um: " << to_um(u.boards.flatness);
   out << "\n  corner_px: " << u.corner_px << "\n  principal_point_px: " << u.principal_px
-      << "\nboard_pictures: '" << d.board_pictures.pattern() << "'\npose_pictures: '"
-      << d.pose_pictures.pattern() << "'\n";
+      << "\nboard_pictures: " << quoted(d.board_pictures.pattern())
+      << "\npose_pictures: " << quoted(d.pose_pictures.pattern()) << "\n";
   return out.str();
 }
 
