@@ -83,18 +83,25 @@ Vec2 slope_of(const Row& row) {
   return -std::tan(tilt) * Vec2(std::cos(azimuth), std::sin(azimuth));
 }
 
-int flat_of(const Vec2& slope, std::vector<Vec2>& slopes) {
-  auto flat = std::find(slopes.begin(), slopes.end(), slope);
-  if (flat == slopes.end()) flat = slopes.insert(slopes.end(), slope);
-  return static_cast<int>(flat - slopes.begin());
+/// What rows before have told.
+struct Seen {
+  std::map<std::pair<double, double>, int> flats;  // by slope
+  std::map<std::string, int> lines;                // by picture
+};
+
+int flat_of(const Vec2& slope, Seen& seen, std::vector<Vec2>& slopes) {
+  const auto [flat, is_new] =
+      seen.flats.emplace(std::pair(slope.x(), slope.y()), static_cast<int>(slopes.size()));
+  if (is_new) slopes.push_back(slope);
+  return flat->second;
 }
 
-void read_row(const Row& row, GapPictureTable& table) {
+void read_row(const Row& row, Seen& seen, GapPictureTable& table) {
   GapPicture shot;
   shot.line = row.place().line;
   shot.height = from_mm(row.number(kHeight));
   shot.height_sigma = kMicrometre * row.optional_number(kHeightSigma);
-  shot.flat = flat_of(slope_of(row), table.slopes);
+  shot.flat = flat_of(slope_of(row), seen, table.slopes);
   shot.picture = row.text(kPicture);
   const bool gap = !row.text(kGap.name).empty();
   if (gap != !row.text(kGapSigma.name).empty())
@@ -104,10 +111,10 @@ void read_row(const Row& row, GapPictureTable& table) {
         {shot.flat, shot.height, from_mm(row.number(kGap)), kMicrometre * row.number(kGapSigma)});
   if (shot.picture.empty() && !gap) throw InputError(row.place(), "has neither a picture nor a gap_mm");
   if (!shot.picture.empty()) {
-    for (const GapPicture& other : table.rows)
-      if (other.picture == shot.picture)
-        throw InputError(row.place(),
-                         fmt::format("picture '{}' is that of line {}, too", shot.picture, other.line));
+    const auto [other, is_new] = seen.lines.emplace(shot.picture, shot.line);
+    if (!is_new)
+      throw InputError(row.place(),
+                       fmt::format("picture '{}' is that of line {}, too", shot.picture, other->second));
     shot.file = (std::filesystem::path(table.file).parent_path() / shot.picture).string();
   }
   table.rows.push_back(shot);
@@ -115,7 +122,19 @@ void read_row(const Row& row, GapPictureTable& table) {
 
 /// By the known gaps, every picture of their flats is where the sensor can read.
 void check_gaps(const GapPictureTable& table) {
-  for (const KnownGap& known : table.known)
+  std::vector<std::pair<double, double>> heights(table.slopes.size(), {1e9, -1e9});  // lowest and highest
+  for (const GapPicture& row : table.rows) {
+    auto& [lowest, highest] = heights[static_cast<std::size_t>(row.flat)];
+    lowest = std::min(lowest, row.height);
+    highest = std::max(highest, row.height);
+  }
+  for (const KnownGap& known : table.known) {
+    const auto& [lowest, highest] = heights[static_cast<std::size_t>(known.flat)];
+    const auto fits = [&](double height) {
+      const double gap = height - known.height + known.gap;
+      return gap >= kGapLowest && gap <= kGapHighest;
+    };
+    if (fits(lowest) && fits(highest)) continue;
     for (const GapPicture& row : table.rows) {
       const double gap = row.height - known.height + known.gap;
       if (row.flat != known.flat || (gap >= kGapLowest && gap <= kGapHighest)) continue;
@@ -126,6 +145,7 @@ void check_gaps(const GapPictureTable& table) {
                       to_mm(row.height), to_mm(known.gap), to_mm(known.height), to_mm(gap), to_mm(kGapLowest),
                       to_mm(kGapHighest)));
     }
+  }
 }
 
 }  // namespace
@@ -171,7 +191,8 @@ GapPictureTable read_gap_pictures(const std::string& file) {
   Words header;
   for (const TextRow::Cell& cell : row.cells) header.push_back(cell.text);
   check_header(header, {file, row.line, 0});
-  while (read_text_row(in, row)) read_row(Row(file, header, row), table);
+  Seen seen;
+  while (read_text_row(in, row)) read_row(Row(file, header, row), seen, table);
   require_heights(table.rows, file, "pictures");
   if (table.known.empty())
     throw InputError({file, 0, 0}, "no row has a gap_mm: at least one gap must be known");
