@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "core/yaml/yaml_map.h"
 #include "machine/description.h"
@@ -104,14 +103,8 @@ std::vector<std::string> material_names() {
 
 Material load_material(const std::string& name_or_path) {
   const fs::path path = find_material(name_or_path);
-  std::error_code error;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || !fs::is_regular_file(path, error))
-    throw InputError({path.string(), 0, 0}, "cannot read this material file");
-  std::ostringstream text;
-  text << file.rdbuf();
   Material material;
-  YamlMap::read_text(text.str(), path.string(), [&](YamlMap& map) { read_material(map, material); });
+  YamlMap::read_text(read_file(path), path.string(), [&](YamlMap& map) { read_material(map, material); });
   return material;
 }
 
