@@ -175,11 +175,6 @@ CollisionFigures collision_figures(const sim::CollisionObserver& collision) {
 
 }  // namespace
 
-const std::vector<std::string>& engine_names() {
-  static const std::vector<std::string> names{"mujoco", "bullet", "quasistatic"};
-  return names;
-}
-
 TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progress& progress) {
   const auto started = std::chrono::steady_clock::now();
   const auto plant = make_plant(setup);
