@@ -4,10 +4,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include "core/units.h"
@@ -77,6 +79,32 @@ void check_characters(const std::string& text, const std::string& file) {
     if ((byte < 0x20 && c != '\n' && c != '\r' && c != '\t') || byte == 0x7f)
       throw InputError(at, fmt::format("not YAML: the control character 0x{:02x}", byte));
   }
+}
+
+/// Hears of a document without keeping it.
+class NoHandler final : public YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  }
+  void OnMapEnd() override {}
+};
+
+/// 0, 1, or 2 for more. Where a bracket is closed that was not opened, yaml-cpp 0.7 finds documents without
+/// end, and YAML::LoadAll takes all memory.
+int documents_in(const std::string& text) {
+  std::istringstream in(text);
+  YAML::Parser parser(in);
+  NoHandler handler;
+  int count = 0;
+  while (count < 2 && parser.HandleNextDocument(handler)) ++count;
+  return count;
 }
 
 /// An empty value's mark is where the next word of the file begins: errors about one name its key's place.
@@ -157,12 +185,15 @@ void YamlMap::read_text(const std::string& text, const std::string& file, const 
                                                text.size(), kTextMax));
   check_characters(text, file);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.empty()) throw InputError({file, 0, 0}, "the file is empty");
-    if (documents.size() > 1)
-      throw InputError({file, 0, 0},
-                       fmt::format("the file holds {} documents, 1 is allowed", documents.size()));
-    YamlMap map(documents.front(), file, "");
+    const int documents = documents_in(text);
+    if (documents == 0) throw InputError({file, 0, 0}, "the file is empty");
+    if (documents > 1)
+      throw InputError(
+          {file, 0, 0},
+          fmt::format(
+              "the file holds {} documents, 1 is allowed (a bracket that is closed twice ends one, too)",
+              documents));
+    YamlMap map(YAML::Load(text), file, "");
     read(map);
     map.finish();
   } catch (const YAML::Exception& error) {

@@ -140,6 +140,7 @@ TEST(YamlMap, AFileThatHoldsNoMapIsRefused) {
               HasSubstr("the file is 'words', where keys with values are expected"));
   EXPECT_THAT(refusal("a: 1\n---\na: 1\n", read), HasSubstr("2 documents, 1 is allowed"));
   EXPECT_THAT(refusal("a: [1, 2\n", read), AllOf(HasSubstr("f.yaml:2:1"), HasSubstr("not YAML")));
+  EXPECT_THAT(refusal(", 0]\na: 1\n", read), HasSubstr("closed twice"));
 }
 
 TEST(YamlMap, LookingBelowDoesNotAddOrAskForTheKey) {
