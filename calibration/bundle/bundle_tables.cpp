@@ -125,8 +125,9 @@ std::vector<PoseTargets> read_targets(const std::string& file) {
     vision::PixelPoint& point =
         own.targets[static_cast<std::size_t>(camera)][static_cast<std::size_t>(target)];
     point.pixel = {table.number("u_px"), table.number("v_px")};
-    const double c12 = table.number("c12_px2");
-    point.covariance << table.number("c11_px2"), c12, c12, table.number("c22_px2");
+    // Read before they are put in: a matrix that is filled in part ends a program with assertions.
+    const double c11 = table.number("c11_px2"), c12 = table.number("c12_px2"), c22 = table.number("c22_px2");
+    point.covariance << c11, c12, c12, c22;
     if (!(point.covariance(0, 0) > 0) || !(point.covariance.determinant() > 0))
       throw InputError(table.place(), "the covariance c11_px2, c12_px2, c22_px2 is not positive definite");
   }
