@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <cstdlib>
@@ -14,17 +13,15 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "calibration/plugin/box_words.h"
 
 namespace understudy::calibration {
 namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSetpriv = "/usr/bin/setpriv";
-constexpr const char* kBubblewrap = "/usr/bin/bwrap";
-// /dev/shm of its own is the one place that it may write to.
-constexpr const char* kBox =
-    "--ro-bind / / --dev /dev --proc /proc --unshare-net --unshare-pid --unshare-ipc --die-with-parent "
-    "--new-session --setenv TMPDIR /dev/shm";
 constexpr int kRounds = 20;  // what a process starts while we look is found in the next
 
 bool works(const std::string& command) {
@@ -33,20 +30,13 @@ bool works(const std::string& command) {
 }
 
 bool find_box() {
-  const char* wanted = std::getenv("UNDERSTUDY_PLUGIN_BOX");
-  if (wanted && std::string(wanted) == "off") return false;
-  return ::access(kBubblewrap, X_OK) == 0 && works(fmt::format("{} {} /bin/true", kBubblewrap, kBox));
+  return ::access(kBubblewrap, X_OK) == 0 &&
+         works(fmt::format("{} /bin/true", fmt::join(namespace_words({}), " ")));
 }
 
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> words;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    words.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return words;
+bool is_unwanted() {
+  const char* wanted = std::getenv("UNDERSTUDY_PLUGIN_BOX");
+  return wanted && std::string(wanted) == "off";
 }
 
 /// Of a zombie, or of a process that is not ours to look at: empty.
@@ -58,18 +48,32 @@ std::string environment_of(const fs::path& process) {
 }  // namespace
 
 bool has_box() {
+  if (is_unwanted()) return false;
   static const bool found = find_box();
   return found;
 }
 
-std::vector<std::string> boxed(const std::string& command) {
+std::string box_warning() {
+  if (is_unwanted() || has_box()) return {};
+  return fmt::format(
+      "warning: plug-ins run without a box, and may reach what you may reach: {}; "
+      "UNDERSTUDY_PLUGIN_BOX=off accepts that (docs/calibration-plugins.md)",
+      ::access(kBubblewrap, X_OK) == 0 ? "bubblewrap may make no namespaces here" : "install bubblewrap");
+}
+
+std::vector<std::string> boxed(const std::string& command, const ProcessLimits& limits) {
   std::vector<std::string> words;
-  if (::access(kSetpriv, X_OK) == 0) words = {kSetpriv, "--pdeathsig", "KILL"};
-  if (has_box()) {
-    words.push_back(kBubblewrap);
-    for (const std::string& word : words_of(kBox)) words.push_back(word);
+  const auto append = [&](const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+  };
+  const bool box = has_box();
+  if (::access(kSetpriv, X_OK) == 0) {
+    append({kSetpriv, "--pdeathsig", "KILL"});
+    if (!box) append({"--no-new-privs"});  // bubblewrap does it by itself
   }
-  words.insert(words.end(), {"/bin/sh", "-c", command});
+  if (box) append(namespace_words(limits)), append(sight_words(command));
+  append(limit_words(limits));
+  append({"/bin/sh", "-c", command});
   return words;
 }
 

@@ -4,15 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "calibration/plugin/process_limits.h"
+
 namespace understudy::calibration {
 
-/// The words that run `command` by /bin/sh so that it dies with us. Where bubblewrap is installed and works,
-/// it has no network, may write only below $TMPDIR, a folder of its own in memory, and sees no processes but
-/// its own; $UNDERSTUDY_PLUGIN_BOX=off leaves that out.
-std::vector<std::string> boxed(const std::string& command);
+/// The words that run `command` by /bin/sh so that it dies with us, gains no privileges, and has the limits
+/// of files, memory and CPU time of one process that the kernel can keep. Where has_box(), it also sees
+/// what docs/calibration-plugins.md tells and no more.
+std::vector<std::string> boxed(const std::string& command, const ProcessLimits& limits);
 
-/// Whether boxed() uses bubblewrap.
+/// Whether boxed() uses bubblewrap: it is installed, may make namespaces here, and $UNDERSTUDY_PLUGIN_BOX is
+/// not "off".
 bool has_box();
+
+/// What a user should know before a program runs: one line where the box is wanted and cannot be had; else
+/// empty.
+std::string box_warning();
 
 /// The name of a run, as an environment variable that all it starts inherits, whatever session they begin.
 std::string next_run_mark();

@@ -16,10 +16,10 @@
 #include <fmt/format.h>
 
 #include "calibration/plugin/box.h"
+#include "calibration/plugin/plugin_environment.h"
 #include "core/error.h"
+#include "core/file/descriptor.h"
 #include "core/interrupt.h"
-
-extern char** environ;
 
 namespace understudy::calibration {
 namespace {
@@ -27,36 +27,14 @@ namespace {
 constexpr int kTick = 20;  // [ms] between looks at the clock, the user and the child
 constexpr std::size_t kChunk = 1 << 16;
 
-/// Closes what it holds.
-class Descriptor {
- public:
-  Descriptor() = default;
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  void close() {
-    if (value_ >= 0) ::close(value_);
-    value_ = -1;
-  }
-  bool open() const { return value_ >= 0; }
-  int get() const { return value_; }
-  void take(int value) {
-    close();
-    value_ = value;
-  }
-
- private:
-  int value_ = -1;
-};
-
 struct Pipe {
   Descriptor read, write;
   Pipe() {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0)
       throw MachineError(fmt::format("no pipe for a plug-in: {}", std::strerror(errno)));
-    read.take(ends[0]);
-    write.take(ends[1]);
+    read = Descriptor(ends[0]);
+    write = Descriptor(ends[1]);
   }
 };
 
@@ -86,7 +64,8 @@ class NoBrokenPipeSignal {
 /// pipes without Asio.
 class Child {
  public:
-  Child(const std::string& command, const Pipe& in, const Pipe& out, const Pipe& err) {
+  Child(const std::string& command, const ProcessLimits& limits, const Pipe& in, const Pipe& out,
+        const Pipe& err) {
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
     posix_spawn_file_actions_init(&files);
@@ -94,18 +73,20 @@ class Child {
     posix_spawn_file_actions_adddup2(&files, in.read.get(), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&files, out.write.get(), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, err.write.get(), STDERR_FILENO);
+    posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
     sigset_t none, all;
     sigemptyset(&none);
     sigfillset(&all);
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setsigdefault(&attributes, &all);
-    posix_spawnattr_setpgroup(&attributes, 0);
+    // A session of its own has no terminal, into which a program could type.
     posix_spawnattr_setflags(&attributes,
-                             POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-    std::vector<std::string> words = boxed(command);
-    std::vector<char*> arguments, environment{mark_.data()};
+                             POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    std::vector<std::string> words = boxed(command, limits), variables = plugin_environment();
+    variables.push_back(mark_);
+    std::vector<char*> arguments, environment;
     for (std::string& word : words) arguments.push_back(word.data());
-    for (char** entry = environ; *entry; ++entry) environment.push_back(*entry);
+    for (std::string& variable : variables) environment.push_back(variable.data());
     arguments.push_back(nullptr), environment.push_back(nullptr);
     const int failed =
         posix_spawn(&pid_, arguments[0], &files, &attributes, arguments.data(), environment.data());
@@ -123,6 +104,8 @@ class Child {
     return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
            info.si_pid == pid_;
   }
+
+  ProcessUsage usage() const { return usage_of(pid_); }
 
   /// Kills what is left of all that it started and takes the status of its first process.
   int end() {
@@ -174,68 +157,60 @@ bool feed(Descriptor& end, const std::string& text, std::size_t& written) {
   return false;
 }
 
-std::string ending(int status) {
-  // A shell tells the death of its command as 128 and the signal.
-  const bool by_shell =
-      WIFEXITED(status) && WEXITSTATUS(status) > 128 && WEXITSTATUS(status) < 128 + SIGRTMIN;
-  if (WIFSIGNALED(status) || by_shell) {
-    const int signal = by_shell ? WEXITSTATUS(status) - 128 : WTERMSIG(status);
-    return fmt::format("crashed with signal {} ({})", signal, ::strsignal(signal));
+/// Which limit the program has exceeded until now; empty where none.
+class Watch {
+ public:
+  Watch(const Child& child, const ProcessLimits& limits) : child_(child), limits_(limits) {}
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  std::string exceeded(const ProcessRun& run) {
+    if (run.output.size() > limits_.output)
+      return fmt::format("wrote more than {} bytes to standard output", limits_.output);
+    if (run.error_output.size() > limits_.error_output)
+      return fmt::format("wrote more than {} bytes to standard error", limits_.error_output);
+    if (seconds() > limits_.time) return fmt::format("did not end within {:g} s", limits_.time);
+    if (Clock::now() < next_look_) return {};
+    const std::string used = calibration::exceeded(child_.usage(), limits_);
+    next_look_ = Clock::now() + std::chrono::milliseconds(kTick);
+    return used;
   }
-  if (WEXITSTATUS(status) == 127) return "the command was not found (status 127)";
-  return fmt::format("ended with status {}", WEXITSTATUS(status));
-}
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Child& child_;
+  const ProcessLimits& limits_;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point next_look_ = start_;
+};
 
 }  // namespace
 
-std::string brief(const std::string& text, std::size_t length) {
-  std::string line;
-  for (const char c : text) {
-    if (c == '\n' && line.find_first_not_of(" \t") != std::string::npos) break;
-    line += c >= ' ' && c <= '~' ? c : ' ';
-    if (line.size() > length) {
-      line.resize(length);
-      return line + "...";
-    }
-  }
-  const std::size_t first = line.find_first_not_of(' ');
-  return first == std::string::npos ? "" : line.substr(first);
-}
-
 ProcessRun run_process(const std::string& command, const std::string& input, const ProcessLimits& limits) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   Pipe in, out, err;
   NoBrokenPipeSignal quiet;
-  Child child(command, in, out, err);
+  Child child(command, limits, in, out, err);
+  Watch watch(child, limits);
   in.read.close(), out.write.close(), err.write.close();
   unblock(in.write), unblock(out.read), unblock(err.read);
 
   ProcessRun run;
   std::size_t written = 0;
-  while (in.write.open() || out.read.open() || err.read.open() || !child.ended()) {
+  while (in.write.is_open() || out.read.is_open() || err.read.is_open() || !child.ended()) {
     stop_if_interrupted();
     const bool ended = child.ended();  // before reading: all that it wrote is in the pipes
     pollfd watched[] = {
         {in.write.get(), POLLOUT, 0}, {out.read.get(), POLLIN, 0}, {err.read.get(), POLLIN, 0}};
     ::poll(watched, 3, ended ? 0 : kTick);
-    if (in.write.open() && !feed(in.write, input, written)) in.write.close();
-    if (out.read.open() && !drain(out.read, run.output, limits.output)) out.read.close();
-    if (err.read.open() && !drain(err.read, run.error_output, limits.error_output)) err.read.close();
-    if (run.output.size() > limits.output)
-      run.failure = fmt::format("wrote more than {} bytes to standard output", limits.output);
-    else if (run.error_output.size() > limits.error_output)
-      run.failure = fmt::format("wrote more than {} bytes to standard error", limits.error_output);
-    else if (elapsed() > limits.time)
-      run.failure = fmt::format("did not end within {:g} s", limits.time);
+    if (in.write.is_open() && !feed(in.write, input, written)) in.write.close();
+    if (out.read.is_open() && !drain(out.read, run.output, limits.output)) out.read.close();
+    if (err.read.is_open() && !drain(err.read, run.error_output, limits.error_output)) err.read.close();
+    run.failure = watch.exceeded(run);
     if (!run.failure.empty() || ended) break;  // a process it left behind may hold the pipes open
   }
   const int status = child.end();
-  run.seconds = elapsed();
-  if (run.failure.empty() && status != 0) run.failure = ending(status);
-  if (!run.failure.empty() && !brief(run.error_output).empty())
-    run.failure += fmt::format("; standard error: \"{}\"", brief(run.error_output));
+  run.seconds = watch.seconds();
+  if (run.failure.empty() && status != 0) run.failure = told_ending(status, run.error_output, limits);
+  const std::string words = last_words(run.error_output);
+  if (!run.failure.empty() && !words.empty()) run.failure += fmt::format("; standard error: \"{}\"", words);
   run.ok = run.failure.empty();
   return run;
 }

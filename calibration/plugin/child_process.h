@@ -3,16 +3,11 @@
 // left.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
-namespace understudy::calibration {
+#include "calibration/plugin/process_limits.h"
 
-struct ProcessLimits {
-  double time = 10;                      ///< [s], from start to end of the program
-  std::size_t output = 1024 * 1024;      ///< [bytes] of standard output
-  std::size_t error_output = 64 * 1024;  ///< [bytes] of standard error
-};
+namespace understudy::calibration {
 
 struct ProcessRun {
   bool ok = false;      ///< ended by itself with status 0 within its limits
@@ -22,13 +17,11 @@ struct ProcessRun {
   double seconds = 0;  ///< wall time
 };
 
-/// Runs `command` by /bin/sh in a box (box.h). All that it started is killed when it ends, whatever session
-/// or group that began, and when we die. Only throws Interrupted, when the user asked for it, and
-/// MachineError, when no process can be started.
+/// Runs `command` by /bin/sh in a box (box.h), in a session of its own, with the environment of
+/// plugin_environment.h and no open files but its three streams. All that it started is killed when it ends,
+/// whatever session or group that began, and when we die. Only throws Interrupted, when the user asked for
+/// it, and MachineError, when no process can be started.
 ProcessRun run_process(const std::string& command, const std::string& input,
                        const ProcessLimits& limits = {});
-
-/// The first line of `text` that says something, printable and cut to `length` characters.
-std::string brief(const std::string& text, std::size_t length = 120);
 
 }  // namespace understudy::calibration

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "calibration/plugin/child_process.h"
+#include "calibration/plugin/process_limits.h"
 #include "core/text/json_depth.h"
 #include "core/units.h"
 

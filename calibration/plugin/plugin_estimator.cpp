@@ -63,7 +63,7 @@ class PluginEstimator final : public Estimator {
     if (!run.ok) return run.failure;
     if (run.output.find_first_not_of(" \t\r\n") != std::string::npos)
       return read_answer(run.output, parameters);
-    const std::string words = brief(run.error_output);
+    const std::string words = last_words(run.error_output);
     return "wrote nothing to standard output" +
            (words.empty() ? "" : fmt::format("; standard error: \"{}\"", words));
   }

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -69,12 +69,20 @@ TEST(ChildProcess, WhatBeginsASessionOfItsOwnIsKilledToo) {
   expect_gone(run_away.output);
 }
 
+// proc(5): the sixth field is the session. A terminal belongs to one session.
+TEST(ChildProcess, HasNoTerminalOfOurs) {
+  outside_the_box();
+  EXPECT_NE(run("cut -d ' ' -f 6 /proc/self/stat").output, std::to_string(::getsid(0)) + "\n");
+}
+
 /// Whether `sleep SECONDS` runs anywhere: in the box, processes have numbers of their own.
 bool sleeps(const std::string& seconds) {
   const std::string words = std::string("sleep") + '\0' + seconds + '\0';
   for (const auto& process : std::filesystem::directory_iterator("/proc")) {
     std::ifstream file(process.path() / "cmdline", std::ios::binary);
-    if (std::string(std::istreambuf_iterator<char>(file), {}) == words) return true;
+    std::ostringstream text;
+    text << file.rdbuf();  // which does not throw where a process is gone
+    if (text.str() == words) return true;
   }
   return false;
 }
