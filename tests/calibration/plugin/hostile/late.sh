@@ -1,0 +1,2 @@
+sleep 2
+echo '{"schema": "understudy.calibration-answer/2", "failure": "late"}'

@@ -1,0 +1,3 @@
+env | grep -a HOSTILE >&2
+printf '{"schema": "understudy.calibration-answer/2", "failure": "%s"}' "$HOSTILE_SECRET"
+exit 1
