@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/noise_option.h"
+#include "cli/plugin_box.h"
 #include "core/error.h"
 
 namespace understudy::cli {
@@ -25,6 +26,7 @@ int run_calibrate(const CalibrateCall& call) {
   calibration::CalibrationRequest request = call.request;
   request.noise = noise_of(call.noise);
   request.command = command_line();
+  warn_of_box(!request.plugin.empty());
   return write_calibration(calibration::calibrate_machine(request), call.output, call.report);
 }
 

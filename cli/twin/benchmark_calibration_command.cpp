@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/machine_option.h"
+#include "cli/plugin_box.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "core/error.h"
@@ -122,6 +123,7 @@ int run_calibration(const BenchmarkCall& call) {
   const studies::CalibrationBenchmarkRequest request = request_of(call);
   const std::string folder = call.folder.empty() ? "out/benchmark-calibration" : call.folder;
   OutputFolder out(folder);
+  warn_of_box(!request.plugins.empty());
   studies::CalibrationBenchmark benchmark;
   {
     ProgressLine line;

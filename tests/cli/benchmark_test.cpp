@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,6 +57,27 @@ TEST(BenchmarkCommand, APlugInThatMayNotRunIsNoAnswer) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, HasSubstr("solved no problem at all"));
   EXPECT_THAT(outcome.out, HasSubstr("2 of 2 failed"));
+}
+
+// Inside a box of our own that forbids namespaces, as a container may.
+TEST(BenchmarkCommand, WarnsWhereAPlugInRunsWithoutABox) {
+  const std::string box = "bwrap --dev-bind / / --unshare-user --disable-userns ";
+  if (std::system((box + "true 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "bubblewrap is not installed, or may make no namespaces here";
+  const Folder folder;
+  const auto warning = [&](const std::string& prefix) {
+    const std::string command =
+        prefix + UNDERSTUDY_PROGRAM +
+        " benchmark calibration --trials 1 --poses 12 --disturbances none --estimators whitened "
+        "--plugin 'exit 3' --out " +
+        (folder / "out") + " >/dev/null 2>" + (folder / "err");
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+    const std::string said = read_file(folder.path() / "err");
+    return said.substr(0, said.find(':'));
+  };
+  EXPECT_EQ(warning(box), "warning");
+  EXPECT_EQ(warning(box + "--setenv UNDERSTUDY_PLUGIN_BOX off "), "exit 3");
+  EXPECT_EQ(warning(""), "exit 3");
 }
 
 TEST(BenchmarkCommand, NothingIsLeftWhereItIsInterrupted) {
