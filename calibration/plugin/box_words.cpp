@@ -25,6 +25,7 @@ using Words = std::vector<std::string>;
 
 constexpr const char* kPrlimit = "/usr/bin/prlimit";
 constexpr const char* kTemporary = "/tmp";
+constexpr double kAskedFor = 4;         // of the memory that may be used
 constexpr std::size_t kNothing = 4096;  // [bytes], the least that a folder in memory can have
 
 constexpr std::array kSecrets{".ssh",
@@ -155,11 +156,11 @@ Words sight_words(const std::string& command) {
 Words limit_words(const ProcessLimits& limits) {
   if (::access(kPrlimit, X_OK) != 0) return {};
   const double cpu = std::max(1.0, std::ceil(limits.cpu_time()));
-  const auto memory = static_cast<double>(limits.memory);
+  const auto memory = kAskedFor * static_cast<double>(limits.memory);
   const auto file = static_cast<double>(limits.file);
   const double open_files = limits.open_files;
-  // Of the memory that may be written to; the address space would count what is only reserved, which is
-  // a multiple of it in a program with many threads.
+  // Of the memory that may be written to. Programs with many threads ask for much more than they use: what
+  // they use is watched by run_process().
   return {kPrlimit,
           "--core=0:0",
           "--cpu=" + limit(RLIMIT_CPU, cpu, cpu + 1),

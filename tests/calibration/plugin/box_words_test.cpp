@@ -67,7 +67,7 @@ TEST(BoxWords, SecretsOfTheHomeFolderAreHidden) {
 
 TEST(BoxWords, LimitsAreThoseAskedForAndNeverAboveOurOwn) {
   const ProcessLimits limits{.time = 2.5, .cores = 1, .memory = 1'000'000, .file = 2000, .open_files = 30};
-  EXPECT_THAT(limit_words(limits), IsSupersetOf({"--cpu=3:4", "--data=1000000:1000000", "--fsize=2000:2000",
+  EXPECT_THAT(limit_words(limits), IsSupersetOf({"--cpu=3:4", "--data=4000000:4000000", "--fsize=2000:2000",
                                                  "--nofile=30:30", "--core=0:0"}));
   const rlimit low{20, 20};
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &low), 0);
