@@ -51,8 +51,9 @@ TEST_F(Inspect, WhatNeedsNothingIsRehearsedAsItIs) {
             "understudy rehearse " + program + " --machine arm --out p");
 }
 
-/// Rings on a dome of 20 mm round a centre at z = 5 mm, the tool square to it, written for a head whose signs
-/// and coordinates are these. Seen from the work the tool is turned by Rz(C) Ry(B).
+/// Rings on a dome of 20 mm round a centre beside the origin (one over it would be its own mirror image), the
+/// tool square to it, written for a head whose signs and coordinates are these. Seen from the work the tool
+/// is turned by Rz(C) Ry(B).
 std::string dome(const std::string& coordinates, int b_sign, int c_sign) {
   std::string text = "M104 S200\nM83\nG0 X0 Y0 Z30 B0 C0\n";
   for (double lean = 15; lean <= 45; lean += 3)
@@ -60,7 +61,7 @@ std::string dome(const std::string& coordinates, int b_sign, int c_sign) {
       // A wave across the rings: a ring alone would not tell the sense of C.
       const double c = 2 * std::numbers::pi * i / 60, b = from_deg(lean + 2 * std::sin(5 * c));
       const Vec3 axis(std::sin(b) * std::cos(c), std::sin(b) * std::sin(c), std::cos(b));
-      Vec3 p = Vec3(0, 0, 5) + 20 * axis;
+      Vec3 p = Vec3(3, -4, 5) + 20 * axis;
       if (coordinates == "crossing") {
         const Mat3 R =
             (Eigen::AngleAxisd(c, Vec3::UnitZ()) * Eigen::AngleAxisd(b, Vec3::UnitY())).toRotationMatrix();
