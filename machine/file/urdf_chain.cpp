@@ -62,6 +62,7 @@ bool is_axis_name(const std::string& name) {
                   std::string_view(" -_./").find(c) != std::string_view::npos;
          });
 }
+constexpr double kFarthest = 1000;  // [m], of an origin; sums and products of such numbers stay finite
 
 class UrdfReader {
  public:
@@ -160,6 +161,9 @@ Pose UrdfReader::pose(const std::string& place, const urdf::Pose& p) const {
   if (!position.allFinite() || !q.coeffs().allFinite())
     fail(fmt::format("{}: origin xyz is {} {} {}, which is no place", place, p.position.x, p.position.y,
                      p.position.z));
+  if (position.cwiseAbs().maxCoeff() > kFarthest)
+    fail(fmt::format("{}: origin xyz is {:g} {:g} {:g}, beyond {:g} m: URDF is in metres", place,
+                     p.position.x, p.position.y, p.position.z, kFarthest));
   return make_pose(q, position);
 }
 

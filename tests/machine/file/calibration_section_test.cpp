@@ -152,7 +152,7 @@ TEST_F(CalibrationSection, IsRefusedForMachinesWhoseInverseNeedsTheDrawing) {
 
 TEST_F(CalibrationSection, NamesTheAxisThatIsNotThere) {
   const std::string text = text_of(calibrated_arm());
-  EXPECT_THAT(error_of(edited(text, "calibration:", "axis: j3", "axis: j4")),
+  EXPECT_THAT(error_of(edited(text, "calibration:", "axis: \"j3\"", "axis: \"j4\"")),
               AllOf(HasSubstr("is 'j4', where axes has 'j3'"), HasSubstr(kInThatLine)));
   EXPECT_THAT(error_of(edited(text, "tool_quaternion", "[0.", "[0.1")), HasSubstr("has length"));
 }

@@ -218,6 +218,8 @@ TEST_F(UrdfFile, BodiesThatCannotBeAreNamed) {
               HasSubstr("link 'extra': no body has the inertia of principal moments 1, 1, 3"));
   EXPECT_THAT(with("2", "-1"), HasSubstr("link 'extra': no body has the inertia"));
   EXPECT_THAT(with("nan", "1"), HasSubstr("mass [nan] is not a float"));
+  EXPECT_THAT(with("1e300", "1"), HasSubstr("link 'extra': mass is 1e+300 kg, more than 1e+06 kg"));
+  EXPECT_THAT(with("1", "1e300"), HasSubstr("beyond 1e+09 kg m^2"));
 }
 
 TEST_F(UrdfFile, BrokenTreesAreNamed) {
@@ -245,7 +247,7 @@ TEST_F(UrdfFile, LoopsIslandsAndDepthsAreRefused) {
   for (int i = 0; i < 1001; ++i) links += "<link name='l" + std::to_string(i) + "'/>";
   EXPECT_THAT(complaint(kGood + links), HasSubstr("links, more than 1000"));
   for (int i = 0; i < 100'000; ++i) deep += "<a>";
-  EXPECT_THAT(complaint_of("<robot>" + deep), HasSubstr("nested more than 500 deep"));
+  EXPECT_THAT(complaint_of("<robot>" + deep), HasSubstr("nested more than 100 deep"));
 }
 
 // A name becomes a column of CSV and a key of YAML; a mass, a quotient of forces.
