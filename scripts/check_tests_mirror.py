@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Every source has a test of its name under tests/, or a line in tests/mirror.txt that names the test that
-covers it and says why. One line a fault; status 1 when there is one.
+covers it and says why; and every test is part of a program. One line a fault; status 1 when there is one.
 
 A line of mirror.txt: `UNIT: TEST FILE: reason`; a UNIT that ends in / stands for all of a folder, the test
 `none` says that nothing covers the unit.
@@ -41,6 +41,7 @@ def faults_of(root):
             elif not has_test and not name:
                 yield (f"{unit}:1: no test: tests/{unit[:-4]}_test.cpp is missing, and tests/mirror.txt does not "
                        "say what covers it")
+    yield from tests_without_program(root)
     for unit, (number, test, reason) in exceptions.items():
         if unit not in used:
             yield f"tests/mirror.txt:{number}: there is no source {unit}"
@@ -48,6 +49,16 @@ def faults_of(root):
             yield f"tests/mirror.txt:{number}: there is no test {test}"
         if not reason:
             yield f"tests/mirror.txt:{number}: {unit} has no reason"
+
+
+def tests_without_program(root):
+    """A program is of the sources beside its CMakeLists.txt; of those below where it says RECURSE, and of those named."""
+    named = "".join(lists.read_text() for lists in (root / "tests").rglob("CMakeLists.txt"))
+    for test in sorted((root / "tests").rglob("*_test.cpp")):
+        lists = next((f / "CMakeLists.txt" for f in test.parents if (f / "CMakeLists.txt").is_file()), None)
+        if lists and lists.parent != test.parent and "RECURSE" not in lists.read_text() and test.name not in named:
+            yield (f"{test.relative_to(root).as_posix()}:1: no program: {lists.relative_to(root).as_posix()} "
+                   "takes no folder below it (RECURSE)")
 
 
 def main(arguments):

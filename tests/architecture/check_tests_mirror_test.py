@@ -46,6 +46,12 @@ class CheckTestsMirror(unittest.TestCase):
             self.check(names, "core/b.cpp: tests/core/a_test.cpp\n"),
             (1, "tests/mirror.txt:1: core/b.cpp has no reason\n"))
 
+    def test_a_test_in_a_folder_that_no_program_takes(self):
+        names = ["core/x/a.cpp", "tests/core/x/a_test.cpp", "tests/core/CMakeLists.txt"]
+        self.assertEqual(
+            self.check(names),
+            (1, "tests/core/x/a_test.cpp:1: no program: tests/core/CMakeLists.txt takes no folder below it (RECURSE)\n"))
+
     def test_a_line_that_is_no_longer_needed(self):
         status, text = self.check(["core/a.cpp", "tests/core/a_test.cpp"], "core/a.cpp: tests/core/a_test.cpp: x\n")
         self.assertEqual(
