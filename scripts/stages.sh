@@ -6,7 +6,7 @@ thread_programs=(core_test machine_test strand_test deposition_test twin_test)
 thread_tests='^(core\.InParallel|machine\.LoopbackPort|strand\.|deposition\.|twin\.)'
 
 # Tests of what the real machine runs. The command line and the reports on top of it are left to the other stages.
-sanitize_rooms="core geometry kinematics machine toolpath control vision calibration"
+sanitize_rooms="core geometry kinematics machine toolpath control vision calibration fuzz"
 # Thousands of draws through code that other tests reach too; more than a minute each.
 sanitize_left_out='ErrorsAreWhatTheCovarianceSays|WithoutSpoiledPosesItLosesLessThanFivePercentOfEfficiency|RandomFramesKeepEveryRule|FarRowsAreSolvedWhereHomeAloneIsNoSeed'
 sanitize_left_out+='|HexapodLimits.(ReachableFractionOfTheCubeIsThatOfTheReference|HomeTiltsInEveryAzimuth)'
