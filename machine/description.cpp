@@ -141,20 +141,28 @@ void read_machine(YamlMap& root, MachineFile& file) {
   if (m.has_microscope) check_optics(root, m);
 }
 
-MachineFile read_file_of(const std::string& name_or_path) {
+MachineFile read_text_of(const std::string& bytes, const std::filesystem::path& path) {
   MachineFile file;
   MachineDescription& machine = file.description;
-  machine.file = find_model(name_or_path);
-  const std::string bytes = read_file(machine.file);
+  machine.file = path;
   machine.sha256 = sha256_hex(bytes);
-  YamlMap::read_text(bytes, machine.file.string(), [&](YamlMap& root) { read_machine(root, file); });
+  YamlMap::read_text(bytes, path.string(), [&](YamlMap& root) { read_machine(root, file); });
   return file;
+}
+
+MachineFile read_file_of(const std::string& name_or_path) {
+  const std::filesystem::path path = find_model(name_or_path);
+  return read_text_of(read_file(path), path);
 }
 
 }  // namespace
 
 MachineDescription load_machine(const std::string& name_or_path) {
   return read_file_of(name_or_path).description;
+}
+
+void check_machine_text(const std::string& text, const std::filesystem::path& file) {
+  read_text_of(text, file);
 }
 
 MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters) {

@@ -11,6 +11,9 @@ namespace understudy::machine {
 /// The machine.yaml that a name or path means. Throws InputError naming the known machines.
 std::filesystem::path find_model(const std::string& name_or_path);
 
+/// Throws InputError where load_machine() would refuse a file of this name and text.
+void check_machine_text(const std::string& text, const std::filesystem::path& file);
+
 /// The source tree's or the installed models, whatever $UNDERSTUDY_MODELS says.
 std::filesystem::path shipped_models_folder();
 

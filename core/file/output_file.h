@@ -7,11 +7,11 @@
 namespace understudy {
 
 /// Replaces `path` with `content` in one step; a link's target where it is a link. A device or a pipe gets
-/// the content as it is. Throws InputError where `path` cannot be written at all (its folder is missing, may
-/// not be written, or it is a folder), MachineError where writing fails (a full disk).
+/// the content as it is. Throws MachineError where that fails: a full disk, or a folder that is gone.
 void write_file(const std::filesystem::path& path, const std::string& content);
 
-/// Throws InputError where write_file() could not put a file there: to be asked before long work.
+/// Throws InputError where write_file() could not put a file there (its folder is missing or may not be
+/// written, or it is a folder): every command asks before its work.
 void check_writable(const std::filesystem::path& path);
 
 }  // namespace understudy

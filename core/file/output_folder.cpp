@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -21,6 +20,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
+#include "core/file/staged_file.h"
 
 namespace understudy {
 namespace fs = std::filesystem;
@@ -65,11 +65,18 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
+/// Of what we wrote: that it cannot be read (any more) is not the user's mistake.
 std::string manifest_of(const fs::path& folder) {
-  std::string text;
-  for (const fs::path& file : files_in(folder))
-    text += fmt::format("{}  {}\n", sha256_hex(read_file(file)), file.lexically_relative(folder).string());
-  return text;
+  try {
+    std::string text;
+    for (const fs::path& file : files_in(folder))
+      text += fmt::format("{}  {}\n", sha256_hex(read_file(file)), file.lexically_relative(folder).string());
+    return text;
+  } catch (const fs::filesystem_error& e) {
+    failed_to_write(folder, e.code().value());
+  } catch (const InputError& e) {
+    throw MachineError(e.what());
+  }
 }
 
 /// What a user has put into the folder of an older result, in words; empty: nothing.
@@ -92,6 +99,12 @@ std::string foreign_in(const fs::path& folder) {
   return "";
 }
 
+/// Made in one step: a process that is killed leaves the folder with the mark, or empty.
+bool mark(const fs::path& folder) {
+  const fs::path name = folder / kUnfinished;
+  return Descriptor(::open(name.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666)).get() >= 0;
+}
+
 /// Empty: it does not exist, or an earlier run wrote all that is in it.
 std::string why_not_replaceable(const fs::path& target) {
   try {
@@ -108,13 +121,31 @@ std::string why_not_replaceable(const fs::path& target) {
   }
 }
 
-/// Where the old result lies between the two steps of a replacement that cannot be one.
-std::string old_name(const fs::path& working) { return working.string() + ".old"; }
+/// Removes what its manifest names; whatever else has come into it stays, with the folders that it lies in.
+/// The mark goes last: until then the next run removes what is left here.
+void remove_result(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& [name, digest] : read_manifest(folder)) fs::remove(folder / name, ignored);
+  fs::remove(folder / kManifest, ignored);
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
+    if (is_folder(entry)) folders.push_back(entry.path());
+  std::sort(folders.rbegin(), folders.rend());
+  for (const fs::path& inner : folders) fs::remove(inner, ignored);  // where it is empty
+  fs::remove(folder / kUnfinished, ignored);
+  fs::remove(folder, ignored);
+}
 
-/// After a run that was killed between those.
+/// Where the old result lies between the two steps of a replacement that cannot be one.
+fs::path old_name(const fs::path& working) { return working.string() + ".old"; }
+
+/// After a run that was killed between those, or after them.
 void restore_old(const fs::path& working, const fs::path& target) {
   std::error_code ignored;
-  if (fs::exists(fs::symlink_status(target, ignored))) return;
+  if (fs::exists(fs::symlink_status(target, ignored))) {
+    if (fs::exists(old_name(working) / kUnfinished, ignored)) remove_result(old_name(working));
+    return;
+  }
   (void)::renameat2(AT_FDCWD, old_name(working).c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE);
 }
 
@@ -134,7 +165,7 @@ int exchange(const fs::path& working, const fs::path& target) {
   };
   const int failure = swap(working.c_str(), target.c_str(), RENAME_EXCHANGE);
   if (failure != EINVAL) return failure;
-  const std::string old = old_name(working);
+  const fs::path old = old_name(working);
   if (const int moved = swap(target.c_str(), old.c_str(), 0); moved != 0) return moved;
   if (const int moved = swap(working.c_str(), target.c_str(), 0); moved != 0) {
     std::rename(old.c_str(), target.c_str());
@@ -147,20 +178,6 @@ int move_new(const fs::path& working, const fs::path& target) {
   if (::renameat2(AT_FDCWD, working.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL) return errno;
   return std::rename(working.c_str(), target.c_str()) == 0 ? 0 : errno;
-}
-
-/// Removes what its manifest names; whatever else has come into it stays, with the folders that it lies in.
-void remove_result(const fs::path& folder) {
-  std::error_code ignored;
-  for (const auto& [name, digest] : read_manifest(folder)) fs::remove(folder / name, ignored);
-  fs::remove(folder / kManifest, ignored);
-  fs::remove(folder / kUnfinished, ignored);
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
-    if (is_folder(entry)) folders.push_back(entry.path());
-  std::sort(folders.rbegin(), folders.rend());
-  for (const fs::path& inner : folders) fs::remove(inner, ignored);  // where it is empty
-  fs::remove(folder, ignored);
 }
 
 }  // namespace
@@ -194,9 +211,9 @@ OutputFolder::OutputFolder(fs::path target) : target_(std::move(target)) {
 void OutputFolder::lock() {
   std::error_code error;
   if (target_.has_parent_path()) fs::create_directories(target_.parent_path(), error);
-  if (error) refuse(target_, error.message());
+  if (error) cannot_write(target_, error.value());
   do {
-    if (::mkdir(working_.c_str(), 0777) != 0 && errno != EEXIST) refuse(target_, text_of(errno));
+    if (::mkdir(working_.c_str(), 0777) != 0 && errno != EEXIST) cannot_write(target_, errno);
     lock_ = Descriptor(::open(working_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     if (lock_.get() < 0) refuse(target_, working_.string() + ": " + text_of(errno));
     if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) refuse(target_, "another run is writing it");
@@ -211,7 +228,7 @@ void OutputFolder::begin() {
   partial_.emplace(working_);
   restore_old(working_, target_);
   check_replaceable(target_);
-  write_file(working_ / kUnfinished, "");
+  if (!mark(working_)) cannot_write(target_, errno);
   for (const auto& entry : fs::directory_iterator(working_, error))
     if (entry.path().filename() != kUnfinished) fs::remove_all(entry.path(), error);
 }
@@ -229,7 +246,7 @@ void OutputFolder::commit() {
   // What came into it while we worked is a user's.
   if (const std::string why = why_not_replaceable(target_); !why.empty()) stays(why);
   // Both are marked: whichever lies under TARGET.part when the process dies is taken away by the next run.
-  if (replaces && !std::ofstream(target_ / kUnfinished)) stays(text_of(errno));
+  if (replaces && !mark(target_)) stays(text_of(errno));
   if (const int failure = replaces ? exchange(working_, target_) : move_new(working_, target_); failure != 0)
     stays(text_of(failure));
   partial_->keep();

@@ -1,5 +1,6 @@
 #include "core/file/run_journal.h"
 
+#include <cerrno>
 #include <charconv>
 #include <limits>
 #include <utility>
@@ -7,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/error.h"
 #include "core/file/output_file.h"
+#include "core/file/staged_file.h"
 
 namespace understudy {
 namespace {
@@ -51,6 +52,7 @@ std::map<std::size_t, std::string> lines_in(const std::filesystem::path& path, c
 RunJournal::RunJournal(std::filesystem::path path, std::string study)
     : path_(std::move(path)), study_(fmt::format("{} {}", kSchema, study)) {
   if (path_.empty()) return;
+  check_writable(path_);
   lines_ = lines_in(path_, study_);
   begin();
 }
@@ -63,7 +65,7 @@ void RunJournal::begin() {
   for (const auto& [item, line] : lines_) content += fmt::format("{} {}\n", item, line);
   write_file(path_, content);
   file_.open(path_, std::ios::binary | std::ios::app);
-  if (!file_) throw InputError(fmt::format("cannot write {}", path_.string()));
+  if (!file_) failed_to_write(path_, errno);
 }
 
 bool RunJournal::confirm(const Answer& answer) {
@@ -87,7 +89,7 @@ void RunJournal::add(std::size_t item, const Answer& answer) {
   if (path_.empty()) return;
   file_ << item << ' ' << line << '\n';
   file_.flush();
-  if (!file_) throw InputError(fmt::format("cannot write {}", path_.string()));
+  if (!file_) failed_to_write(path_, errno);
 }
 
 void RunJournal::remove() {

@@ -25,7 +25,8 @@ class RunJournal {
   /// The answer of item 0, run again. True: what the file holds of the other items stands.
   bool confirm(const Answer& answer);
   std::optional<Answer> find(std::size_t item) const;
-  void add(std::size_t item, const Answer& answer);  ///< from any thread; written at once
+  /// From any thread; written at once. Throws MachineError where that fails, as with a full disk.
+  void add(std::size_t item, const Answer& answer);
   /// The study is complete.
   void remove();
 

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
-#include "machine/description.h"
+#include "machine/model_files.h"
 
 namespace understudy::machine {
 namespace {
@@ -45,26 +45,28 @@ std::string with_section(const std::string& text, const std::string& section) {
   return out + "\n" + section;
 }
 
-void write_with_section(const std::filesystem::path& original, const std::string& section,
-                        const std::filesystem::path& path) {
-  namespace fs = std::filesystem;
+void check_machine_output(const std::filesystem::path& path) {
   if (path.extension() != ".yaml")
     throw InputError(fmt::format("{}: a machine file ends in .yaml", path.string()));
-  const fs::path trial = path.parent_path() / ("." + path.stem().string() + ".part.yaml");
-  write_file(trial, with_section(read_file(original), section));
+  check_writable(path);
+}
+
+StagedFile staged_with_section(const std::filesystem::path& original, const std::string& section,
+                               const std::filesystem::path& path) {
+  check_machine_output(path);
+  const std::string text = with_section(read_file(original), section);
   try {
-    load_machine(fs::absolute(trial).string());
-    fs::rename(trial, path);
+    check_machine_text(text, std::filesystem::absolute(path));
   } catch (const InputError& error) {
-    std::error_code ignored;
-    fs::remove(trial, ignored);
     throw InputError(
         fmt::format("{}: the calibrated machine would be refused: {}", path.string(), error.what()));
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(trial, ignored);
-    throw;
   }
+  return StagedFile(path, text);
+}
+
+void write_with_section(const std::filesystem::path& original, const std::string& section,
+                        const std::filesystem::path& path) {
+  staged_with_section(original, section, path).commit();
 }
 
 }  // namespace understudy::machine

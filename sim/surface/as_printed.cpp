@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/file/output_file.h"
 #include "core/file/output_folder.h"
+#include "core/file/staged_file.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/units.h"
@@ -49,14 +49,14 @@ class StreamedFile {
   void write(const std::string& bytes) {
     stop_if_interrupted();
     out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!out_) throw InputError("cannot write " + path_.string() + ": " + std::strerror(errno));
+    if (!out_) failed_to_write(path_, errno);
   }
   void commit() {
     out_.close();
-    if (!out_) throw InputError("cannot write " + path_.string() + ": " + std::strerror(errno));
+    if (!out_) failed_to_write(path_, errno);
     std::error_code error;
     fs::rename(folder_.path() / "part", path_, error);
-    if (error) throw InputError("cannot write " + path_.string() + ": " + error.message());
+    if (error) failed_to_write(path_, error.value());
   }
 
  private:

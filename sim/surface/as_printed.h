@@ -29,8 +29,8 @@ struct AsPrintedSize {
 /// Every bead is a closed shell. Where beads overlap, the shells run through each other and vertices inside
 /// other beads are kept: the outside is that of the union. Millimetres, in W; bounded memory for any number
 /// of beads. The file appears under `path` only when it is whole. Throws InputError: nothing printed, too
-/// many triangles for the format, a limit, skin or number of sides out of range, a path that cannot be
-/// written.
+/// many triangles for the format, a limit, skin or number of sides out of range; MachineError where it cannot
+/// be written.
 ///
 /// PLY: little endian; with an intended part every vertex has `deviation_mm`, its signed distance from the
 /// intended surface (negative inside), and as colour the deviation from -limit (blue) over 0 (white) to limit

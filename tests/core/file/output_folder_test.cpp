@@ -1,10 +1,11 @@
 #include "core/file/output_folder.h"
 
+#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <fstream>
+#include <functional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -145,6 +146,60 @@ TEST_F(OutputFolderTest, AnOldResultThatLiesBetweenTwoRenamesComesBack) {
   { const OutputFolder next(root_ / "out"); }
   EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "first");
   EXPECT_EQ(root_.entries(), 1);
+}
+
+TEST_F(OutputFolderTest, AnOldResultThatWasLeftAfterTwoRenamesGoes) {
+  write_result("first");
+  fs::rename(root_ / "out", root_ / "out.part.old");
+  write_file(root_ / "out.part.old" / ".understudy-unfinished", "");
+  fs::create_directory(root_ / "out.part");
+  fs::rename(root_ / "out.part", root_ / "out");
+  write_result("second");
+  EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "second");
+  EXPECT_EQ(root_.entries(), 1);
+}
+
+/// Runs `work` in a process that is killed at its n-th stop: it stops before and after each system call.
+/// False: it ended before that.
+bool killed_at(int n, const std::function<void()>& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) ::_exit(0);
+    ::raise(SIGSTOP);
+    work();
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  for (int stop = 0; stop < n && WIFSTOPPED(status); ++stop) {
+    ::ptrace(PTRACE_SYSCALL, child, nullptr, nullptr);
+    ::waitpid(child, &status, 0);
+  }
+  if (!WIFSTOPPED(status)) return false;
+  ::kill(child, SIGKILL);
+  ::waitpid(child, &status, 0);
+  return true;
+}
+
+TEST_F(OutputFolderTest, KilledAtAnySystemCallItLeavesTheOldResultOrTheNew) {
+  if (!killed_at(1, [] { ::getppid(); })) GTEST_SKIP() << "this system lets no process be traced";
+  write_result("0");
+  std::string old_one = "0";
+  int stop = 1, kept = 0, replaced = 0;
+  for (bool killed = true; killed; stop += 2) {  // after one call is before the next
+    const std::string name = std::to_string(stop), next = name + " again";
+    killed = killed_at(stop, [&] { write_result(name); });
+    const std::string found = read_file(root_ / "out" / "summary.json");
+    ASSERT_THAT(found, ::testing::AnyOf(old_one, name)) << "stop " << stop;
+    ASSERT_TRUE(fs::exists(root_ / "out" / "pictures" / found)) << "stop " << stop;
+    ASSERT_NO_THROW(check_replaceable(root_ / "out")) << "stop " << stop;  // whole, by its manifest
+    (found == name ? replaced : kept) += killed;
+    ASSERT_NO_THROW(write_result(next)) << "stop " << stop;
+    ASSERT_EQ(root_.entries(), 1) << "stop " << stop;
+    old_one = next;
+  }
+  EXPECT_GT(kept, 50);  // from the first call to the exchange, and from there to the end
+  EXPECT_GT(replaced, 10);
 }
 
 TEST_F(OutputFolderTest, ARunThatWasKilledAfterItsRenameHasWrittenItsResult) {

@@ -1,6 +1,11 @@
 #include "core/file/run_journal.h"
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -70,6 +75,25 @@ TEST_F(RunJournalTest, ACompleteStudyLeavesNone) {
   EXPECT_FALSE(nowhere.confirm({1}));
   EXPECT_TRUE(nowhere.find(0));
   EXPECT_THROW(RunJournal("/no-such-folder/journal", "s"), InputError);
+}
+
+TEST_F(RunJournalTest, AFullDiskIsNoBadInput) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    RunJournal journal(path, "s");
+    const rlimit limit{30, 30};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      for (std::size_t item = 0; item < 100; ++item) journal.add(item, {1, 2, 3});
+    } catch (const MachineError& error) {
+      ::_exit(std::string(error.what()).find("too large") != std::string::npos ? 0 : 1);
+    }
+    ::_exit(2);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
 }
 
 }  // namespace

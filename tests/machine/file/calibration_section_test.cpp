@@ -144,6 +144,16 @@ TEST_F(CalibrationSection, MustLeaveHomeWithinTheLimits) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / ".calibrated.part.yaml"));
 }
 
+TEST_F(CalibrationSection, FilesBesideItAndLinksToItStay) {
+  namespace fs = std::filesystem;
+  std::ofstream(folder_ / ".calibrated.part.yaml") << "mine";
+  fs::create_symlink("elsewhere.yaml", folder_ / "calibrated.yaml");
+  EXPECT_NO_THROW(back(calibrated_hexapod()));
+  EXPECT_EQ(read_file(folder_ / ".calibrated.part.yaml"), "mine");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "calibrated.yaml"));
+  EXPECT_TRUE(fs::is_regular_file(folder_ / "elsewhere.yaml"));
+}
+
 TEST_F(CalibrationSection, IsRefusedForMachinesWhoseInverseNeedsTheDrawing) {
   const std::string section = calibration_section(calibrated_arm());
   EXPECT_THAT(error_of(with_section(read_file(load_machine("five-axis").file), section)),

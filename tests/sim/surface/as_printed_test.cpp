@@ -167,7 +167,7 @@ TEST_F(AsPrinted, RefusesWhatCannotBeWritten) {
   settings.limit = 0;
   EXPECT_THROW(write_as_printed(folder_ / "part.ply", beads, settings), InputError);
   fs::create_directories(folder_ / "taken.stl" / "inside");
-  EXPECT_THROW(write_as_printed(folder_ / "taken.stl", beads), InputError);
+  EXPECT_THROW(write_as_printed(folder_ / "taken.stl", beads), MachineError);
   std::vector<std::string> left;
   for (const auto& entry : fs::directory_iterator(folder_)) left.push_back(entry.path().filename().string());
   EXPECT_THAT(left, ::testing::ElementsAre("taken.stl"));
