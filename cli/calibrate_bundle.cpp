@@ -19,10 +19,11 @@ struct BundleCall {
 };
 
 int run_bundle(const BundleCall& call) {
+  CalibrationOutput output(call.output, call.report);
   calibration::BundleRequest request = call.request;
   request.warming = kMicrometre * call.warming_um;
   request.command = command_line();
-  return write_calibration(calibration::calibrate_bundle(request), call.output, call.report);
+  return output.write(calibration::calibrate_bundle(request));
 }
 
 }  // namespace

@@ -23,11 +23,12 @@ struct CalibrateCall {
 };
 
 int run_calibrate(const CalibrateCall& call) {
+  CalibrationOutput output(call.output, call.report);
   calibration::CalibrationRequest request = call.request;
   request.noise = noise_of(call.noise);
   request.command = command_line();
   warn_of_box(!request.plugin.empty());
-  return write_calibration(calibration::calibrate_machine(request), call.output, call.report);
+  return output.write(calibration::calibrate_machine(request));
 }
 
 }  // namespace

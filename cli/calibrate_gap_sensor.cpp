@@ -22,6 +22,7 @@ struct GapSensorCall {
 };
 
 int run_gap_sensor(const GapSensorCall& call) {
+  machine::check_machine_output(call.output);
   const auto result = calibration::calibrate_gap_sensor(call.table, machine::load_machine(call.machine));
   for (const auto& picture : result.pictures)
     if (picture.dot.status != vision::DotStatus::ok)

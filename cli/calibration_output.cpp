@@ -1,12 +1,11 @@
 #include "cli/calibration_output.h"
 
 #include <filesystem>
-#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/file/output_file.h"
-#include "core/file/output_folder.h"
 #include "core/interrupt.h"
 #include "machine/file/calibration_section.h"
 #include "report/calibration_summary.h"
@@ -14,19 +13,24 @@
 
 namespace understudy::cli {
 
-int write_calibration(const calibration::MachineCalibration& result, const std::string& machine_file,
-                      const std::string& report_folder) {
-  std::optional<OutputFolder> report;
-  if (!report_folder.empty()) {
-    report.emplace(report_folder);
-    write_file(report->path() / "summary.json", report::calibration_json(result));
-    write_file(report->path() / "report.html", report::calibration_html(result));
+CalibrationOutput::CalibrationOutput(std::string machine_file, std::string report_folder)
+    : machine_file_(std::move(machine_file)), report_folder_(std::move(report_folder)) {
+  machine::check_machine_output(machine_file_);
+  if (!report_folder_.empty()) report_.emplace(report_folder_);
+}
+
+int CalibrationOutput::write(const calibration::MachineCalibration& result) {
+  if (report_) {
+    write_file(report_->path() / "summary.json", report::calibration_json(result));
+    write_file(report_->path() / "report.html", report::calibration_html(result));
   }
+  StagedFile machine = machine::staged_with_section(
+      result.machine.file, machine::calibration_section(result.machine, result.stored), machine_file_);
   stop_if_interrupted();
-  machine::write_calibrated(result.machine, machine_file, result.stored);
-  if (report) report->commit();
-  fmt::print("{}machine: {}\n", report::calibration_text(result), machine_file);
-  if (report) fmt::print("report: {}\n", (std::filesystem::path(report_folder) / "report.html").string());
+  if (report_) report_->commit();
+  machine.commit();
+  fmt::print("{}machine: {}\n", report::calibration_text(result), machine_file_);
+  if (report_) fmt::print("report: {}\n", (std::filesystem::path(report_folder_) / "report.html").string());
   return kGood;
 }
 

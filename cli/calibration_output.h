@@ -1,16 +1,25 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "calibration/machine/calibrate_machine.h"
 #include "cli/command.h"
+#include "core/file/output_folder.h"
 
 namespace understudy::cli {
 
-/// The calibrated machine file and, unless its name is empty, the folder with page and summary: the report
-/// is written beside its place before the machine file, and gets its place after it.
-/// Prints the result; the exit status.
-int write_calibration(const calibration::MachineCalibration& result, const std::string& machine_file,
-                      const std::string& report_folder);
+/// The calibrated machine file and, unless its name is empty, the folder with page and summary. Made before
+/// the work: what cannot be written is refused at once.
+class CalibrationOutput {
+ public:
+  CalibrationOutput(std::string machine_file, std::string report_folder);
+  /// Both are written beside their places before either gets its name. Prints the result; the exit status.
+  int write(const calibration::MachineCalibration& result);
+
+ private:
+  std::string machine_file_, report_folder_;
+  std::optional<OutputFolder> report_;
+};
 
 }  // namespace understudy::cli

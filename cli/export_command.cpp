@@ -18,6 +18,7 @@ struct UrdfRequest {
 };
 
 int export_urdf(const UrdfRequest& r) {
+  check_writable(r.output);
   const auto machine = machine::load_machine(r.machine);
   if (!machine.is_chain())
     throw InputError(

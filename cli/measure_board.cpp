@@ -39,6 +39,7 @@ std::string summary_of(int camera, const vision::RigDescription& rig,
 }
 
 int run_board(const MeasureCall& call) {
+  check_output(call);
   const vision::RigDescription rig = vision::load_rig(call.rig);
   const auto pictures = vision::board_pictures(rig, call.pictures);
   std::vector<vision::MeasuredBoardPicture> boards;

@@ -30,6 +30,10 @@ void add_commanded_options(CLI::App& command, const std::shared_ptr<MeasureCall>
       ->capture_default_str();
 }
 
+void check_output(const MeasureCall& call) {
+  if (!call.output.empty()) check_writable(call.output);
+}
+
 calibration::Measurements read_commanded(const MeasureCall& call) {
   return calibration::read_measurements(call.commanded, machine::load_machine(call.machine),
                                         calibration::kReferenceNoise);

@@ -27,6 +27,9 @@ void add_measure_options(CLI::App& command, const std::shared_ptr<MeasureCall>& 
 /// --commanded and --machine.
 void add_commanded_options(CLI::App& command, const std::shared_ptr<MeasureCall>& call);
 
+/// Throws InputError where the output file could not be written.
+void check_output(const MeasureCall& call);
+
 /// The commanded poses; throws InputError unless they have row `pose`, counted from 1, for picture `file`.
 calibration::Measurements read_commanded(const MeasureCall& call);
 const calibration::MeasuredPose& row_of_pose(const calibration::Measurements& commanded, int pose,

@@ -55,6 +55,7 @@ calibration::CameraPose measure_pair(const vision::RigDescription& rig, const vi
 }
 
 int run_pose(const MeasureCall& call) {
+  check_output(call);
   const vision::RigDescription rig = vision::load_rig(call.rig);
   const calibration::Measurements commanded = read_commanded(call);
   const auto pairs = vision::pose_picture_pairs(rig, call.pictures);

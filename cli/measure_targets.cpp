@@ -15,6 +15,7 @@ namespace understudy::cli {
 namespace {
 
 int run_targets(const MeasureCall& call) {
+  check_output(call);
   const vision::RigDescription rig = vision::load_rig(call.rig);
   const calibration::Measurements commanded = read_commanded(call);
   const auto pictures = vision::pose_pictures(rig, call.pictures);

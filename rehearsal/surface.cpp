@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"
 #include "sim/surface/as_printed.h"
@@ -66,6 +67,7 @@ SurfaceTask prepare_surface(const SurfaceRequest& request) {
   const std::string& file = request.as_printed;
   if (!file.empty() && !file.ends_with(".stl") && !file.ends_with(".ply"))
     throw InputError("--as-printed " + file + ": ends in neither .stl nor .ply");
+  if (!file.empty()) check_writable(file);
   if (!request.intended.empty()) task.intended = geometry::read_stl(machine::find_fixture(request.intended));
   const auto& v = request.profile_mm;
   if (!v.empty() && (v.size() != 6 || !is_length(Vec3(v[3] - v[0], v[4] - v[1], v[5] - v[2]), 1e-3)))

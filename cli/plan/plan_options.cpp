@@ -47,6 +47,7 @@ void check_option(const char* name, double value, double limit) {
 }
 
 void check_options(const PlanOptions& o) {
+  check_writable(o.output);
   check_option("--feed", o.feed_mm_per_s, 500);
   check_option("--approach-feed", o.approach_mm_per_s, 50);
   check_option("--clearance", o.clearance_mm, 100);

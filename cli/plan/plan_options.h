@@ -28,7 +28,7 @@ void add_output_option(CLI::App& command, PlanOptions& options);
 
 /// Throws InputError with the option's name, value and limit: above 0 and at most `limit`.
 void check_option(const char* name, double value, double limit);
-/// The options above.
+/// The options above, and that the program can be written.
 void check_options(const PlanOptions& options);
 
 /// `X,Y,Z` in mm. Throws InputError naming the option.

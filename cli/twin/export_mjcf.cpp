@@ -21,6 +21,7 @@ struct MjcfRequest {
 };
 
 int export_mjcf(const MjcfRequest& r) {
+  check_writable(r.output);
   const auto machine = machine::load_machine(r.machine);
   const auto as_built =
       r.as_built.empty() ? sim::as_described(machine) : sim::make_as_built(machine, r.as_built, r.seed);

@@ -61,6 +61,7 @@ std::string pose_text(const rehearsal::Record& record, const rehearsal::Registra
 }
 
 int run_register(const RegisterCall& call) {
+  check_writable(call.output);
   rehearsal::RehearsalRequest request = call.request;
   request.registration.wanted = true;
   request.gap_control = "off";

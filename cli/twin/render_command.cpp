@@ -12,6 +12,7 @@
 #include "cli/seed_option.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
+#include "core/file/staged_file.h"
 #include "core/units.h"
 #include "report/picture/render_images.h"
 
@@ -44,9 +45,11 @@ int run_render(const RenderCall& call) {
   if (path.extension() != ".png") throw InputError(fmt::format("{}: a picture ends in .png", call.output));
   std::filesystem::path truth = path;
   truth.replace_extension(".json");
+  for (const auto& output : {path, truth}) check_writable(output);
   const report::RenderedImage image = report::render_image(request);
-  write_file(truth, image.truth);
-  write_file(path, image.png);
+  StagedFile picture(path, image.png), its_truth(truth, image.truth);
+  its_truth.commit();
+  picture.commit();
   fmt::print("{}\n{}\n", path.string(), truth.string());
   return kGood;
 }

@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
+#include "core/file/staged_file.h"
 #include "core/interrupt.h"
 #include "core/units.h"
 #include "report/picture/png.h"
@@ -43,6 +44,7 @@ void write_record(const std::filesystem::path& folder, const studies::PictureRec
 }
 
 int run_sample(const SampleCall& call) {
+  check_writable(call.output);
   studies::SamplePosesRequest request = call.request;
   if (const auto noise = noise_of(call.noise)) request.noise = *noise;
   if (!call.as_built.empty()) request.as_built = call.as_built;
@@ -71,8 +73,9 @@ int run_sample(const SampleCall& call) {
   }
   stop_if_interrupted();
   if (folder) write_record(folder->path(), record, machine);
-  write_file(call.output, calibration::measurements_csv(sample, machine, "by: " + command_line()));
+  StagedFile poses(call.output, calibration::measurements_csv(sample, machine, "by: " + command_line()));
   if (folder) folder->commit();
+  poses.commit();
   fmt::print("{}: {} poses{}\n", call.output, sample.poses.size(),
              request.as_built ? ", measured on the twin" : "; replace them by the measured ones");
   if (folder) fmt::print("pictures: {}\n", call.pictures);

@@ -44,6 +44,7 @@ const Kind kKinds[] = {
 };
 
 int run_schema(const Kind& kind, const SchemaRequest& request) {
+  if (!request.output.empty()) check_writable(request.output);
   if (!request.file.empty()) {
     kind.read(request);
     fmt::print("{}: ok\n", request.file);
