@@ -20,7 +20,7 @@ void check_writable(const fs::path& path) {
   if (!target.has_filename() || (exists && S_ISDIR(is.st_mode))) cannot_write(path, EISDIR);
   const bool special = exists && !S_ISREG(is.st_mode);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  if (::access(special ? target.c_str() : (folder / "").c_str(), W_OK) != 0) cannot_write(path, errno);
+  if (::access(special ? target.c_str() : folder.c_str(), W_OK) != 0) cannot_write(path, errno);
 }
 
 void write_file(const fs::path& path, const std::string& content) { StagedFile(path, content).commit(); }
