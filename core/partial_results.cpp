@@ -18,9 +18,16 @@ Registry& registry() {
   return *the;
 }
 
+constexpr int kRounds = 1000;
+
+/// Other threads may still write into it when the process is ended: what came meanwhile goes in the next
+/// round.
 void take_away(const std::filesystem::path& path) {
   std::error_code ignored;
-  std::filesystem::remove_all(path, ignored);
+  for (int round = 0; round < kRounds; ++round) {
+    std::filesystem::remove_all(path, ignored);
+    if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return;
+  }
 }
 
 }  // namespace

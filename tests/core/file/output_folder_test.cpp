@@ -4,8 +4,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <fstream>
 #include <functional>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -72,6 +75,20 @@ TEST_F(OutputFolderTest, WhatAManifestNamesOutsideItsFolderStays) {
   EXPECT_EQ(read_file(root_ / "out" / "summary.json"), "second");
   EXPECT_TRUE(fs::exists(root_ / "mine"));
   EXPECT_TRUE(fs::exists(root_ / "a" / "mine"));
+}
+
+TEST_F(OutputFolderTest, WhatIsTakenAwayGoesWholeWhileItIsWrittenTo) {
+  fs::create_directory(root_ / "out.part");
+  std::atomic<int> files{0};
+  std::thread writer([&] {
+    while (std::ofstream(root_ / "out.part" / std::to_string(files))) ++files;
+  });
+  {
+    const PartialResult partial(root_ / "out.part");
+    while (files < 100) std::this_thread::yield();
+  }
+  EXPECT_FALSE(fs::exists(root_ / "out.part"));
+  writer.join();
 }
 
 TEST_F(OutputFolderTest, TheManifestIsWhatSha256sumChecks) {
