@@ -78,17 +78,22 @@ TEST_F(OutputFolderTest, WhatAManifestNamesOutsideItsFolderStays) {
 }
 
 TEST_F(OutputFolderTest, WhatIsTakenAwayGoesWholeWhileItIsWrittenTo) {
-  fs::create_directory(root_ / "out.part");
-  std::atomic<int> files{0};
-  std::thread writer([&] {
-    while (std::ofstream(root_ / "out.part" / std::to_string(files))) ++files;
-  });
-  {
-    const PartialResult partial(root_ / "out.part");
-    while (files < 100) std::this_thread::yield();
+  for (int round = 0; round < 20; ++round) {  // a writer must meet the moment between emptying and removing
+    fs::create_directory(root_ / "out.part");
+    std::atomic<int> files{0};
+    std::atomic<bool> stop{false};
+    std::thread writer([&] {
+      while (!stop && std::ofstream(root_ / "out.part" / std::to_string(files))) ++files;
+    });
+    {
+      const PartialResult partial(root_ / "out.part");
+      while (files < 100) std::this_thread::yield();
+    }
+    EXPECT_FALSE(fs::exists(root_ / "out.part")) << "round " << round;
+    stop = true;
+    writer.join();
+    fs::remove_all(root_ / "out.part");
   }
-  EXPECT_FALSE(fs::exists(root_ / "out.part"));
-  writer.join();
 }
 
 TEST_F(OutputFolderTest, TheManifestIsWhatSha256sumChecks) {
