@@ -76,16 +76,19 @@ std::vector<std::size_t> thin_out(const std::vector<rehearsal::TracePoint>& trac
     for (std::size_t i = 0; i < trace.size(); ++i) kept.push_back(i);
     return kept;
   }
+  // Differences below a nanometre are rounding: of values that are equal but for it, the first is kept.
+  const auto gap = [&](std::size_t i) { return std::round(1e9 * trace[i].gap); };
+  const auto tip_error = [&](std::size_t i) { return std::round(1e9 * trace[i].tip_error); };
   const std::size_t buckets = std::max<std::size_t>(1, points_max / 4);
   for (std::size_t b = 0; b < buckets; ++b) {
     const std::size_t begin = b * trace.size() / buckets, end = (b + 1) * trace.size() / buckets;
     if (begin == end) continue;
     std::size_t low = begin, high = begin, worst = begin;
     for (std::size_t i = begin; i < end; ++i) {
-      if (trace[i].gap < trace[low].gap) low = i;
-      const bool rises = trace[i].gap > trace[high].gap || std::isinf(trace[high].gap);
-      if (std::isfinite(trace[i].gap) && rises) high = i;
-      if (trace[i].tip_error > trace[worst].tip_error) worst = i;
+      if (gap(i) < gap(low)) low = i;
+      const bool rises = gap(i) > gap(high) || std::isinf(gap(high));
+      if (std::isfinite(gap(i)) && rises) high = i;
+      if (tip_error(i) > tip_error(worst)) worst = i;
     }
     kept.insert(kept.end(), {begin, low, high, worst});
   }

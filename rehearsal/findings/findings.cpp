@@ -24,7 +24,9 @@ std::string kind_of(LimitKind kind) {
 constexpr double kSingular = 1e15;
 
 std::string place_text(const Vec3& p_W) {
-  return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", to_mm(p_W.x()), to_mm(p_W.y()), to_mm(p_W.z()));
+  // No -0, which would hang on the last bit.
+  const auto mm = [](double v) { return std::round(100 * to_mm(v)) / 100 + 0.0; };
+  return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", mm(p_W.x()), mm(p_W.y()), mm(p_W.z()));
 }
 
 /// Contacts of the same two bodies on lines that follow each other: the worst of them speaks for all.

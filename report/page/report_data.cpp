@@ -57,6 +57,12 @@ Json axes_value(const Record& record) {
   return axes;
 }
 
+/// To the decimals of trace.csv: what is smaller is rounding, and not the same on every processor.
+double shown(double value, const std::string& column) {
+  const double unit = std::pow(10.0, column_decimals(column));
+  return stable_number(std::round(value * unit) / unit, column.c_str(), kTraceDigits);
+}
+
 Json trace_value(const std::vector<TracePoint>& trace, const Record& record) {
   const std::vector<std::string> columns = trace_columns(record);
   std::vector<Json> values(columns.size(), Json::array());
@@ -70,7 +76,7 @@ Json trace_value(const std::vector<TracePoint>& trace, const Record& record) {
       else if (whole)
         values[c].push_back(static_cast<int>(row[c]));
       else
-        values[c].push_back(stable_number(row[c], columns[c].c_str(), kTraceDigits));
+        values[c].push_back(shown(row[c], columns[c]));
     }
   }
   Json object;
@@ -84,8 +90,8 @@ void put_beliefs(const Record& record, Json& trace) {
   Json gap = Json::array(), sigma = Json::array();
   for (const std::size_t i : thin_out(record.trace, kChartPoints)) {
     const auto& [held, stated] = record.gap_beliefs[i];
-    gap.push_back(stable_number(to_mm(held), "believed gap", kTraceDigits));
-    sigma.push_back(std::isfinite(stated) ? Json(stable_number(to_um(stated), "stated sigma")) : Json());
+    gap.push_back(shown(to_mm(held), "believed_gap_mm"));
+    sigma.push_back(std::isfinite(stated) ? Json(shown(to_um(stated), "stated_sigma_um")) : Json());
   }
   trace["columns"]["believed_gap_mm"] = std::move(gap);
   trace["columns"]["stated_sigma_um"] = std::move(sigma);

@@ -116,6 +116,20 @@ TEST(ThinOut, KeepsTheLargestGapBesideInfiniteOnes) {
   EXPECT_THAT(thin_out(trace, 40), testing::Contains(503u));
 }
 
+// Of samples that are equal but for rounding the first is kept, whichever the rounding favours.
+TEST(ThinOut, DoesNotHangOnTheLastBit) {
+  std::vector<TracePoint> trace(1000), other(1000);
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    trace[i].gap = other[i].gap = 1.3e-4;
+    trace[i].tip_error = other[i].tip_error = 5e-5;
+  }
+  for (std::size_t i = 3; i < trace.size(); i += 7) {
+    other[i].gap = std::nextafter(1.3e-4, i % 2 ? 0.0 : 1.0);
+    other[i].tip_error = std::nextafter(5e-5, 1.0);
+  }
+  EXPECT_EQ(thin_out(trace, 40), thin_out(other, 40));
+}
+
 TEST(ThinOut, LeavesAShortTraceAlone) {
   EXPECT_THAT(thin_out(std::vector<TracePoint>(3), 100), testing::ElementsAre(0u, 1u, 2u));
   EXPECT_TRUE(thin_out({}, 100).empty());

@@ -40,6 +40,14 @@ TEST(Findings, ALineThatBeginsTooHighIsAWarning) {
   EXPECT_THAT(findings[0].message, testing::HasSubstr("0.220 mm over the surface, above 0.200 mm"));
 }
 
+TEST(Findings, APlaceAtZeroHasNoSign) {
+  sim::UnsupportedStretch stretch = high_start();
+  stretch.place_W = Vec3(-1e-17, -0.004e-3, -12.344e-3);
+  const auto findings = findings_of_stretch(stretch);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].message, testing::HasSubstr("(0.00, 0.00, -12.34) mm"));
+}
+
 TEST(Findings, AGrooveOfThePrintIsNone) {
   sim::UnsupportedStretch groove = high_start();
   groove.held_at_start = groove.on_printed = true;

@@ -13,6 +13,7 @@ namespace {
 
 using rehearsal::FrameRecord;
 using rehearsal::Record;
+using rehearsal::TracePoint;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
@@ -102,6 +103,27 @@ TEST(ReportHtml, TraceHasOneValueAPointInEveryColumn) {
   EXPECT_TRUE(data["trace"]["columns"]["gap_mm"][0].is_null());  // nothing below the tip
   EXPECT_EQ(data["gap_band"], (Json{{"min_mm", 0.1}, {"max_mm", 0.2}, {"aim_mm", 0.13}}));
   EXPECT_EQ(data["axes"][5], (Json{{"name", "l6_mm"}, {"min", 170.0}, {"max", 240.0}}));
+}
+
+// Another processor rounds otherwise: a thousandth of what a column resolves, and its sign where there is
+// nothing.
+TEST(ReportHtml, RoundingStaysOutOfTheTrace) {
+  const Record record = sample_go();
+  Record other = record;
+  double sign = 1;
+  for (TracePoint& point : other.trace) {
+    sign = -sign;
+    for (int axis = 0; axis < 3; ++axis) {
+      point.X_WT.translation()[axis] += sign * 1e-16;
+      point.X_WT_programmed.translation()[axis] -= sign * 1e-16;
+    }
+    point.gap += sign * 1e-16;
+    point.tip_error += sign * 1e-16;
+    point.axes[0] += sign * 1e-16;
+  }
+  const Json trace = data_of(record)["trace"], same = data_of(other)["trace"];
+  for (const auto& [column, values] : trace["columns"].items())
+    EXPECT_TRUE(values == same["columns"][column]) << column;
 }
 
 TEST(ReportHtml, FramesCarryTheMeasuredAndTheTrueDot) {
