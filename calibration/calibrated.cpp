@@ -3,7 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 namespace understudy::calibration {
 namespace {
@@ -23,12 +24,11 @@ void warn_of_play(const Unknowns& unknowns, Calibration& result) {
     if (play >= 0 || result.covariance.size() == 0) continue;
     const double sigma = std::sqrt(result.covariance(row, row));
     if (-play < 3 * sigma) continue;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "strut %zu: play of %.1f um is below 0 by %.1f standard deviations: are its approaches "
-                  "named the wrong way round?",
-                  i + 1, play * 1e6, -play / sigma);
-    result.warnings.emplace_back(text);
+    result.warnings.push_back(
+        fmt::format("strut {}: play of {:.1f} um is below 0 by {:.1f} standard deviations: are its "
+                    "approaches named the wrong way "
+                    "round?",
+                    i + 1, play * 1e6, -play / sigma));
   }
 }
 
@@ -44,21 +44,16 @@ Twist pose_error(const Pose& measured, const Pose& reached) {
 std::string misfit_warning(double chi_square, int degrees, const char* lacking) {
   const double score = degrees > 0 ? standard_score(chi_square, degrees) : 0;
   if (std::abs(score) < kUnsupported) return {};
-  char text[400];
-  const int begin =
-      std::snprintf(text, sizeof text,
-                    "residuals are %.2f times what the stated noise explains (chi-square %.1f for %d "
-                    "degrees of freedom): ",
-                    std::sqrt(chi_square / degrees), chi_square, degrees);
+  const std::string much = fmt::format(
+      "residuals are {:.2f} times what the stated noise explains (chi-square {:.1f} for {} degrees of "
+      "freedom): ",
+      std::sqrt(chi_square / degrees), chi_square, degrees);
   if (score > 0)
-    std::snprintf(text + begin, sizeof text - static_cast<std::size_t>(begin),
-                  "the noise is understated or the model lacks something (%s)", lacking);
-  else
-    std::snprintf(
-        text + begin, sizeof text - static_cast<std::size_t>(begin),
-        "the noise is overstated, or most of it is the same in all poses, and then the tip's uncertainty "
-        "is larger than told");
-  return text;
+    return much + fmt::format("the noise is understated or the model lacks something ({})", lacking);
+  return much +
+         "the noise is overstated, or most of it is the same in all poses, and then the tip's uncertainty is "
+         "larger "
+         "than told";
 }
 
 Calibration refused(const Problem& problem, Status status, const std::string& message) {

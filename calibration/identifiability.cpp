@@ -3,7 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "calibration/strut_model.h"
 #include "core/units.h"
@@ -101,11 +102,9 @@ std::size_t distinct_poses(const Problem& problem, const Unknowns& unknowns,
     const Vec3 apart = sample.X_BT.translation() - first.X_BT.translation();
     const double noise = std::sqrt((sample.covariance + first.covariance).topLeftCorner<3, 3>().trace());
     if (apart.norm() < 4 * noise || sample.approach != first.approach) continue;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "poses %zu and %zu were commanded alike but measured %.3f mm apart, %.0f times their noise",
-                  *twin + 1, j + 1, to_mm(apart.norm()), apart.norm() / noise);
-    warnings.emplace_back(text);
+    warnings.push_back(fmt::format(
+        "poses {} and {} were commanded alike but measured {:.3f} mm apart, {:.0f} times their noise",
+        *twin + 1, j + 1, to_mm(apart.norm()), apart.norm() / noise));
   }
   return distinct.size();
 }

@@ -3,7 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "calibration/identifiability.h"
 #include "calibration/strut_model.h"
@@ -72,26 +73,24 @@ Fault input_fault(const Problem& problem) {
 }
 
 std::string dead_measurement(const Problem& problem) {
-  char text[240];
   for (std::size_t i = 0; i < kStruts; ++i) {
     const double travel = range(problem, [i](const PoseSample& s) { return s.displacement[i]; });
     if (travel > kStill) continue;
-    std::snprintf(text, sizeof text,
-                  "strut %zu reads the same displacement, %.3f mm, in all %zu poses: connect its reading, or "
-                  "choose poses that move it",
-                  i + 1, to_mm(problem.samples.front().displacement[i]), problem.samples.size());
-    return text;
+    return fmt::format(
+        "strut {} reads the same displacement, {:.3f} mm, in all {} poses: connect its reading, or choose "
+        "poses that "
+        "move it",
+        i + 1, to_mm(problem.samples.front().displacement[i]), problem.samples.size());
   }
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double travel = range(problem, [k](const PoseSample& s) { return s.X_BT.translation()[k]; });
     const double noise = mean_sigma(problem, k);
     if (travel > std::max(kStill, kWithinNoise * noise)) continue;
-    std::snprintf(
-        text, sizeof text,
-        "%c of the measured poses changes by %.4f mm in all, no more than its noise of %.4f mm: check "
-        "that measurement, or choose poses that differ in %c",
-        "xyz"[k], to_mm(travel), to_mm(noise), "xyz"[k]);
-    return text;
+    return fmt::format(
+        "{0} of the measured poses changes by {1:.4f} mm in all, no more than its noise of {2:.4f} mm: check "
+        "that "
+        "measurement, or choose poses that differ in {0}",
+        "xyz"[k], to_mm(travel), to_mm(noise));
   }
   return {};
 }
@@ -112,23 +111,20 @@ std::string missing_rotation(const Problem& problem) {
   for (Eigen::Index k = 3; k < 6; ++k) noise = std::max(noise, mean_sigma(problem, k));
   const double still = std::max(kStillAngle, 2 * noise);  // RMS of noise alone is 1
   const auto turned = [&](Eigen::Index k) { return std::sqrt(std::max(0.0, spread.eigenvalues()[k])); };
-  char text[320];
   if (turned(2) < still) {
-    std::snprintf(
-        text, sizeof text,
-        "no rotation: the orientations spread by %.4f deg RMS, so only 4 of the 7 parameters of each "
-        "strut can be told; tilt the platform by 10 to 20 deg in several directions",
+    return fmt::format(
+        "no rotation: the orientations spread by {:.4f} deg RMS, so only 4 of the 7 parameters of each strut "
+        "can be "
+        "told; tilt the platform by 10 to 20 deg in several directions",
         to_deg(turned(2)));
-    return text;
   }
   if (turned(1) < still) {
     const Vec3 axis = spread.eigenvectors().col(2);
-    std::snprintf(
-        text, sizeof text,
-        "no rotation but about the axis (%.2f, %.2f, %.2f), so 6 of the 7 parameters of each strut can "
-        "be told; tilt the platform about a second axis as well",
+    return fmt::format(
+        "no rotation but about the axis ({:.2f}, {:.2f}, {:.2f}), so 6 of the 7 parameters of each strut can "
+        "be told; "
+        "tilt the platform about a second axis as well",
         axis.x(), axis.y(), axis.z());
-    return text;
   }
   return {};
 }

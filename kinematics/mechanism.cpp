@@ -1,6 +1,6 @@
 #include "kinematics/mechanism.h"
 
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "core/units.h"
 
@@ -22,11 +22,7 @@ ReportUnit report_unit(const std::string& unit) {
   return {1, ""};
 }
 
-std::string decimal(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
+std::string decimal(double value, int digits) { return fmt::format("{:.{}f}", value, digits); }
 
 struct Figures {
   std::string value, limit;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/text/stable_number.h"
 #include "core/units.h"
 #include "core/version.h"
 
@@ -18,7 +19,7 @@ using nlohmann::ordered_json;
 /// Six significant digits; a number that is none is absent.
 ordered_json number(double v) {
   if (!std::isfinite(v)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", v));
+  return stable_number(v, "calibration");
 }
 
 std::size_t used_poses(const MachineCalibration& result) {

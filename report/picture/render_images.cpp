@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text/stable_number.h"
 #include "core/units.h"
 #include "core/version.h"
 #include "rehearsal/scene.h"
@@ -24,7 +25,7 @@ using nlohmann::ordered_json;
 
 ordered_json list(std::initializer_list<double> values) {
   ordered_json out = ordered_json::array();
-  for (const double v : values) out.push_back(std::stod(fmt::format("{:.9g}", v)));
+  for (const double v : values) out.push_back(stable_number(v, "truth", 9));
   return out;
 }
 

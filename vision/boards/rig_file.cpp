@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <locale>
 #include <sstream>
 
 #include "core/error.h"
@@ -19,8 +20,15 @@ constexpr double kUnitTolerance = 1e-4;  // of a quaternion, as in G-code
 constexpr double kLeastRadius = 8;       // [px], of a target whose outline can be measured
 constexpr Bounds kPlace{-1e5, 1e5};      // [mm]
 
+/// Writes numbers as YAML has them, whatever locale the program has chosen.
+std::ostringstream plain_stream() {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  return stream;
+}
+
 std::string short_number(double value) {
-  std::ostringstream text;
+  std::ostringstream text = plain_stream();
   text << value;
   return text.str();
 }
@@ -145,7 +153,7 @@ void read_rig(YamlMap& map, RigDescription& d) {
 }
 
 std::string list(std::initializer_list<double> values) {
-  std::ostringstream text;
+  std::ostringstream text = plain_stream();
   text.precision(15);
   for (const double v : values) text << (text.tellp() > 0 ? ", " : "[") << (v == 0 ? 0.0 : v);
   return text.str() + "]";
@@ -184,7 +192,7 @@ MapSchema rig_schema() {
 }
 
 std::string rig_yaml(const RigDescription& d, const std::string& comment) {
-  std::ostringstream out;
+  std::ostringstream out = plain_stream();
   out.precision(15);
   out << "# " << comment << "\ncameras:\n";
   for (const MountedCamera& mounted : d.rig.cameras) {
