@@ -15,8 +15,10 @@
 #include <opencv2/core/utility.hpp>
 
 #include "cli/command.h"
+#include "cli/plain_processor.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/simd.h"
 #include "core/standard_streams.h"
 #include "core/text/printable.h"
 #include "core/version.h"
@@ -63,6 +65,7 @@ std::string footer() {
 }
 
 int run(int argc, char** argv) {
+  simd();  // refuses a choice that is none, whatever the command
   CLI::App app("Rehearses prints of machines that print in many directions, and says go or no-go.",
                "understudy");
   app.set_version_flag("--version", std::string("understudy ") + kVersion);
@@ -90,12 +93,15 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cv::setNumThreads(1);  // the same bytes whatever the number of cores
+  // The same bytes whatever the number of cores, and whatever instructions the processor has.
+  cv::setNumThreads(1);
+  cv::setUseOptimized(false);
   keep_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write
   watch_for_interrupt();
   cli::remember_command_line(argc, argv);
   try {
+    cli::restart_on_plain_instructions(argv);
     return delivered(run(argc, argv));
   } catch (const InputError& e) {
     return fail(cli::kBadInput, e.what());

@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/simd.h"
 #include "kinematics/hexapod/hexapod_batch_simd.h"
 #include "kinematics/hexapod/hexapod_numbers.h"
 
@@ -20,26 +21,21 @@ constexpr long kForwardWorthAThread = 1024;
 
 using TwoLanes [[gnu::vector_size(16)]] = double;
 
-bool has_avx2() {
-#ifdef UNDERSTUDY_AVX2
-  return __builtin_cpu_supports("avx2");
-#else
-  return false;
-#endif
-}
-
+/// None: every answer is the single call's.
 simd::InverseMany inverse_many() {
+  const Simd instructions = understudy::simd();
 #ifdef UNDERSTUDY_AVX2
-  if (has_avx2()) return simd::inverse_many_avx2;
+  if (instructions == Simd::avx2) return simd::inverse_many_avx2;
 #endif
-  return simd::inverse_many<TwoLanes>;
+  return instructions == Simd::scalar ? nullptr : simd::inverse_many<TwoLanes>;
 }
 
 simd::ForwardMany forward_many() {
+  const Simd instructions = understudy::simd();
 #ifdef UNDERSTUDY_AVX2
-  if (has_avx2()) return simd::forward_many_avx2;
+  if (instructions == Simd::avx2) return simd::forward_many_avx2;
 #endif
-  return simd::forward_many<TwoLanes>;
+  return instructions == Simd::scalar ? nullptr : simd::forward_many<TwoLanes>;
 }
 
 /// work(begin, end) for parts of [0, count), on as many threads as are worth it.
@@ -65,7 +61,7 @@ void inverse_batch(const HexapodGeometry& geometry, std::span<const Pose> X_BT,
     std::array<bool, kBlock> ok;
     for (long at = begin; at < end; at += kBlock) {
       const long size = std::min(kBlock, end - at);
-      const long done = many(g, X_BT[at].data(), lengths[at].data(), ok.data(), size);
+      const long done = many ? many(g, X_BT[at].data(), lengths[at].data(), ok.data(), size) : 0;
       for (long n = 0; n < size; ++n) {
         const bool have = n < done && ok[n];
         status[at + n] = have ? SolveStatus::ok : inverse(geometry, X_BT[at + n], lengths[at + n]);
@@ -85,7 +81,8 @@ void forward_batch(const HexapodGeometry& geometry, std::span<const StrutLengths
     std::array<simd::Answer, kBlock> answers;
     for (long at = begin; at < end; at += kBlock) {
       const long size = std::min(kBlock, end - at);
-      const long done = many(g, lengths[at].data(), seeds[at].data(), settings, answers.data(), size);
+      const long done =
+          many ? many(g, lengths[at].data(), seeds[at].data(), settings, answers.data(), size) : 0;
       for (long n = 0; n < size; ++n) {
         const long k = at + n;
         const simd::Answer& a = answers[n];

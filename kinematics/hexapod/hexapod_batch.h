@@ -1,5 +1,5 @@
-// The hexapod's kinematics for arrays of poses: several poses in the lanes of one instruction (AVX2 where the
-// processor has it), and ranges of them on all cores. Every result is that of the single call, to the bit,
+// The hexapod's kinematics for arrays of poses: several poses in the lanes of one instruction (core/simd.h),
+// and ranges of them on all cores. Every result is that of the single call, to the bit,
 // whatever the processor and the number of threads. Not for control cycles: threads are started and joined.
 #pragma once
 
