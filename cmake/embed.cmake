@@ -18,6 +18,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
               -P ${UNDERSTUDY_EMBED_SCRIPT}
       DEPENDS ${inputs} ${UNDERSTUDY_EMBED_SCRIPT}
       VERBATIM)
+    set_property(GLOBAL APPEND PROPERTY UNDERSTUDY_EMBEDDED ${inputs})
     set(${out_variable} ${source} PARENT_SCOPE)
   endfunction()
   return()

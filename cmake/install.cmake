@@ -1,4 +1,4 @@
-# cmake --install: the command with models, scenarios and examples (component program); the rooms' libraries, their
+# cmake --install: the command with models, scenarios, examples and licences (component program); the rooms' libraries, their
 # headers as they lie here, and what find_package(Understudy) reads (component development).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -9,9 +9,28 @@ install(DIRECTORY models/ DESTINATION ${data}/models COMPONENT program
         FILES_MATCHING PATTERN "*.yaml" PATTERN "*.urdf" PATTERN "*.stl")
 install(DIRECTORY scenarios examples DESTINATION ${data} COMPONENT program)
 install(DIRECTORY docs/schemas DESTINATION ${data}/docs COMPONENT program)
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES README.md CHANGELOG.md LICENSE docs/licences.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 if(TARGET understudy)
   install(TARGETS understudy RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+endif()
+
+# What the command is made of, and the notices of what is compiled into it: from Debian's database and Ninja's.
+get_property(embedded GLOBAL PROPERTY UNDERSTUDY_EMBEDDED)
+list(REMOVE_DUPLICATES embedded)
+list(JOIN embedded "\n" embedded)
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/embedded.txt CONTENT "${embedded}\n")
+find_package(Python3 COMPONENTS Interpreter)
+find_program(DPKG_QUERY dpkg-query)
+if(TARGET understudy AND CMAKE_GENERATOR STREQUAL Ninja AND Python3_FOUND AND DPKG_QUERY)
+  set(script ${PROJECT_SOURCE_DIR}/scripts/bill_of_materials.py)
+  set(bill ${PROJECT_BINARY_DIR}/understudy.cdx.json ${PROJECT_BINARY_DIR}/third-party-notices.txt)
+  list(GET bill 0 materials)
+  list(GET bill 1 notices)
+  add_custom_command(OUTPUT ${bill} VERBATIM DEPENDS understudy ${script} ${PROJECT_BINARY_DIR}/embedded.txt
+    COMMAND Python3::Interpreter ${script} ${PROJECT_BINARY_DIR} -o ${materials} --notices ${notices} --release ${PROJECT_VERSION}
+      --optional)
+  add_custom_target(bill-of-materials ALL DEPENDS ${bill})
+  install(FILES ${bill} DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program OPTIONAL)
 endif()
 
 get_property(libraries GLOBAL PROPERTY UNDERSTUDY_LIBRARIES)

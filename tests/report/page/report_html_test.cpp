@@ -1,4 +1,5 @@
 #include <cmath>
+#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,6 +41,24 @@ TEST(ReportHtml, CarriesTheLicenceOfItsCharts) {
   for (const char* notice :
        {"Dan Vanderkam", "The above copyright notice and this permission notice shall be included"})
     EXPECT_NE(page.find(notice), std::string::npos) << notice;
+}
+
+// Debian's copyright file of the package that is embedded; of it the script and the shim in it.
+TEST(ReportHtml, NamesEveryHolderOfACopyrightOfItsCharts) {
+  std::ifstream file("/usr/share/doc/libjs-dygraphs/copyright");
+  ASSERT_TRUE(file) << "package libjs-dygraphs";
+  const std::string page = report_html(sample_go(), sample_pictures());
+  bool embedded = true;
+  int named = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("Some tests")) embedded = false;
+    if (line.find("browser-pack") != std::string::npos) embedded = true;
+    const std::string name = line.substr(line.find_last_of("0123456789") + 1);  // after the years
+    if (!embedded || !line.starts_with("Copyright (c)") || name.empty()) continue;
+    EXPECT_NE(page.find(name), std::string::npos) << line;
+    ++named;
+  }
+  EXPECT_EQ(named, 11);
 }
 
 TEST(ReportHtml, SaysTheVerdictWithoutAScriptToo) {
