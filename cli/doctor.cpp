@@ -3,7 +3,9 @@
 #include <exception>
 
 #include <fmt/format.h>
+#include <CLI/Version.hpp>
 
+#include "core/simd.h"
 #include "core/version.h"
 #include "machine/description.h"
 
@@ -27,9 +29,17 @@ HealthCheck attempt(const std::string& name, const std::function<std::string()>&
 }
 
 std::vector<HealthCheck> self_test() {
-  std::vector<HealthCheck> checks{{"understudy", true, kVersion}, attempt("models", try_models)};
+  std::vector<HealthCheck> checks{{"understudy", true, kVersion},
+                                  attempt("models", try_models),
+                                  attempt("simd", [] { return std::string(word(simd())); })};
   for (const HealthCheck& check : twin_self_test()) checks.push_back(check);
   return checks;
+}
+
+LibraryVersions library_versions_in_use() {
+  LibraryVersions all = library_versions_of_rooms();
+  all["CLI11"] = CLI11_VERSION;
+  return all;
 }
 
 }  // namespace understudy::cli

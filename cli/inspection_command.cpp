@@ -56,6 +56,8 @@ int doctor() {
     fmt::print("{} {:<10} {}\n", check.ok ? "ok  " : "FAIL", check.name, check.detail);
     healthy = healthy && check.ok;
   }
+  for (const auto& [library, version] : library_versions_in_use())
+    fmt::print("lib  {:<13} {}\n", library, version);
   return healthy ? kGood : kFailed;
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/doctor.h"
+#include "control/library_versions.h"
 
 namespace understudy::cli {
 
@@ -14,6 +15,8 @@ std::vector<std::string> left_out_commands() {
   return {"rehearse",     "inspect",     "verify", "register",  "scenario",  "sweep",
           "sample-poses", "sample-gaps", "render", "workspace", "benchmark", "schema"};
 }
+
+LibraryVersions library_versions_of_rooms() { return control::library_versions(); }
 
 std::vector<HealthCheck> twin_self_test() {
   return {{"twin", true,

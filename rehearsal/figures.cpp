@@ -18,6 +18,9 @@ class Figures {
   void texts(const std::string& name, const std::vector<std::string>& value) {
     if (!value.empty()) all_.push_back({section_, name, value});
   }
+  void texts(const std::string& name, const std::map<std::string, std::string>& value) {
+    if (!value.empty()) all_.push_back({section_, name, value});
+  }
   std::vector<Figure> take() { return std::move(all_); }
 
  private:
@@ -153,6 +156,7 @@ void add(const Provenance& provenance, Figures& to) {
   to.text("as_built", provenance.as_built);
   to.texts("faults", provenance.faults);
   to.text("command", provenance.command);
+  to.texts("libraries", provenance.libraries);
 }
 
 }  // namespace

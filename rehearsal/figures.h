@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,7 +13,8 @@
 namespace understudy::rehearsal {
 
 /// Counts keep every digit.
-using FigureValue = std::variant<double, std::uint64_t, std::string, std::vector<std::string>>;
+using FigureValue = std::variant<double, std::uint64_t, std::string, std::vector<std::string>,
+                                 std::map<std::string, std::string>>;
 
 struct Figure {
   std::string section;  ///< "gap"

@@ -11,6 +11,7 @@
 #include "control/gap/gap_controller.h"
 #include "control/registration/part_fit.h"
 #include "core/frames.h"
+#include "core/library_versions.h"
 #include "machine/port.h"
 #include "rehearsal/findings/finding.h"
 #include "rehearsal/scene.h"
@@ -112,6 +113,7 @@ struct Provenance {
   std::vector<std::string> faults = {};  ///< what was made to go wrong, in words
   std::string machine_before_sha256 = {};
   std::string inputs_sha256 = {};  ///< of all inputs (input_digest.h)
+  LibraryVersions libraries = {};  ///< that may have a part in the result
 };
 
 /// A strand in air as the report lists it.

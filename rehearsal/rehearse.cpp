@@ -22,6 +22,7 @@
 #include "rehearsal/findings/process_check.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/gap_belief.h"
+#include "rehearsal/library_versions.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/request/input_digest.h"
 #include "rehearsal/request/memory_need.h"
@@ -161,6 +162,7 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
   record.provenance = {kVersion,     setup.machine.sha256,  setup.program.sha256,
                        request.seed, setup.as_built.source, request.command};
   record.provenance.inputs_sha256 = inputs_sha256(request, setup.program.sha256);
+  record.provenance.libraries = library_versions();
   for (const sim::FaultEvent& event : setup.faults)
     record.provenance.faults.push_back(describe(event, setup.machine));
   for (const sim::CameraFaultEvent& event : setup.camera_faults)

@@ -22,8 +22,8 @@ namespace understudy::renderer {
   X(ColorMask) X(DepthFunc) X(Disable) X(DrawArrays) X(Enable) X(EnableVertexAttribArray) \
   X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) \
   X(GenTextures) X(GenVertexArrays) X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) \
-  X(GetShaderiv) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(PolygonOffset) X(ReadPixels) \
-  X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) \
+  X(GetShaderiv) X(GetString) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(PolygonOffset) \
+  X(ReadPixels) X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) \
   X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform2i) X(Uniform3f) X(Uniform3fv) X(Uniform4f) \
   X(UniformMatrix3fv) X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
 // clang-format on

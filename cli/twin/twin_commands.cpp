@@ -8,7 +8,9 @@
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
+#include "rehearsal/library_versions.h"
 #include "renderer/scene_view.h"
+#include "report/page/page_parts.h"
 #include "sim/as_built/as_built.h"
 #include "sim/plant/plant.h"
 
@@ -57,6 +59,12 @@ void add_twin_commands(CLI::App& app, Action& action) {
 }
 
 std::vector<std::string> left_out_commands() { return {}; }
+
+LibraryVersions library_versions_of_rooms() {
+  LibraryVersions all = rehearsal::library_versions();
+  all["dygraphs"] = report::dygraphs_version();
+  return all;
+}
 
 std::vector<HealthCheck> twin_self_test() {
   return {attempt("mujoco", try_plant), attempt("renderer", try_renderer)};

@@ -18,4 +18,7 @@ extern const std::string_view kDygraphScript;
 extern const std::string_view kDygraphStyle;
 extern const std::string_view kDygraphLicence;
 
+/// Of the dygraphs that pages carry, as its script tells it: "2.2.1".
+std::string_view dygraphs_version();
+
 }  // namespace understudy::report

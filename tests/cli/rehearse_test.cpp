@@ -192,9 +192,18 @@ TEST(Help, EveryCommandExplainsItself) {
   }
 }
 
-TEST(Doctor, ThisComputerCanRehearse) {
-  const Outcome outcome = understudy("doctor");
-  EXPECT_EQ(outcome.status, 0) << outcome.out;
+TEST(Rehearse, TheRecordKeepsTheVersionsOfTheLibraries) {
+  const Folder folder;
+  ASSERT_LE(understudy(kBottle + "--engine quasistatic --no-pictures --out " + (folder / "out")).status, 1);
+  const auto summary = nlohmann::json::parse(read_file(folder.path() / "out" / "summary.json"));
+  const std::string doctor = understudy("doctor").out;
+  const auto& libraries = summary["provenance"]["libraries"];
+  for (const auto& [library, version] : libraries.items())
+    EXPECT_THAT(doctor, testing::ContainsRegex("lib  " + library + " +" + version.get<std::string>()));
+  // What reads the command line and what draws in a browser have no part in a result.
+  std::size_t printed = 0;
+  for (std::size_t at = 0; (at = doctor.find("\nlib  ", at)) != std::string::npos; ++at) ++printed;
+  EXPECT_EQ(libraries.size() + 2, printed);
 }
 
 TEST(Rehearse, APartAsPrintedMayLieAmongTheResults) {

@@ -20,7 +20,7 @@ TEST(Figures, ComeSectionBySectionInTheContractsOrder) {
   Record record;
   record.print.emplace();
   record.accuracy.emplace();
-  record.calibration.emplace();
+  record.calibration = CalibrationFigures{};
   record.gap.emplace();
   record.sag.emplace();
   record.collision.emplace();
@@ -46,7 +46,7 @@ TEST(Figures, WhatIsAbsentIsLeftOut) {
 // A program that moves nothing has no clearance; infinity is no figure.
 TEST(Figures, AClearanceThatNobodyLookedAtIsLeftOut) {
   Record record;
-  record.collision.emplace();
+  record.collision = CollisionFigures{};
   for (const Figure& figure : figures(record))
     EXPECT_THAT(figure.name, testing::Not(testing::HasSubstr("clearance")));
   record.collision->nozzle_clearance_mm = -0.07;
@@ -55,6 +55,14 @@ TEST(Figures, AClearanceThatNobodyLookedAtIsLeftOut) {
       std::find_if(all.begin(), all.end(), [](const Figure& f) { return f.name == "nozzle_clearance_mm"; });
   ASSERT_NE(nozzle, all.end());
   EXPECT_EQ(std::get<double>(nozzle->value), -0.07);
+}
+
+TEST(Figures, LibrariesStandByTheirNames) {
+  Record record;
+  record.provenance.libraries = {{"FCL", "0.7.0"}, {"MuJoCo", "2.2.2"}};
+  const Figure libraries = figures(record).back();
+  EXPECT_EQ(libraries.section + "." + libraries.name, "provenance.libraries");
+  EXPECT_EQ(std::get<LibraryVersions>(libraries.value), record.provenance.libraries);
 }
 
 TEST(Figures, CountsKeepEveryDigit) {

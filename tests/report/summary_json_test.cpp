@@ -97,6 +97,13 @@ TEST(SummaryJson, CountsKeepEveryDigit) {
   EXPECT_EQ(summary["provenance"]["seed"].get<std::uint64_t>(), 12345678901234567890u);
 }
 
+TEST(SummaryJson, NamesTheLibrariesByVersion) {
+  Record record = sample_go();
+  record.provenance.libraries = {{"MuJoCo", "2.2.2"}, {"FCL", "0.7.0"}};
+  EXPECT_EQ(Json::parse(summary_json(record))["provenance"]["libraries"].dump(),
+            R"({"FCL":"0.7.0","MuJoCo":"2.2.2"})");
+}
+
 TEST(SummaryJson, ANumberThatIsNotFiniteIsOurOwnMistake) {
   const double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
   const std::function<void(Record&, double)> places[] = {

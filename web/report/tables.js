@@ -179,6 +179,7 @@ function drawProvenance(report) {
     ['Made to go wrong', (provenance.faults || []).join('; ')],
     ['Seed', report.names.seed],
     ['Understudy', provenance.version],
+    ['Libraries', Object.entries(provenance.libraries || {}).map((library) => library.join(' ')).join(', ')],
     ['Command', provenance.command],
   ].filter((row) => row[1]);
   return section('Provenance', null, element('table', { class: 'provenance' }, element('tbody', {},

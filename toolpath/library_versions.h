@@ -1,0 +1,11 @@
+// The versions of the libraries of this room. Each is told where its headers may be seen.
+#pragma once
+
+#include <string>
+
+namespace understudy::toolpath {
+
+std::string clipper_version();  ///< planners/
+std::string json_version();     ///< lattice/
+
+}  // namespace understudy::toolpath
