@@ -5,6 +5,8 @@
 namespace understudy::sim {
 namespace {
 
+constexpr double kRowOverOwn = 2;  // a line pressed to a gap of 0.1 mm over the strand that it is in the air
+
 bool holds(Adhesion adhesion) { return adhesion == Adhesion::sticks || adhesion == Adhesion::fused; }
 
 /// A strand that goes on after a corner in the air is held there by itself only.
@@ -30,7 +32,8 @@ void UnsupportedStretchRecorder::begin(const Element& element, const Conditions&
   stretch.interface_temperature = conditions.interface_temperature;
   stretch.nozzle_temperature = conditions.nozzle_temperature;
   stretch.fan = conditions.fan;
-  stretch.width = std::max(least_width_, last_held_width_);
+  stretch.width = row_width_ = std::max(least_width_, last_held_width_);
+  covered_ = 0;
   stretch.on_printed = bead.follows && last_on_printed_;
   first_bead_ = workpiece_.beads().size();
   if (bead.adhesion == Adhesion::unsupported) {
@@ -49,7 +52,12 @@ void UnsupportedStretchRecorder::extend(const Element& element, const Conditions
   UnsupportedStretch& stretch = stretches_.back();
   stretch.length += bead.length;
   stretch.volume += bead.volume;
-  stretch.width = std::max(stretch.width, bead.width);
+  // Not the widest of it, nor what stuck before at any width: a drop is no beam.
+  covered_ += bead.length * bead.width;
+  if (stretch.length > 0) {
+    const double own = covered_ / stretch.length;
+    stretch.width = std::max({least_width_, own, std::min(row_width_, kRowOverOwn * own)});
+  }
   stretch.worst_gap = bead.adhesion == Adhesion::buried ? std::min(stretch.worst_gap, element.worst_gap)
                                                         : std::max(stretch.worst_gap, element.worst_gap);
   stretch.interface_temperature = std::min(stretch.interface_temperature, conditions.interface_temperature);

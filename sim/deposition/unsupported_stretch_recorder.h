@@ -44,6 +44,8 @@ class UnsupportedStretchRecorder {
   bool last_on_printed_ = false;  // to printed material
   std::size_t first_bead_ = 0;    // of the open stretch
   double diameter_ = 0;           // [m], of its last element
+  double row_width_ = 0;          // [m], that it is no narrower than
+  double covered_ = 0;            // [m^2], length times width of its elements
 };
 
 }  // namespace understudy::sim

@@ -101,5 +101,23 @@ TEST_F(UnsupportedStretchRecorderTest, IsNoNarrowerThanTheRowThatItGoesOnFrom) {
   EXPECT_EQ(record({row, element(1, Adhesion::unsupported)})[0].width, 0.7e-3);
 }
 
+// A bead of 3 mm that hangs is no shorter for the drops in which it begins and ends.
+TEST_F(UnsupportedStretchRecorderTest, ADropAtItsEndMakesItNoWider) {
+  Element first = element(0, Adhesion::unsupported, false), last = element(4, Adhesion::unsupported);
+  for (Element* drop : {&first, &last}) {
+    drop->bead.length = 0.1e-3;
+    drop->bead.width = 2e-3;
+  }
+  const auto& stretch = record({first, element(1, Adhesion::unsupported), element(2, Adhesion::unsupported),
+                                element(3, Adhesion::unsupported), last})[0];
+  EXPECT_NEAR(stretch.width, (3e-3 * kDiameter + 2 * 0.1e-3 * 2e-3) / 3.2e-3, 1e-12);
+}
+
+TEST_F(UnsupportedStretchRecorderTest, ADropThatSticksMakesWhatFollowsNoWider) {
+  Element drop = element(0, Adhesion::sticks, false);
+  drop.bead.width = 3e-3;
+  EXPECT_DOUBLE_EQ(record({drop, element(1, Adhesion::unsupported)})[0].width, 2 * kDiameter);
+}
+
 }  // namespace
 }  // namespace understudy::sim
