@@ -97,7 +97,7 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
 }
 
 int rehearse(const RehearseOptions& asked) {
-  rehearsal::RehearsalRequest request = asked.request;
+  rehearsal::RehearsalRequest request = asked.with_faults();
   request.command = command_line();
   OutputFolder out(asked.folder);
   request.surface.as_printed = among_results(request.surface.as_printed, asked.folder, out.path());

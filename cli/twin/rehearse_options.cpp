@@ -11,6 +11,7 @@
 #include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
 #include "core/error.h"
+#include "rehearsal/request/fault_words.h"
 
 namespace understudy::cli {
 namespace {
@@ -143,7 +144,18 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
 
 void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
   add_request(command, options.request);
+  command
+      .add_option("--fault", options.faults,
+                  "what goes wrong on the way, in the words of scenarios: '{fault: stall, axis: l3, at_s: 4, "
+                  "for_s: 0.4}'; may be given several times (docs/faults.md)")
+      ->allow_extra_args(false);
   command.add_option("--out", options.folder, "folder of results")->capture_default_str();
+}
+
+rehearsal::RehearsalRequest RehearseOptions::with_faults() const {
+  rehearsal::RehearsalRequest all = request;
+  for (const std::string& words : faults) rehearsal::add_fault(words, all);
+  return all;
 }
 
 RehearseOptions read_rehearse_command(const std::string& command_line) {

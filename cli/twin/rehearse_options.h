@@ -12,7 +12,11 @@ namespace understudy::cli {
 
 struct RehearseOptions {
   rehearsal::RehearsalRequest request;
+  std::vector<std::string> faults;   ///< in the words of scenarios
   std::string folder = "rehearsal";  ///< of results
+
+  /// The request with its faults; throws InputError for words that tell none.
+  rehearsal::RehearsalRequest with_faults() const;
 };
 
 /// `options` must outlive `command`.

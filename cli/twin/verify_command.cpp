@@ -44,6 +44,7 @@ int verify(const std::string& folder) {
   const report::RecordedRun recorded = report::read_recorded_run(folder);
   if (const std::string why = why_not_as_written(folder); !why.empty()) return differs(folder, why);
   RehearseOptions options = read_rehearse_command(recorded.command);
+  options.request = options.with_faults();
   options.request.command = recorded.command;
   if (const std::string why = changed_inputs(options.request, recorded); !why.empty())
     return differs(folder, why);
