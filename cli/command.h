@@ -31,9 +31,10 @@ void add_render(CLI::App& app, Action& action);
 void add_workspace(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_export_mjcf(CLI::App& command, Action& action);
-void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap
+void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap, faults
 void add_benchmark_calibration(CLI::App& benchmark, Action& action);
 void add_benchmark_gap(CLI::App& benchmark, Action& action);
+void add_benchmark_faults(CLI::App& benchmark, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_inspection(CLI::App& app, Action& action);  ///< machines, doctor
 

@@ -8,6 +8,7 @@ void add_benchmark(CLI::App& app, Action& action) {
   benchmark->require_subcommand(1);
   add_benchmark_calibration(*benchmark, action);
   add_benchmark_gap(*benchmark, action);
+  add_benchmark_faults(*benchmark, action);
 }
 
 }  // namespace understudy::cli

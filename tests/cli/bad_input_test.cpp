@@ -133,8 +133,12 @@ TEST(BadUsage, OneLineAndStatusTwo) {
 
 TEST(BadUsage, JobsAreFrom1To1024) {
   const Folder folder;
-  const std::string commands[] = {"sweep " + kSource + "/scenarios/song-bottle.yaml", "scenario run",
-                                  "workspace", "benchmark gap", "benchmark calibration"};
+  const std::string commands[] = {"sweep " + kSource + "/scenarios/song-bottle.yaml",
+                                  "scenario run",
+                                  "workspace",
+                                  "benchmark gap",
+                                  "benchmark calibration",
+                                  "benchmark faults"};
   for (const std::string& command : commands)
     for (const std::string& jobs : {std::string("0"), std::string("1025")}) {
       const std::string out = command == "scenario run" ? "" : " --out " + (folder / "out");

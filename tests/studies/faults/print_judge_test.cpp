@@ -1,0 +1,192 @@
+#include "studies/faults/print_judge.h"
+
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "studies/faults/faulted_prints.h"
+
+namespace understudy::studies {
+namespace {
+
+using rehearsal::Record;
+using rehearsal::TracePoint;
+
+constexpr PrintTolerances kAllowed{0.2e-3, 2 * kDegree, 0.1e-3, 0.2e-3, 0.4e-3};
+constexpr double kLength = 10e-3, kGap = 0.13e-3, kFilament = 0.5e-3;  // [m], of one bead
+constexpr int kPoints = 1000;                                          // of a bead's trace
+
+/// Down to the table, 10 mm along x on line 3, and the same again a layer higher on line 6.
+toolpath::Program program(int layers) {
+  toolpath::Program program;
+  for (int layer = 0; layer < layers; ++layer) {
+    const double z = kGap * (layer + 1);
+    toolpath::Step step;
+    step.line = 3 * layer + 2;
+    step.kind = toolpath::StepKind::move;
+    step.X_WT = make_pose(Quat::Identity(), Vec3(0, 0, z));
+    program.steps.push_back(step);
+    step.line = 3 * layer + 3;
+    step.kind = toolpath::StepKind::print;
+    step.X_WT = make_pose(Quat::Identity(), Vec3(kLength, 0, z));
+    step.filament = kFilament;
+    program.steps.push_back(step);
+  }
+  return program;
+}
+
+/// The print as programmed, without a finding; `change` alters each point by how far along its bead it is.
+Record record(int layers, const std::function<void(double along, TracePoint&)>& change = {}) {
+  Record record;
+  record.go = true;
+  for (int layer = 0; layer < layers; ++layer)
+    for (int i = 0; i <= kPoints; ++i) {
+      const double along = static_cast<double>(i) / kPoints;
+      TracePoint point;
+      point.time = layer + along;
+      point.line = 3 * layer + 3;
+      point.extruding = i > 0;
+      point.X_WT = make_pose(Quat::Identity(), Vec3(kLength * along, 0, kGap * (layer + 1)));
+      point.gap = kGap;
+      if (change) change(along, point);
+      record.trace.push_back(point);
+    }
+  record.print.emplace();
+  record.print->extruded_mm = record.print->printed_mm = record.print->deposited_mm =
+      to_mm(kFilament) * layers;
+  return record;
+}
+
+PrintTruth judged(const Record& run, int layers = 1) {
+  return judge_print(IntendedPrint(program(layers), nullptr, kAllowed), run);
+}
+std::string flaws(const Record& run, int layers = 1) { return flaw_words(judged(run, layers).flaws); }
+
+bool last_tenth(double along) { return along > 0.9; }
+
+TEST(PrintJudge, APrintAsProgrammedIsGood) {
+  EXPECT_EQ(flaws(record(1)), "");
+  EXPECT_EQ(flaws(record(2), 2), "");
+  EXPECT_NEAR(judged(record(1)).gap_min, kGap, 1e-12);
+}
+
+TEST(PrintJudge, AGoOnASpoiltTraceIsSilent) {
+  const Record spoilt = record(1, [](double along, TracePoint& point) {
+    if (last_tenth(along)) point.gap = 0.25e-3;
+  });
+  ASSERT_TRUE(spoilt.go);
+  ASSERT_TRUE(spoilt.findings.empty());
+  EXPECT_EQ(answer_of(spoilt.go, false, judged(spoilt)), PrintAnswer::silent);
+  EXPECT_EQ(answer_of(spoilt.go, false, judged(record(1))), PrintAnswer::good_go);
+}
+
+TEST(PrintJudge, TheTipMayBeOffByTheToleranceOfTheMachine) {
+  const auto moved = [](double by) {
+    return record(1, [by](double along, TracePoint& point) {
+      if (along > 0.5 && along < 0.51) point.X_WT.translation().y() += by;
+    });
+  };
+  EXPECT_EQ(flaws(moved(0.19e-3)), "");
+  EXPECT_EQ(flaws(moved(0.21e-3)), "tip") << "0.1 mm of path";
+  EXPECT_NEAR(judged(moved(0.21e-3)).tip_max, 0.21e-3, 1e-9);
+  const Record all = record(1, [](double, TracePoint& point) { point.X_WT.translation().y() += 0.3e-3; });
+  EXPECT_EQ(flaws(all), "incomplete, tip") << "nothing lies where a bead is wanted";
+}
+
+TEST(PrintJudge, ANozzleIsRound) {
+  const auto turned = [](const Vec3& by) {
+    return record(1, [by](double along, TracePoint& point) {
+      if (last_tenth(along)) point.X_WT.linear() = exp_rotation(by);
+    });
+  };
+  EXPECT_EQ(flaws(turned(Vec3(0, 2.1 * kDegree, 0))), "orientation");
+  EXPECT_EQ(flaws(turned(Vec3(0, 1.9 * kDegree, 0))), "");
+  EXPECT_EQ(flaws(turned(Vec3(0, 0, 50 * kDegree))), "");
+}
+
+TEST(PrintJudge, ABeadMayBeOutsideOfTheBandForAShortWay) {
+  // From the middle on for `way`; a step of the trace is 10 um.
+  const auto off = [](double gap, double way) {
+    return flaws(record(1, [=](double along, TracePoint& point) {
+      if (along > 0.5 && along * kLength < 0.5 * kLength + way) point.gap = gap;
+    }));
+  };
+  EXPECT_EQ(off(0.09e-3, 0.38e-3), "") << "a bore is 0.4 mm";
+  EXPECT_EQ(off(0.09e-3, 0.43e-3), "too low");
+  EXPECT_EQ(off(0.21e-3, 0.78e-3), "") << "a bore from either end";
+  EXPECT_EQ(off(0.21e-3, 0.83e-3), "too high");
+}
+
+TEST(PrintJudge, OnBeadsANozzleMayComeNearButABeadMayNotHang) {
+  const auto second = [](double gap) {
+    return record(2, [gap](double along, TracePoint& point) {
+      if (point.line == 6 && last_tenth(along)) point.gap = gap;
+    });
+  };
+  EXPECT_EQ(flaws(second(0.08e-3), 2), "") << "it is pressed into what lies there";
+  EXPECT_EQ(flaws(second(0.21e-3), 2), "too high");
+}
+
+TEST(PrintJudge, WhatIsProgrammedIntoTheAirMayHang) {
+  toolpath::Program bridge = program(2);
+  for (toolpath::Step& step : bridge.steps)
+    if (step.line > 3) step.X_WT.translation().z() += 1e-3;
+  const IntendedPrint intended(bridge, nullptr, kAllowed);
+  const auto run = [](int from_line) {
+    return record(2, [from_line](double, TracePoint& point) {
+      if (point.line == 6) point.X_WT.translation().z() += 1e-3;
+      if (point.line >= from_line) point.gap = 1e-3;
+    });
+  };
+  EXPECT_EQ(flaw_words(judge_print(intended, run(6)).flaws), "");
+  EXPECT_EQ(flaw_words(judge_print(intended, run(3)).flaws), "too high") << "the first lies on the table";
+}
+
+TEST(PrintJudge, WhatIsNotLaidIsMissed) {
+  Record ended = record(1);
+  ended.trace.resize(kPoints / 2);
+  EXPECT_EQ(flaws(ended), "incomplete");
+  EXPECT_NEAR(judged(ended).missing, kLength / 2 - kAllowed.tip, 0.11e-3) << "by whole places";
+  const Record stands = record(1, [](double along, TracePoint& point) {
+    if (along > 0.5) point.X_WT.translation().x() = kLength / 2;
+  });
+  EXPECT_EQ(flaws(stands), "incomplete") << "the filament flows, the tip stands";
+  // Beside its neighbour's path, but within the tolerance of its own.
+  EXPECT_EQ(flaws(record(1, [](double, TracePoint& point) { point.X_WT.translation().y() += 0.19e-3; })), "");
+  Record starved = record(1);
+  starved.print->extruded_mm *= 0.9;
+  EXPECT_EQ(flaws(starved), "incomplete");
+  Record loose = record(1);
+  loose.print->deposited_mm *= 0.9;
+  EXPECT_EQ(flaws(loose), "loose");
+  EXPECT_EQ(flaws({}), "incomplete") << "nothing was simulated";
+}
+
+TEST(PrintJudge, ATouchSpoils) {
+  Record early = record(1);
+  early.trace.front().gap = -1e-6;
+  EXPECT_EQ(flaws(early), "touched") << "on the way down";
+  Record pressed = record(1);
+  pressed.trace[500].gap = -1e-6;
+  EXPECT_EQ(flaws(pressed), "") << "where it crosses a bead of its own";
+  pressed.trace[500].gap = -60e-6;
+  EXPECT_EQ(flaws(pressed), "touched");
+  Record strut = record(1);
+  strut.collision.emplace();
+  strut.collision->min_clearance_mm = -0.1;
+  EXPECT_EQ(flaws(strut), "touched");
+  strut.collision->min_clearance_mm = 0.1;
+  EXPECT_EQ(flaws(strut), "");
+}
+
+TEST(PrintJudge, TolerancesAreThoseOfTheMachineFile) {
+  const PrintTolerances hexapod = tolerances_of("hexapod");  // models/hexapod/machine.yaml
+  EXPECT_DOUBLE_EQ(hexapod.tip, 0.5e-3);
+  EXPECT_DOUBLE_EQ(hexapod.orientation, 2 * kDegree);
+  EXPECT_DOUBLE_EQ(hexapod.gap_min, 0.1e-3);
+  EXPECT_DOUBLE_EQ(hexapod.gap_max, 0.2e-3);
+}
+
+}  // namespace
+}  // namespace understudy::studies
