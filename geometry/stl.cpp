@@ -111,8 +111,8 @@ class Welder {
 };
 
 // A triangle lower than the corners' rounding has no normal, and no side that a print could lie on.
-void check_area(const Soup& soup, std::size_t first, double tolerance, const std::string& file) {
-  const Vec3 &a = soup.corners[first], &b = soup.corners[first + 1], &c = soup.corners[first + 2];
+void check_area(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t triangle, double tolerance,
+                const std::string& file) {
   const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
   const double height = longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
   if (height > tolerance) return;
@@ -120,7 +120,7 @@ void check_area(const Soup& soup, std::size_t first, double tolerance, const std
       Place{file},
       fmt::format("triangle {} at ({:.3f}, {:.3f}, {:.3f}) mm has no area: it is {:.3g} mm high, not more "
                   "than the corners' rounding of {:.3g} mm",
-                  first / 3 + 1, to_mm(a.x()), to_mm(a.y()), to_mm(a.z()), to_mm(height), to_mm(tolerance)));
+                  triangle, to_mm(a.x()), to_mm(a.y()), to_mm(a.z()), to_mm(height), to_mm(tolerance)));
 }
 
 std::shared_ptr<const Mesh> weld(const Soup& soup, const std::string& file) {
@@ -131,7 +131,9 @@ std::shared_ptr<const Mesh> weld(const Soup& soup, const std::string& file) {
   for (std::size_t i = 0; i + 2 < soup.corners.size(); i += 3) {
     const std::array<int, 3> t = {welder.weld(soup.corners[i]), welder.weld(soup.corners[i + 1]),
                                   welder.weld(soup.corners[i + 2])};
-    check_area(soup, i, welder.tolerance(), file);
+    // As welded: a corner that was moved onto its neighbour may have taken the height.
+    const auto corner = [&](std::size_t k) { return welder.vertices()[static_cast<std::size_t>(t[k])]; };
+    check_area(corner(0), corner(1), corner(2), i / 3 + 1, welder.tolerance(), file);
     triangles.push_back(t);
   }
   return std::make_shared<Mesh>(std::move(welder.vertices()), std::move(triangles));
