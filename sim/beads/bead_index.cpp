@@ -16,6 +16,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTie = 2e-9;       // [m], twice the accuracy of a distance
 constexpr double kRounding = 1e-9;  // [m], by which the next step of a path out must go on
+constexpr double kDirected = 1e-9;  // [m]: a shorter difference of places is rounding, and points anywhere
 // Of the width: a ball about a bead holds its half length and half width, and rounding.
 constexpr double kAround = 0.501;
 
@@ -126,7 +127,7 @@ double bound_of_box(const Core& core, const Pose& X_WS, const BeadTree::Box& box
   for (Vec3 p = c;;) {
     const Vec3 d = p - on_core;
     const double length = d.norm();
-    if (length == 0) return bound;
+    if (length < kDirected) return bound;
     bound = std::max(bound, (d.dot(c - on_core) - (R * d).cwiseAbs().dot(box.half)) / length);
     if (bound > enough || p != c) return bound;
     const Vec3 from_centre = R * (on_core - c);
@@ -145,7 +146,7 @@ double bound_of_bead(const Core& core, const Pose& X_WS, const Bead& bead) {
   const Vec3 c = R.transpose() * (0.5 * (from + to) - X_WS.translation());
   const Vec3 d = c - core.nearest(c);
   const double length = d.norm(), around = 0.5 * static_cast<double>(bead.width);
-  if (length == 0) return -core.depth(c) - 0.5 * (to - from).norm() - around;
+  if (length < kDirected) return -core.depth(c) - 0.5 * (to - from).norm() - around;
   return length - 0.5 * std::abs((R * d).dot(to - from)) / length - around;
 }
 

@@ -134,6 +134,47 @@ TEST(BeadIndex, DeepestOfManyOverlapsCounts) {
   EXPECT_EQ(near->bead, 19U);
 }
 
+// Found by a property. The frustum's surface runs through the box of the first three, whose nearest point is
+// then one of the frustum up to rounding: what that rounding points to must not rule out a deeper bead.
+TEST(BeadIndex, ABoxThatTheSurfaceRunsThroughHidesNoDeeperBead) {
+  const std::vector<Bead> beads = {{{-3.27463204e-05F, -0.00022051220F, 0.00014126234F},
+                                    {0.000611219322F, -0.000591284188F, 0.000528760662F},
+                                    {0, 0, 1},
+                                    0.000829336292F,
+                                    0.000259100168F},
+                                   {{0.000611219322F, -0.000591284188F, 0.000528760662F},
+                                    {0.000611219322F, -0.000591284188F, 0.000528760662F},
+                                    {0, 0, 1},
+                                    0.0014865438F,
+                                    0.000478351896F},
+                                   {{0.000611219322F, -0.000591284188F, 0.000528760662F},
+                                    {0.000377761695F, -0.00131719094F, 0.000151422108F},
+                                    {0, 0, 1},
+                                    0.00115447468F,
+                                    0.000477768976F},
+                                   {{0.000377761695F, -0.00131719094F, 0.000151422108F},
+                                    {5.67074749e-05F, -0.00131719094F, 0.000151422108F},
+                                    {0, -0.513199568F, 0.858269334F},
+                                    0.000357028708F,
+                                    0.000202861207F}};
+  BeadIndex index;
+  for (const Bead& bead : beads) index.add(bead);
+  Pose X = Pose::Identity();
+  X.matrix() << 0.44632213739773952, 0.54713325062157392, -0.70812552258267292, 0.000392804296920076,
+      -0.55769256685063906, -0.44878701527883846, -0.69826156689070129, -0.00077844587422441693,
+      -0.69983966059966851, 0.7065659353389333, 0.10482856705287658, -0.00041481228149496023, 0, 0, 0, 1;
+  const ConvexSolid frustum{
+      FrustumCore{0.00046415825404692444, 0.00092831650809384889, 0, 0.0015696288889274002}, 0};
+  BeadIndex third;  // alone it is found
+  third.add(beads[2]);
+  for (int k = 0; k < 100; ++k) {  // rounding differs from place to place
+    const auto near = index.nearest(frustum, X, kFar);
+    ASSERT_EQ(near->bead, 2U) << k;
+    EXPECT_EQ(near->separation.distance, distance(third, frustum, X)) << k;
+    X.translation().x() += 1e-9;
+  }
+}
+
 TEST(BeadIndex, TurningEverythingChangesNothing) {
   Random random(3, "turned beads");
   const std::vector<Bead> beads = test::random_beads(random, 60, 5e-3);
