@@ -121,17 +121,23 @@ std::string why_not_replaceable(const fs::path& target) {
   }
 }
 
+/// Inside `folder`, not itself.
+void remove_empty_folders(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
+    if (is_folder(entry)) folders.push_back(entry.path());
+  std::sort(folders.rbegin(), folders.rend());
+  for (const fs::path& inner : folders) fs::remove(inner, ignored);  // where it is empty
+}
+
 /// Removes what its manifest names; whatever else has come into it stays, with the folders that it lies in.
 /// The mark goes last: until then the next run removes what is left here.
 void remove_result(const fs::path& folder) {
   std::error_code ignored;
   for (const auto& [name, digest] : read_manifest(folder)) fs::remove(folder / name, ignored);
   fs::remove(folder / kManifest, ignored);
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
-    if (is_folder(entry)) folders.push_back(entry.path());
-  std::sort(folders.rbegin(), folders.rend());
-  for (const fs::path& inner : folders) fs::remove(inner, ignored);  // where it is empty
+  remove_empty_folders(folder);
   fs::remove(folder / kUnfinished, ignored);
   fs::remove(folder, ignored);
 }
@@ -235,6 +241,7 @@ void OutputFolder::begin() {
 
 void OutputFolder::commit() {
   std::error_code error;
+  remove_empty_folders(working_);  // no manifest could say whose they are
   write_file(working_ / kManifest, manifest_of(working_));
   const auto stays = [&](const std::string& why) {
     partial_->keep();

@@ -233,6 +233,23 @@ TEST_F(OutputFolderTest, ARunThatWasKilledAfterItsRenameHasWrittenItsResult) {
   EXPECT_FALSE(fs::exists(root_ / "out" / ".understudy-unfinished"));
 }
 
+// A folder that came from elsewhere, with a manifest that names what lies beside it.
+TEST_F(OutputFolderTest, AStrangersManifestTakesNothingOutsideItsFolder) {
+  write_file(root_ / "thesis.tex", "precious");
+  write_file(root_ / "notes", "precious");
+  fs::create_directory(root_ / "out");
+  const std::string digest(64, '0');
+  write_file(root_ / "out" / "manifest.sha256", digest + "  ../thesis.tex\n" + digest +
+                                                    "  a/../../thesis.tex\n" + digest + "  " +
+                                                    (root_ / "notes").string() + "\n");
+  EXPECT_NE(refusal(root_ / "out"), "accepted") << "it names nothing of its own";
+  write_file(root_ / "out" / "manifest.sha256", digest + "  summary.json\n" + digest + "  ../thesis.tex\n" +
+                                                    digest + "  " + (root_ / "notes").string() + "\n");
+  write_result("second");
+  EXPECT_EQ(read_file(root_ / "thesis.tex"), "precious");
+  EXPECT_EQ(read_file(root_ / "notes"), "precious");
+}
+
 TEST_F(OutputFolderTest, ARefusalLeavesNothing) {
   fs::create_directory(root_ / "photos");
   write_file(root_ / "photos" / "a.jpg", "precious");
