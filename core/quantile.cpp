@@ -11,7 +11,9 @@ double quantile(std::vector<double> values, double share) {
   const double at = share * static_cast<double>(values.size() - 1);
   const auto below = static_cast<std::size_t>(at);
   const auto above = std::min(below + 1, values.size() - 1);
-  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+  const double beyond = at - static_cast<double>(below);
+  if (beyond == 0 || std::isinf(values[below])) return values[below];  // infinity less infinity is no number
+  return values[below] + beyond * (values[above] - values[below]);
 }
 
 }  // namespace understudy

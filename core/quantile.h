@@ -5,8 +5,8 @@
 
 namespace understudy {
 
-/// Linear interpolation between order statistics; `share` in [0, 1]; `values` need not be sorted. NaN when
-/// there are none.
+/// Linear interpolation between order statistics; `share` in [0, 1]; `values` need not be sorted and may
+/// be infinite. NaN when there are none.
 double quantile(std::vector<double> values, double share);
 
 }  // namespace understudy
