@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/machine/port_conformance.h"
+#include "tests/machine/port_properties.h"
 
 namespace understudy::machine {
 namespace {
@@ -57,6 +58,11 @@ class LoopbackOnTrial : public PortOnTrial {
 INSTANTIATE_TEST_SUITE_P(Loopback, PortConformance, testing::Values(+[]() -> std::unique_ptr<PortOnTrial> {
                            return std::make_unique<LoopbackOnTrial>();
                          }));
+
+TEST(LoopbackPortProperties, RandomOperationsGoAsTheModelSays) {
+  expect_port_obeys_the_model(
+      +[]() -> std::unique_ptr<PortOnTrial> { return std::make_unique<LoopbackOnTrial>(); }, {500, 40});
+}
 
 TEST(LoopbackPort, StandsAtTheVeryTimeAtWhichItsQueueRanDry) {
   auto port = one_axis();

@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "sim/as_built/as_built.h"
 #include "tests/machine/port_conformance.h"
+#include "tests/machine/port_properties.h"
 
 namespace understudy::sim {
 namespace {
@@ -249,4 +250,9 @@ namespace understudy::machine {
 INSTANTIATE_TEST_SUITE_P(Twin, PortConformance, testing::Values(+[]() -> std::unique_ptr<PortOnTrial> {
                            return std::make_unique<sim::TwinOnTrial>();
                          }));
+
+TEST(SimulatedPortProperties, RandomOperationsGoAsTheModelSays) {
+  expect_port_obeys_the_model(
+      +[]() -> std::unique_ptr<PortOnTrial> { return std::make_unique<sim::TwinOnTrial>(); }, {30, 30});
+}
 }  // namespace understudy::machine
