@@ -58,7 +58,7 @@ struct UnsupportedStretch {
   bool held_at_start = false;        ///< goes on from material that holds it, or begins in touch with some
   bool held_at_end = false;
   bool on_printed = false;      ///< what held it last is printed material: it bridges a hollow of the print
-  double width = 0;             ///< [m], of its widest element, or of what was laid before it
+  double width = 0;             ///< [m], of its line, or of what was laid before it
   std::vector<Vec3> path_W;     ///< [m], of an unsupported one: middle of the strand as laid
   std::vector<double> laid_at;  ///< [s], one a point of path_W
 };
