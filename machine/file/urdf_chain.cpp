@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/text/printable.h"
 #include "core/text/xml.h"
 
 namespace understudy::machine {
@@ -175,7 +176,7 @@ void UrdfReader::place_links(const urdf::LinkConstSharedPtr& from, const Pose& X
 }
 
 void UrdfReader::add_axis(const urdf::Joint& joint, int parent) {
-  const std::string place = "joint '" + joint.name + "'";
+  const std::string place = "joint '" + printable(joint.name) + "'";
   if (!is_axis_name(joint.name))
     fail(place +
          fmt::format(

@@ -155,6 +155,7 @@ Mesh crown(double shell) {
 Mesh crown_base() { return block_under({{-kCrownHalfWidth, kBaseHeight}, {kCrownHalfWidth, kBaseHeight}}); }
 
 void make_parts(const std::filesystem::path& folder) {
+  check_writable(folder / "bottle.stl");
   write_file(folder / "bottle.stl",
              geometry::write_stl(bottle(), "bottle, body 31 mm, lying along y on z = 0, millimetres"));
   write_file(
@@ -181,5 +182,8 @@ int main(int argc, char** argv) {
   } catch (const understudy::InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
+  } catch (const understudy::MachineError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 3;
   }
 }

@@ -59,7 +59,7 @@ TEST_F(Verify, AResultThatTheRunDoesNotGiveIsTold) {
   write_file(out() + "/trace.csv", trace);
   ASSERT_EQ(std::system(("cd '" + out() +
                          "' && find . -type f ! -name manifest.sha256 -printf '%P\\0' | sort -z | "
-                         "xargs -0 sha256sum > m && mv m manifest.sha256")
+                         "xargs -0 sha256sum > ../m && mv ../m manifest.sha256")
                             .c_str()),
             0);
   const Outcome again = understudy("verify " + out());

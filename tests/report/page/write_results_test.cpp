@@ -73,8 +73,9 @@ TEST_F(WriteResults, FrameTableHasEmptyCellsWhereNothingWasMeasured) {
   EXPECT_THAT(table, testing::HasSubstr("\napproach-01.png,0.600000,410,400,no dot,,,,,,,2.000000,0\n"));
 }
 
-TEST_F(WriteResults, AFolderThatIsNotThereIsBadInput) {
-  EXPECT_THROW(write_results(sample_go(), sample_pictures(), folder_ / "missing"), InputError);
+// The command made it before the work: it has vanished meanwhile.
+TEST_F(WriteResults, AFolderThatIsNotThereIsNoMistakeOfTheUsers) {
+  EXPECT_THROW(write_results(sample_go(), sample_pictures(), folder_ / "missing"), MachineError);
 }
 
 }  // namespace
