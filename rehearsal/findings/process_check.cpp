@@ -49,7 +49,8 @@ class Checker {
   }
 
   void check_temperature(const toolpath::Step& step) const {
-    if (temperature_ <= 0) fail(step, "extrudes before any nozzle temperature is set (M104, M109 or --temperature)");
+    if (temperature_ <= 0)
+      fail(step, "extrudes before any nozzle temperature is set (M104, M109 or --temperature)");
     if (temperature_ <= material_.glass_transition)
       fail(step, fmt::format("extrudes at {:.1f} C, where {} is solid: its glass transition is at {:.1f} C",
                              temperature_ - kCelsiusZero, material_.name,

@@ -44,8 +44,7 @@ TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
                                         "path_mean_mm", "path_max_mm", "in_band_fraction", "frames"}));
   EXPECT_EQ(keys(summary["collision"]),
             (Keys{"min_clearance_mm", "closest", "nozzle_clearance_mm", "checks", "pairs"}));
-  EXPECT_EQ(keys(summary["engine"]),
-            (Keys{"name", "version", "timestep_s", "steps", "closure_max_um"}));
+  EXPECT_EQ(keys(summary["engine"]), (Keys{"name", "version", "timestep_s", "steps", "closure_max_um"}));
   EXPECT_EQ(keys(summary["provenance"]),
             (Keys{"version", "machine_sha256", "program_sha256", "seed", "as_built", "command"}));
 }
