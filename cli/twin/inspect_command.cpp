@@ -80,6 +80,12 @@ int inspect(const std::string& program, const std::string& machine) {
                to_mm(found.summary.filament));
   else
     fmt::print("  prints nothing\n");
+  if (const auto& printed = found.summary.printed;
+      printed && printed->lower.z() > rehearsal::kFarAbove && found.request.dialect.place_mm[2] == 0)
+    fmt::print(
+        "  its lowest bead lies {:.2f} mm above z = 0: name what carries it by --fixture, or move it by "
+        "--place\n",
+        to_mm(printed->lower.z()));
   print_layers(found.summary);
   print_beads(found.summary);
   print_process(found);

@@ -19,7 +19,6 @@ namespace understudy::rehearsal {
 namespace {
 
 constexpr double kMostOffTable = 0.2e-3;  // [m], by which the first layer may lie under the table
-constexpr double kFarAbove = 2e-3;        // [m]: no first layer begins there
 constexpr double kDefaultLayer = 0.2e-3;  // [m], where a program does not tell
 constexpr double kWarmest = 450;          // [C]
 
@@ -165,7 +164,8 @@ class Inspector {
     if (!printed || result_.request.dialect.coordinates == "machine") return;
     auto& place = result_.request.dialect.place_mm;
     const double lowest = printed->lower.z();
-    if (lowest < -kMostOffTable || lowest > kFarAbove) {
+    // High above the table it may print on a part; a program of rotary words counts from its table's pivots.
+    if (lowest < -kMostOffTable || (lowest > kFarAbove && !result_.readings.empty())) {
       const auto& heights = result_.summary.layer_heights;
       place[2] = std::round(1e3 * to_mm((heights.empty() ? kDefaultLayer : heights.front()) - lowest)) / 1e3;
     }

@@ -51,6 +51,13 @@ TEST_F(Inspect, WhatNeedsNothingIsRehearsedAsItIs) {
             "understudy rehearse " + program + " --machine arm --out p");
 }
 
+TEST_F(Inspect, WhatPrintsHighUpMayHaveAPartBelowAndStays) {
+  const std::string program = file("M104 S200\nM83\nG0 X-5 Y0 Z31\nG1 X5 E1 F600\n");
+  EXPECT_EQ(inspect(program, "hexapod").request.dialect.place_mm[2], 0);
+  const std::string below = file("M104 S200\nM83\nG0 X-5 Y0 Z-4.8\nG1 X5 E1 F600\n");
+  EXPECT_NEAR(inspect(below, "hexapod").request.dialect.place_mm[2], 5, 1e-9) << "its first layer is 0.2 mm";
+}
+
 /// Rings on a dome of 20 mm round a centre beside the origin (one over it would be its own mirror image), the
 /// tool square to it, written for a head whose signs and coordinates are these. Seen from the work the tool
 /// is turned by Rz(C) Ry(B).
