@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "report/picture/joined_beads.h"
 #include "sim/surface/bead_mesh.h"
 
 namespace understudy::report {
@@ -33,40 +34,9 @@ bool path_is_short(const rehearsal::Scene& scene) {
   return moves <= kPathPointsMost;
 }
 
-std::array<float, 3> less(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// What was laid by a time, beads that go on in nearly the same direction as one: for pictures of large
-/// prints.
-std::vector<sim::Bead> joined(const sim::BeadIndex& beads, double by) {
-  constexpr float kApart = 0.4e-3f, kLongest = 5e-3f, kStraight = 0.9f;  // [m], [m], cosine
-  std::vector<sim::Bead> pieces;
-  for (std::size_t i = 0; i < beads.size(); ++i) {
-    const sim::Bead bead = beads.bead(i);
-    if (static_cast<double>(bead.laid_at) > by) break;
-    if (!pieces.empty()) {
-      sim::Bead& last = pieces.back();
-      const auto gap = less(bead.from_W, last.to_W), way = less(last.to_W, last.from_W),
-                 next = less(bead.to_W, bead.from_W);
-      const float lengths = std::sqrt(dot(way, way) * dot(next, next));
-      if (dot(gap, gap) < kApart * kApart && dot(way, way) < kLongest * kLongest &&
-          dot(way, next) >= kStraight * lengths) {
-        last.to_W = bead.to_W;
-        continue;
-      }
-    }
-    pieces.push_back(bead);
-  }
-  return pieces;
-}
-
 /// What was laid by a time; of a very large print evenly chosen pieces.
 std::optional<renderer::ColouredShape> printed_shape(const sim::BeadIndex& beads, double by = HUGE_VAL) {
-  const std::vector<sim::Bead> pieces = joined(beads, by);
+  const std::vector<sim::Bead> pieces = joined_beads(beads, by);
   const std::size_t stride = pieces.size() / kBeadsDrawn + 1;
   sim::BeadMesh shells;
   for (std::size_t i = 0; i < pieces.size(); i += stride)
