@@ -12,7 +12,7 @@ import bill_of_materials  # noqa: E402
 import check_bill  # noqa: E402
 import check_licences  # noqa: E402
 
-MACHINE_READABLE = """Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+MACHINE_READABLE = """Format: copyright-format/1.0/
 
 Files: *
 Copyright: 2020, Somebody
