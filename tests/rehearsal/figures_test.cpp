@@ -46,7 +46,7 @@ TEST(Figures, WhatIsAbsentIsLeftOut) {
 // A program that moves nothing has no clearance; infinity is no figure.
 TEST(Figures, AClearanceThatNobodyLookedAtIsLeftOut) {
   Record record;
-  record.collision = CollisionFigures{};
+  record.collision.emplace();
   for (const Figure& figure : figures(record))
     EXPECT_THAT(figure.name, testing::Not(testing::HasSubstr("clearance")));
   record.collision->nozzle_clearance_mm = -0.07;
