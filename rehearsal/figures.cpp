@@ -40,6 +40,7 @@ void add(const PrintFigures& print, Figures& to) {
   to.put("deposited_mm", print.deposited_mm);
   to.put("spanning_mm", print.spanning_mm);
   to.put("travel_mm", print.travel_mm);
+  to.put("fill_factor", print.fill_factor);
 }
 
 void add(const AccuracyFigures& accuracy, const Record& record, Figures& to) {

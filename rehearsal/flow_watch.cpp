@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "rehearsal/programmed_areas.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -11,22 +12,8 @@ constexpr double kShortestPath = 50e-6;  // [m]: on less, what is fed is no bead
 
 }  // namespace
 
-FlowWatch::FlowWatch(const toolpath::Program& program, const machine::MachineDescription& machine) {
-  const double d = machine.tool.filament_diameter, filament_area = std::numbers::pi / 4 * d * d;
-  Vec3 tip = (machine.X_WB * machine.X_BT_home).translation();
-  double fed = 0, most = 0;
-  for (const toolpath::Step& step : program.steps) {
-    fed += step.filament;
-    const double fresh = std::max(0.0, fed - most);
-    most = std::max(most, fed);
-    const Vec3 end = step.X_WT.translation();
-    const double path = toolpath::moves(step) ? (end - tip).norm() : 0;
-    if (toolpath::moves(step)) tip = end;
-    const auto line = static_cast<std::size_t>(std::max(0, step.line));
-    if (line >= areas_.size()) areas_.resize(line + line / 2 + 64, 0);
-    if (path > kShortestPath) areas_[line] = static_cast<float>(fresh * filament_area / path);
-  }
-}
+FlowWatch::FlowWatch(const toolpath::Program& program, const machine::MachineDescription& machine)
+    : areas_(programmed_areas(program, machine)) {}
 
 void FlowWatch::add(const sim::LaidBead& bead) {
   const auto line = static_cast<std::size_t>(std::max(0, bead.line));

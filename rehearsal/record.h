@@ -29,6 +29,8 @@ struct PrintFigures {
   double deposited_mm = 0;  ///< of what was laid: lies on something and sticks
   double spanning_mm = 0;   ///< of what was laid: hangs in air from something that holds it
   double travel_mm = 0;     ///< of the tip, without extrusion
+  /// Material over space of neighbouring lines, median (FillFigures); nothing without neighbours.
+  std::optional<double> fill_factor;
 };
 struct AccuracyFigures {
   double tip_rms_um = 0, tip_p95_um = 0, tip_max_um = 0, orientation_max_mrad = 0, open_loop_tip_max_um = 0;

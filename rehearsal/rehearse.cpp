@@ -121,6 +121,8 @@ TwinSetup prepare(const RehearsalRequest& request) {
       seeds);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
+  if (setup.machine.tool.prints())
+    setup.layers = std::make_shared<ProgrammedLayers>(setup.program, setup.machine, setup.part);
   setup.registration = registration_task(request, setup.machine, setup.part, setup.program);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
@@ -143,8 +145,9 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
   record.place_mm = request.dialect.place_mm;
   record.measures_gap = setup.machine.has_microscope;
   record.title = record.program_name + " on " + record.machine_name;
-  record.gap_accepted_min_mm = to_mm(setup.machine.gap.accepted_min);
-  record.gap_accepted_max_mm = to_mm(setup.machine.gap.accepted_max);
+  const sim::GapBand band = setup.layers ? setup.layers->typical_band() : sim::gap_band(setup.machine.gap);
+  record.gap_accepted_min_mm = to_mm(band.low);
+  record.gap_accepted_max_mm = to_mm(band.high);
   record.tip_tolerance_mm = to_mm(setup.accepted.tip);
   record.orientation_tolerance_deg = to_deg(setup.accepted.orientation);
   record.gap_aim_mm = to_mm(setup.machine.gap.aim);
@@ -273,6 +276,8 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
   if (before) fill_comparison(*before, runs, record);
   for (const auto& findings :
        {findings_of(runs.main, setup, options.gap_control),
+        setup.machine.tool.prints() ? temperature_findings(setup.program, setup.material)
+                                    : std::vector<Finding>{},
         accuracy_findings(runs.main.tip_peak, runs.main.orientation_peak, setup.accepted)})
     record.findings.insert(record.findings.end(), findings.begin(), findings.end());
   record.trace = runs.main.trace;

@@ -70,6 +70,7 @@ PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription
   print.deposited_mm = as_filament_mm(laid.deposited_volume, truth);
   print.spanning_mm = as_filament_mm(spanning_volume, truth);
   print.travel_mm = to_mm(run.result.travel);
+  if (run.fill) print.fill_factor = run.fill->factor;
   return print;
 }
 

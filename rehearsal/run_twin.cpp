@@ -92,10 +92,12 @@ std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup) {
 }
 
 /// What the printed material knows of its own temperature.
-sim::DepositionOptions deposition_options(const TwinSetup& setup, FlowWatch& flow,
+sim::DepositionOptions deposition_options(const TwinSetup& setup,
+                                          std::function<void(const sim::LaidBead&)> laid,
                                           sim::AirStrandSolver& strands) {
   sim::DepositionOptions options;
-  options.laid = [&flow](const sim::LaidBead& bead) { flow.add(bead); };
+  options.laid = std::move(laid);
+  if (setup.layers) options.band = [&layers = *setup.layers](int line) { return layers.band(line); };
   if (!setup.machine.tool.prints()) return options;
   options.on_unsupported = [&strands](const sim::UnsupportedStretch& stretch) { strands.add(stretch); };
   options.glass_transition = setup.material.glass_transition;
@@ -110,15 +112,24 @@ struct Watch {
   explicit Watch(const TwinSetup& setup, const RunOptions& options)
       : workpiece(std::make_shared<sim::Workpiece>(setup.built_part, setup.as_built.table)),
         flow(setup.program, setup.machine),
+        fill(workpiece, setup.machine),
         strands(setup.truth, setup.material),
-        deposition(setup.truth, workpiece, deposition_options(setup, flow, strands)),
+        deposition(setup.truth, workpiece,
+                   deposition_options(
+                       setup, [this](const auto& bead) { laid(bead); }, strands)),
         trace(deposition),
-        collision(setup.truth, setup.as_built, setup.built_part, collision_options()),
+        collision(setup.truth, setup.as_built, setup.built_part, collision_options(setup)),
         thread(options.watch_collisions ? std::vector<sim::Observer*>{&deposition, &trace, &collision}
                                         : std::vector<sim::Observer*>{&deposition, &trace}) {}
 
-  sim::CollisionOptions collision_options() const {
+  void laid(const sim::LaidBead& bead) {
+    flow.add(bead);
+    fill.add(bead, deposition.fresh_from());
+  }
+
+  sim::CollisionOptions collision_options(const TwinSetup& setup) const {
     sim::CollisionOptions options;
+    if (setup.layers) options.bead_press = setup.layers->typical_band().soft_depth;
     options.beads = &workpiece->beads();
     options.fresh_from = [this] { return deposition.fresh_from(); };
     return options;
@@ -132,6 +143,7 @@ struct Watch {
 
   std::shared_ptr<sim::Workpiece> workpiece;
   FlowWatch flow;
+  FillWatch fill;
   sim::AirStrandSolver strands;
   sim::DepositionObserver deposition;
   TraceObserver trace;
@@ -236,6 +248,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   run.deposition = watch.deposition.summary();
   run.loose = watch.deposition.unsupported_stretches();
   run.flow = watch.flow.stretches();
+  run.fill = watch.fill.figures();
   run.workpiece = watch.workpiece;
   run.strands = watch.strands.finish();
   if (options.watch_collisions) {

@@ -11,7 +11,9 @@
 #include "machine/calibrated_parameters.h"
 #include "machine/description.h"
 #include "machine/material.h"
+#include "rehearsal/fill_watch.h"
 #include "rehearsal/flow_watch.h"
+#include "rehearsal/programmed_layers.h"
 #include "rehearsal/record.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/trace_observer.h"
@@ -33,7 +35,8 @@ struct TwinSetup {
   machine::Material material;         ///< of a tool that prints
   machine::AcceptedErrors accepted;
   toolpath::Program program;
-  std::shared_ptr<const geometry::Mesh> part;  ///< as drawn: what the controller holds; may be null
+  std::shared_ptr<const ProgrammedLayers> layers;  ///< of the program; null: the machine's band is good
+  std::shared_ptr<const geometry::Mesh> part;      ///< as drawn: what the controller holds; may be null
   std::shared_ptr<const geometry::Mesh>
       built_part;  ///< as clamped: what the twin holds; null where `part` is
   sim::AsBuilt as_built;
@@ -59,6 +62,7 @@ struct TwinRun {
   sim::DepositionSummary deposition;
   std::vector<sim::UnsupportedStretch> loose;
   std::vector<FlowStretch> flow;
+  std::optional<FillFigures> fill;
   std::vector<sim::AirStrand> strands;
   std::shared_ptr<sim::Workpiece> workpiece;  ///< as printed
   EngineFigures engine;

@@ -114,6 +114,23 @@ std::string about_registration(const Finding&, const Record& record) {
       record.machine_word);
 }
 
+std::string about_flow(const Finding& finding, const Record&) {
+  if (finding.about == kVoids)
+    return fmt::format(
+        "feed more: raise the slicer's extrusion multiplier (or `M221 S...`) by {:.0f} %, or set lines "
+        "closer",
+        100 * (1 / finding.value - 1));
+  if (finding.about == kOverfilled)
+    return fmt::format(
+        "feed less: lower the slicer's extrusion multiplier (or `M221 S...`) by {:.0f} %, or set lines apart",
+        100 * (1 - 1 / finding.value));
+  if (finding.about == kNozzleCold || finding.about == kNozzleHot)
+    return fmt::format(
+        "set {:.0f} C or {} (`M109 S...`), or name the material that is loaded: `--material NAME`",
+        finding.limit, finding.about == kNozzleCold ? "more" : "less");
+  return "lower the feed F where the bead begins and ends, or let the extruder start earlier";
+}
+
 using About = std::function<std::string(const Finding&, const Record&)>;
 
 About always(const char* text) {
@@ -134,7 +151,7 @@ const std::map<std::string, About>& advice_by_kind() {
       {"accuracy", about_accuracy},
       {"gap", about_gap},
       {"registration", about_registration},
-      {"flow", always("lower the feed F where the bead begins and ends, or let the extruder start earlier")},
+      {"flow", about_flow},
       {"adhesion", about_adhesion},
       {"sag", always("draw the strand slower and with more fan (`M106 S255`), or hold it at both ends")}};
   return kinds;

@@ -29,6 +29,10 @@ inline constexpr const char* kNothingBelow = "nothing below";
 inline constexpr const char* kCold = "cold";
 inline constexpr const char* kUnmeasured = "unmeasured start";
 inline constexpr const char* kUncontrolled = "no approach";
+inline constexpr const char* kNozzleCold = "cold nozzle";
+inline constexpr const char* kNozzleHot = "hot nozzle";
+inline constexpr const char* kVoids = "voids";
+inline constexpr const char* kOverfilled = "overfilled";
 inline constexpr const char* kTip = "tip";
 inline constexpr const char* kOrientation = "orientation";
 

@@ -9,6 +9,8 @@
 
 #include "core/units.h"
 #include "core/yaml/file_unit.h"
+#include "rehearsal/findings/flow_findings.h"
+#include "rehearsal/findings/place_text.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -22,12 +24,6 @@ std::string kind_of(LimitKind kind) {
 
 /// A condition number beyond the resolution of double is told as this, not as infinity.
 constexpr double kSingular = 1e15;
-
-std::string place_text(const Vec3& p_W) {
-  // No -0, which would hang on the last bit.
-  const auto mm = [](double v) { return std::round(100 * to_mm(v)) / 100 + 0.0; };
-  return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", mm(p_W.x()), mm(p_W.y()), mm(p_W.z()));
-}
 
 /// Contacts of the same two bodies on lines that follow each other: the worst of them speaks for all.
 struct ContactStretch {
@@ -82,12 +78,21 @@ Finding contact_finding(const ContactStretch& stretch, bool touches, double limi
   return f;
 }
 
+/// The end of a line that goes on from something, or comes to it: it droops, and what lies on it is judged by
+/// itself.
+bool is_short_end(const sim::UnsupportedStretch& loose, const machine::Tool& tool) {
+  constexpr double kBores = 5;
+  return loose.adhesion == sim::Adhesion::unsupported && (loose.held_at_start || loose.held_at_end) &&
+         std::isfinite(loose.worst_gap) && loose.length <= kBores * tool.nozzle_diameter;
+}
+
 Finding loose_finding(const sim::UnsupportedStretch& loose, const TwinSetup& setup) {
   Finding f;
+  if (is_short_end(loose, setup.machine.tool)) f.severity = Severity::warning;
   f.kind = "adhesion";
   f.gcode_line = loose.line;
   f.time_s = loose.time;
-  f.limit = to_mm(setup.machine.gap.accepted_max);
+  f.limit = to_mm(loose.highest_gap);
   f.unit = "mm";
   f.value = std::isfinite(loose.worst_gap) ? to_mm(loose.worst_gap) : to_mm(sim::kGapReach);
   std::string why;
@@ -139,21 +144,6 @@ Finding sag_finding(const sim::AirStrand& strand) {
   return f;
 }
 
-Finding flow_finding(const FlowStretch& stretch) {
-  Finding f;
-  f.kind = "flow";
-  f.severity = Severity::warning;
-  f.gcode_line = stretch.line;
-  f.time_s = stretch.time;
-  f.value = stretch.ratio;
-  f.limit = stretch.ratio > 1 ? 1 + kFlowTolerance : 1 - kFlowTolerance;
-  f.unit = "1";
-  f.about = stretch.ratio > 1 ? "too much" : "too little";
-  f.message = fmt::format("over {:.2f} mm {} is laid, {:.0f} % of what is programmed, from {}",
-                          to_mm(stretch.length), f.about, 100 * stretch.ratio, place_text(stretch.place_W));
-  return f;
-}
-
 /// Held by what follows, and so not lost; but no groove of the print is below.
 bool begins_too_high(const sim::UnsupportedStretch& loose) {
   return sim::spans_a_groove(loose) && !loose.held_at_start && !loose.on_printed &&
@@ -176,8 +166,9 @@ void add_strand_findings(const TwinRun& run, const TwinSetup& setup, std::vector
     if (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose))
       findings.push_back(loose_finding(loose, setup));
     else if (begins_too_high(loose))
-      findings.push_back(high_start_finding(loose, setup.machine.gap.accepted_max));
-  for (const auto& stretch : run.flow) findings.push_back(flow_finding(stretch));
+      findings.push_back(high_start_finding(loose, loose.highest_gap));
+  for (Finding& finding : flow_findings(run.flow)) findings.push_back(std::move(finding));
+  if (auto finding = fill_finding(run.fill)) findings.push_back(std::move(*finding));
   for (const auto& strand : run.strands)
     if (!strand.solved || strand.sag > strand.diameter / 2) findings.push_back(sag_finding(strand));
 }
@@ -216,15 +207,14 @@ void add_control_findings(const TwinRun& run, const machine::GapLimits& limits, 
         "the program has no approach along the tool axis before it prints: the gap was not controlled");
 }
 
-void add_low_gap(const sim::DepositionSummary& laid, const machine::GapLimits& limits,
-                 std::vector<Finding>& findings) {
+void add_low_gap(const sim::DepositionSummary& laid, std::vector<Finding>& findings) {
   constexpr double kRounding = 0.1e-6;  // [m]: printed surfaces are known to single precision
-  if (laid.length == 0 || laid.gap_max <= 0 || laid.gap_min >= limits.accepted_min - kRounding) return;
-  Finding f =
-      gap_finding(Severity::error, laid.gap_min_line, laid.gap_min_time, laid.gap_min, limits.accepted_min);
+  const sim::LowestGap& lowest = laid.lowest;
+  if (laid.length == 0 || laid.gap_max <= 0 || lowest.gap >= lowest.accepted_min - kRounding) return;
+  Finding f = gap_finding(Severity::error, lowest.line, lowest.time, lowest.gap, lowest.accepted_min);
   f.about = kTooLow;
   f.message = fmt::format("the nozzle runs as low as {:.3f} mm over the surface, below {:.3f} mm",
-                          to_mm(laid.gap_min), to_mm(limits.accepted_min));
+                          to_mm(lowest.gap), to_mm(lowest.accepted_min));
   findings.push_back(std::move(f));
 }
 
@@ -264,7 +254,7 @@ std::vector<Finding> findings_of(const TwinRun& run, const TwinSetup& setup,
   for (const auto& stretch : stretches_of(run.near_collisions))
     findings.push_back(contact_finding(stretch, false, options.near));
   add_control_findings(run, machine.gap, gap_control, findings);
-  add_low_gap(run.deposition, machine.gap, findings);
+  add_low_gap(run.deposition, findings);
   add_strand_findings(run, setup, findings);
   const bool explained = run.result.stop.gap != control::GapStop::none;
   if (run.registration && !run.registration->good()) {

@@ -1,6 +1,7 @@
 #include "rehearsal/findings/process_check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -87,6 +88,43 @@ class Checker {
 void check_process(const toolpath::Program& program, const machine::MachineDescription& machine,
                    const machine::Material& material) {
   if (machine.tool.prints()) Checker(program, machine, material).run();
+}
+
+std::vector<Finding> temperature_findings(const toolpath::Program& program,
+                                          const machine::Material& material) {
+  Finding cold, hot;
+  for (Finding* f : {&cold, &hot}) {
+    f->kind = "flow";
+    f->unit = "C";
+  }
+  cold.severity = Severity::error;
+  cold.about = kNozzleCold;
+  cold.limit = cold.value = material.nozzle_temperature_min - kCelsiusZero;
+  hot.severity = Severity::warning;
+  hot.about = kNozzleHot;
+  hot.limit = hot.value = material.nozzle_temperature_max - kCelsiusZero;
+  const auto widen = [](Finding& f, int line, double celsius) {
+    if (f.gcode_line == 0) f.gcode_line = line;
+    f.last_line = line;
+    if (std::abs(celsius - f.limit) > std::abs(f.value - f.limit)) f.value = celsius;
+  };
+  double celsius = -kCelsiusZero;
+  for (const toolpath::Step& step : program.steps) {
+    if (step.kind == toolpath::StepKind::temperature) celsius = step.temperature - kCelsiusZero;
+    if (step.filament <= 0 || celsius <= 0) continue;
+    if (celsius < cold.limit) widen(cold, step.line, celsius);
+    if (celsius > hot.limit) widen(hot, step.line, celsius);
+  }
+  std::vector<Finding> findings;
+  for (Finding* f : {&cold, &hot}) {
+    if (f->gcode_line == 0) continue;
+    f->message =
+        fmt::format("filament is fed at {:.0f} C, {} {} is printed: {:.0f} C", f->value,
+                    f == &cold ? "below the lowest temperature at which" : "above the highest at which",
+                    material.name, f->limit);
+    findings.push_back(*f);
+  }
+  return findings;
 }
 
 }  // namespace understudy::rehearsal

@@ -1,8 +1,11 @@
 // What no print can do with its filament, whatever the machine: found before anything runs.
 #pragma once
 
+#include <vector>
+
 #include "machine/description.h"
 #include "machine/material.h"
+#include "rehearsal/findings/finding.h"
 #include "toolpath/program.h"
 
 namespace understudy::rehearsal {
@@ -12,5 +15,10 @@ namespace understudy::rehearsal {
 /// is long.
 void check_process(const toolpath::Program& program, const machine::MachineDescription& machine,
                    const machine::Material& material);
+
+/// Filament that is fed at a temperature at which the material is not printed: colder is an error, hotter a
+/// warning. Of each the farthest, with the first line and the last.
+std::vector<Finding> temperature_findings(const toolpath::Program& program,
+                                          const machine::Material& material);
 
 }  // namespace understudy::rehearsal

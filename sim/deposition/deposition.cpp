@@ -71,21 +71,20 @@ struct DepositionObserver::State {
         options(std::move(with)),
         filament_area(std::numbers::pi / 4 * machine.tool.filament_diameter * machine.tool.filament_diameter),
         nozzle_flat(machine.tool.flat_diameter),
-        accepted_min(machine.gap.accepted_min),
-        accepted_max(machine.gap.accepted_max),
+        stated(gap_band(machine.gap)),
+        band(stated),
         extruder(machine.process.extruder_lag),
         builder(kWidestLine * machine.tool.nozzle_diameter,
                 [this](const Element& element) { keep(element); }),
         unsupported(*workpiece, machine.gap.accepted_max, machine.tool.nozzle_diameter,
                     options.on_unsupported),
-        sums(machine.gap.accepted_min - kRounding, machine.gap.accepted_max + kRounding),
         usual_height(machine.gap.aim) {}
 
   std::shared_ptr<Workpiece> workpiece;
   DepositionOptions options;
-  double filament_area;               // [m^2]
-  double nozzle_flat;                 // [m]
-  double accepted_min, accepted_max;  // [m]
+  double filament_area;  // [m^2]
+  double nozzle_flat;    // [m]
+  GapBand stated, band;  // of the machine, and of the line that is printed
   Extruder extruder;
   BeadBuilder builder;
   UnsupportedStretchRecorder unsupported;
@@ -118,13 +117,15 @@ struct DepositionObserver::State {
     const LaidBead& bead = element.bead;
     totals.laid_volume += bead.volume;
     if (bead.length == 0) totals.standstill_volume += bead.volume;
+    // Nothing is below what comes out at rest: it falls, and is in nobody's way.
+    const bool falls = bead.length == 0 && bead.adhesion == Adhesion::unsupported;
     if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
       totals.deposited_volume += bead.volume;
     if (bead.adhesion == Adhesion::sticks) usual_height = bead.height;
     ++totals.beads;
-    unsupported.add(element, conditions);
+    if (!falls) unsupported.add(element, conditions);
     conditions.interface_temperature = kInfinity;
-    if (bead.height > kThinnest) {
+    if (bead.height > kThinnest && !falls) {
       workpiece->add(shape_of(element));
       fresh.push_back(path);
     }
@@ -164,7 +165,7 @@ struct DepositionObserver::State {
       Pose X_WT = s.X_WT;
       X_WT.translation() += side * across.normalized();
       const Ground seen = look(X_WT, s.time, s.fan, s.nozzle_temperature);
-      if (seen.printed && seen.gap <= accepted_max + kRounding && seen.gap > -kSoftDepth &&
+      if (seen.printed && seen.gap <= band.high + kRounding && seen.gap > -band.soft_depth &&
           seen.gap < best.gap)
         best = seen;
     }
@@ -173,14 +174,14 @@ struct DepositionObserver::State {
 
   Ground ground_at(const Snapshot& s, const Vec3& heading) const {
     const Ground seen = look(s.X_WT, s.time, s.fan, s.nozzle_temperature);
-    if (seen.gap <= accepted_max + kRounding || workpiece->beads().size() == 0) return seen;
+    if (seen.gap <= band.high + kRounding || workpiece->beads().size() == 0) return seen;
     const Ground at_side = look_beside(s, heading);
     return std::isfinite(at_side.gap) ? at_side : seen;
   }
 
   Adhesion adhesion_of(double gap, const Ground& below) const {
-    if (gap > accepted_max + kRounding) return Adhesion::unsupported;
-    if (below.printed && gap > -kSoftDepth && gap < accepted_min - kRounding) return Adhesion::fused;
+    if (gap > band.high + kRounding) return Adhesion::unsupported;
+    if (below.printed && gap > -band.soft_depth && gap < band.low - kRounding) return Adhesion::fused;
     if (gap <= kRounding) return Adhesion::buried;
     if (below.interface_temperature < options.glass_transition) return Adhesion::cold;
     return Adhesion::sticks;
@@ -194,11 +195,12 @@ struct DepositionObserver::State {
     if (adhesion == Adhesion::fused) {
       totals.fused_length += length;
     } else {
-      sums.add(a.gap, b.gap, length, b.time, line);
+      sums.add(a.gap, b.gap, band, length, b.time, line);
     }
     conditions.interface_temperature =
         std::min(conditions.interface_temperature, below.interface_temperature);
     conditions.on_printed = below.printed;
+    conditions.highest_gap = band.high;
   }
 
   // The interval from `from` (a share of it) to its end, cut where the gap passes a level.
@@ -211,7 +213,7 @@ struct DepositionObserver::State {
     if (jump && a.gap != b.gap) {
       if (0.5 > from) cuts[count++] = 0.5;  // nobody saw the edge: half-way
     } else if (a.gap != b.gap) {
-      std::array<double, 3> levels{accepted_max, ground.printed ? accepted_min : 0.0, -kSoftDepth};
+      std::array<double, 3> levels{band.high, ground.printed ? band.low : 0.0, -band.soft_depth};
       if (b.gap > a.gap) std::reverse(levels.begin(), levels.end());
       for (const double level : levels) {
         const double f = (level - a.gap) / (b.gap - a.gap);
@@ -239,6 +241,7 @@ struct DepositionObserver::State {
     const Extruder::Flow flow = extruder.advance(now.filament - first_filament, now.time - last->time);
     most_filament = std::max(most_filament, now.filament);
     move_on(step);
+    if (options.band) band = options.band(now.line);
     const Ground before = ground;
     ground = ground_at(now, heading);
     conditions.nozzle_temperature = now.nozzle_temperature;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "machine/description.h"
+#include "sim/deposition/gap_band.h"
 #include "sim/deposition/workpiece.h"
 #include "sim/observer.h"
 
@@ -20,9 +21,6 @@ enum class Adhesion {
   cold,         ///< on an earlier bead, the interface below the glass transition
   buried,       ///< the tip at or below the surface
 };
-
-/// How deep the nozzle may press into printed material that it passes over: half a usual layer.
-constexpr double kSoftDepth = 0.1e-3;  // [m]
 
 /// An element of at least 0.1 mm of path, longer while path, section and adhesion stay the same; shorter only
 /// where extrusion pauses or the adhesion changes. Filament fed at a standstill belongs to the element that
@@ -52,6 +50,7 @@ struct UnsupportedStretch {
   double length = 0;                 ///< [m]
   double volume = 0;                 ///< [m^3]
   double worst_gap = 0;              ///< [m], farthest from the band
+  double highest_gap = 0;            ///< [m], upper end of the band where it begins
   double interface_temperature = 0;  ///< [K], lowest, of a cold one
   double nozzle_temperature = 0;     ///< [K]
   double fan = 0;                    ///< 0..1
@@ -63,13 +62,21 @@ struct UnsupportedStretch {
   std::vector<double> laid_at;  ///< [s], one a point of path_W
 };
 
+/// Where the gap is deepest below its band, or least above its lower end.
+struct LowestGap {
+  double gap = 0, accepted_min = 0;  ///< [m]
+  double time = 0;                   ///< [s]
+  int line = 0;
+};
+
 struct DepositionSummary {
   double length = 0;            ///< [m] of path on the surface while extruding
   double in_band_fraction = 0;  ///< of that length with the gap in the accepted band
   double below_band_fraction = 0, above_band_fraction = 0;  ///< the rest
   double gap_min = 0, gap_mean = 0, gap_max = 0;  ///< [m], weighted by length, where a surface is below
   int gap_min_line = 0;
-  double gap_min_time = 0;       ///< [s]
+  double gap_min_time = 0;  ///< [s]
+  LowestGap lowest;
   double start_gap = 0;          ///< [m], true gap where extrusion began first
   double fused_length = 0;       ///< [m], counted in no gap figure
   double extruded_volume = 0;    ///< [m^3], net: what a retraction took back is not counted twice
@@ -81,6 +88,8 @@ struct DepositionSummary {
 };
 
 struct DepositionOptions {
+  /// The band of a line of the program; nothing: the machine's everywhere.
+  std::function<GapBand(int line)> band;
   /// [K] of an earlier bead's surface after that many seconds, with this much fan; nothing: it is at ambient.
   std::function<double(double age, double fan)> substrate_temperature;
   double glass_transition = 0;                ///< [K]; an interface below it does not weld

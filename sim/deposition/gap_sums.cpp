@@ -6,6 +6,8 @@
 namespace understudy::sim {
 namespace {
 
+constexpr double kRounding = 1e-9;  // [m], of a gap: coordinates of 0.1 m through files and rotations
+
 // Share of a linear ramp of the gap that is at or below `level`.
 double share_below(double from, double to, double level) {
   const double low = std::min(from, to), high = std::max(from, to);
@@ -16,12 +18,12 @@ double share_below(double from, double to, double level) {
 
 }  // namespace
 
-void GapSums::add(double from, double to, double length, double time, int line) {
+void GapSums::add(double from, double to, const GapBand& band, double length, double time, int line) {
   if (length <= 0) return;
   length_ += length;
-  const double below = share_below(from, to, low_);
+  const double below = share_below(from, to, band.low - kRounding);
   below_ += length * below;
-  in_band_ += length * (share_below(from, to, high_) - below);
+  in_band_ += length * (share_below(from, to, band.high + kRounding) - below);
   if (!std::isfinite(from) || !std::isfinite(to)) return;
   surface_length_ += length;
   moment_ += 0.5 * (from + to) * length;
@@ -30,6 +32,10 @@ void GapSums::add(double from, double to, double length, double time, int line) 
     min_ = low;
     min_time_ = time;
     min_line_ = line;
+  }
+  if (const double low = std::min(from, to); low - band.low < margin_) {
+    margin_ = low - band.low;
+    lowest_ = {low, band.low, time, line};
   }
 }
 
@@ -46,6 +52,7 @@ void GapSums::fill(DepositionSummary& summary) const {
   summary.gap_min_time = min_time_;
   summary.gap_mean = moment_ / surface_length_;
   summary.gap_max = max_;
+  summary.lowest = lowest_;
 }
 
 }  // namespace understudy::sim

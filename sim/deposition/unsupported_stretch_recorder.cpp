@@ -29,6 +29,7 @@ void UnsupportedStretchRecorder::begin(const Element& element, const Conditions&
   stretch.time = bead.start_time;
   stretch.place_W = bead.from_W;
   stretch.worst_gap = element.worst_gap;
+  stretch.highest_gap = conditions.highest_gap;
   stretch.interface_temperature = conditions.interface_temperature;
   stretch.nozzle_temperature = conditions.nozzle_temperature;
   stretch.fan = conditions.fan;

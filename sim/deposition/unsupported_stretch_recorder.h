@@ -21,6 +21,7 @@ class UnsupportedStretchRecorder {
     double nozzle_temperature = 0, fan = 0;
     double interface_temperature = 0;  ///< [K], lowest of the element
     bool on_printed = false;           ///< what lies below is printed
+    double highest_gap = 0;            ///< [m], upper end of the line's band
   };
   /// Elements in order, each before it joins the workpiece.
   void add(const Element& element, const Conditions& conditions);

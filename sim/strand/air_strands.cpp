@@ -108,9 +108,12 @@ class Solver {
   /// A program that runs outside the material's range is reported elsewhere; its strands are solved at the
   /// limit.
   double temperature_of(const UnsupportedStretch& stretch) const {
-    if (stretch.nozzle_temperature <= 0) return 0;
-    return std::clamp(stretch.nozzle_temperature, material_.nozzle_temperature_min,
-                      material_.nozzle_temperature_max);
+    return in_range(stretch.nozzle_temperature);
+  }
+
+  double in_range(double temperature) const {
+    if (temperature <= 0) return 0;  // not known: the material's own
+    return std::clamp(temperature, material_.nozzle_temperature_min, material_.nozzle_temperature_max);
   }
 
   const StrandResult& cached(AirSpan& span) {
@@ -130,6 +133,7 @@ class Solver {
                          rounded(span.surroundings.air_speed, 0.01),
                          static_cast<long>(span.end)};
     span.speed = std::exp(log_speed);
+    span.nozzle_temperature = in_range(span.nozzle_temperature);  // rounding may have left it
     const auto [entry, is_new] = solved_.try_emplace(key);
     if (is_new) entry->second = compute_sag(material_, span);
     return entry->second;

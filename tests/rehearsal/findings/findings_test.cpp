@@ -17,6 +17,7 @@ sim::UnsupportedStretch high_start() {
   stretch.width = from_mm(0.8);
   stretch.volume = 1e-11;
   stretch.worst_gap = from_mm(0.22);
+  stretch.highest_gap = from_mm(0.2);
   stretch.held_at_end = true;
   return stretch;
 }
@@ -36,7 +37,7 @@ TEST(Findings, ALineThatBeginsTooHighIsAWarning) {
   EXPECT_EQ(findings[0].severity, Severity::warning);
   EXPECT_EQ(findings[0].gcode_line, 11);
   EXPECT_NEAR(findings[0].value, 0.22, 1e-12);
-  EXPECT_NEAR(findings[0].limit, 0.2, 1e-12) << "Song 2015: a bead laid higher does not stick";
+  EXPECT_NEAR(findings[0].limit, 0.2, 1e-12);
   EXPECT_THAT(findings[0].message, testing::HasSubstr("0.220 mm over the surface, above 0.200 mm"));
 }
 
@@ -60,6 +61,24 @@ TEST(Findings, WhatNothingHoldsIsAnError) {
   const auto findings = findings_of_stretch(loose);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].severity, Severity::error);
+}
+
+/// The start of an infill line 3.6 mm above what is below, before it meets the next rib.
+sim::UnsupportedStretch hanging_start(double length) {
+  sim::UnsupportedStretch stretch = high_start();
+  stretch.length = length;
+  stretch.worst_gap = from_mm(3.6);
+  stretch.width = from_mm(0.45);
+  return stretch;
+}
+
+TEST(Findings, TheShortEndOfALineOverAHollowIsAWarningAndALongOneAnError) {
+  const auto brief = findings_of_stretch(hanging_start(from_mm(1.9)));
+  ASSERT_EQ(brief.size(), 1u);
+  EXPECT_EQ(brief[0].severity, Severity::warning);
+  const auto longer = findings_of_stretch(hanging_start(from_mm(2.1)));
+  ASSERT_EQ(longer.size(), 1u);
+  EXPECT_EQ(longer[0].severity, Severity::error) << "more than five bores";
 }
 
 }  // namespace

@@ -44,6 +44,29 @@ TEST(ProcessCheck, ExtrusionOfSolidMaterialNamesTemperatureAndLimit) {
 }
 
 // 1.75 mm filament has 2.405 mm2; five bores of 0.4 mm squared are 4 mm2.
+std::vector<Finding> temperatures(const std::string& text) {
+  return temperature_findings(toolpath::parse_gcode(text, "p.gcode", {}), machine::load_material("pla"));
+}
+
+// PLA is printed at 180 to 240 C.
+TEST(ProcessCheck, ANozzleThatIsFortyKelvinTooColdIsAnError) {
+  EXPECT_TRUE(temperatures("M109 S180\nG1 X5 E0.2 F300\nM104 S240\nG1 X9 E0.4\nM104 S0\nG1 X0\n").empty());
+  const auto cold = temperatures("M109 S160\nG1 X5 E0.2 F300\nM104 S170\nG1 X9 E0.4\n");
+  ASSERT_EQ(cold.size(), 1u);
+  EXPECT_EQ(cold[0].severity, Severity::error);
+  EXPECT_EQ(cold[0].gcode_line, 2);
+  EXPECT_EQ(cold[0].last_line, 4);
+  EXPECT_NEAR(cold[0].value, 160, 1e-9);
+  EXPECT_THAT(cold[0].message,
+              HasSubstr("160 C, below the lowest temperature at which pla is printed: 180 C"));
+}
+
+TEST(ProcessCheck, AHotNozzleIsAWarning) {
+  const auto hot = temperatures("M109 S260\nG1 X5 E0.2 F300\n");
+  ASSERT_EQ(hot.size(), 1u);
+  EXPECT_EQ(hot[0].severity, Severity::warning);
+}
+
 TEST(ProcessCheck, AnAbsurdFlowNamesTheBead) {
   EXPECT_THAT(refusal("M104 S230\nG1 X10 E20 F300\n"), HasSubstr("a bead of 4.81 mm2, more than 4.00 mm2"));
   EXPECT_EQ(refusal("M104 S230\nG1 X10 E16 F300\n"), "accepted");

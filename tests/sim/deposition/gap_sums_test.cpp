@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of the band 0.1 to 0.2 mm.
-GapSums sums() { return {0.1e-3, 0.2e-3}; }
+constexpr GapBand kBand{0.1e-3, 0.2e-3};
+constexpr double kRounding = 1e-5;  // of a ramp of 0.25 mm: a nanometre beside the band is in it
 
 DepositionSummary summary_of(const GapSums& of) {
   DepositionSummary summary;
@@ -19,19 +19,19 @@ DepositionSummary summary_of(const GapSums& of) {
 }
 
 TEST(GapSums, ARampAcrossTheBandIsInItForItsShareOfTheLength) {
-  GapSums s = sums();
-  s.add(0.05e-3, 0.3e-3, 10e-3, 1, 1);
+  GapSums s;
+  s.add(0.05e-3, 0.3e-3, kBand, 10e-3, 1, 1);
   const DepositionSummary summary = summary_of(s);
-  EXPECT_NEAR(summary.below_band_fraction, 0.2, 1e-12);
-  EXPECT_NEAR(summary.in_band_fraction, 0.4, 1e-12);
-  EXPECT_NEAR(summary.above_band_fraction, 0.4, 1e-12);
+  EXPECT_NEAR(summary.below_band_fraction, 0.2, kRounding);
+  EXPECT_NEAR(summary.in_band_fraction, 0.4, kRounding);
+  EXPECT_NEAR(summary.above_band_fraction, 0.4, kRounding);
   EXPECT_NEAR(summary.gap_mean, 0.175e-3, 1e-15);
 }
 
 TEST(GapSums, ARampCountsTheSameInPiecesAndBackwards) {
-  GapSums whole = sums(), pieces = sums();
-  whole.add(0.05e-3, 0.3e-3, 10e-3, 1, 1);
-  for (int i = 9; i >= 0; --i) pieces.add(0.05e-3 + 25e-6 * (i + 1), 0.05e-3 + 25e-6 * i, 1e-3, 1, 1);
+  GapSums whole, pieces;
+  whole.add(0.05e-3, 0.3e-3, kBand, 10e-3, 1, 1);
+  for (int i = 9; i >= 0; --i) pieces.add(0.05e-3 + 25e-6 * (i + 1), 0.05e-3 + 25e-6 * i, kBand, 1e-3, 1, 1);
   const DepositionSummary a = summary_of(whole), b = summary_of(pieces);
   EXPECT_NEAR(a.in_band_fraction, b.in_band_fraction, 1e-12);
   EXPECT_NEAR(a.below_band_fraction, b.below_band_fraction, 1e-12);
@@ -39,9 +39,9 @@ TEST(GapSums, ARampCountsTheSameInPiecesAndBackwards) {
 }
 
 TEST(GapSums, FractionsAreWeightedByLength) {
-  GapSums s = sums();
-  s.add(0.15e-3, 0.15e-3, 3e-3, 1, 1);
-  s.add(0.5e-3, 0.5e-3, 1e-3, 2, 2);
+  GapSums s;
+  s.add(0.15e-3, 0.15e-3, kBand, 3e-3, 1, 1);
+  s.add(0.5e-3, 0.5e-3, kBand, 1e-3, 2, 2);
   const DepositionSummary summary = summary_of(s);
   EXPECT_NEAR(summary.length, 4e-3, 1e-18);
   EXPECT_NEAR(summary.in_band_fraction, 0.75, 1e-12);
@@ -49,11 +49,11 @@ TEST(GapSums, FractionsAreWeightedByLength) {
 }
 
 TEST(GapSums, TheSmallestGapIsReportedWithItsTimeAndLine) {
-  GapSums s = sums();
-  s.add(0.15e-3, 0.12e-3, 1e-3, 1, 11);
-  s.add(0.12e-3, 0.18e-3, 1e-3, 2, 12);
-  s.add(0.18e-3, 0.08e-3, 1e-3, 3, 13);
-  s.add(0.08e-3, 0.16e-3, 1e-3, 4, 14);
+  GapSums s;
+  s.add(0.15e-3, 0.12e-3, kBand, 1e-3, 1, 11);
+  s.add(0.12e-3, 0.18e-3, kBand, 1e-3, 2, 12);
+  s.add(0.18e-3, 0.08e-3, kBand, 1e-3, 3, 13);
+  s.add(0.08e-3, 0.16e-3, kBand, 1e-3, 4, 14);
   const DepositionSummary summary = summary_of(s);
   EXPECT_EQ(summary.gap_min, 0.08e-3);
   EXPECT_EQ(summary.gap_max, 0.18e-3);
@@ -62,9 +62,9 @@ TEST(GapSums, TheSmallestGapIsReportedWithItsTimeAndLine) {
 }
 
 TEST(GapSums, PathOverNothingIsAboveTheBandButInNoMean) {
-  GapSums s = sums();
-  s.add(0.15e-3, 0.15e-3, 1e-3, 1, 1);
-  s.add(kInfinity, kInfinity, 1e-3, 2, 2);
+  GapSums s;
+  s.add(0.15e-3, 0.15e-3, kBand, 1e-3, 1, 1);
+  s.add(kInfinity, kInfinity, kBand, 1e-3, 2, 2);
   const DepositionSummary summary = summary_of(s);
   EXPECT_EQ(summary.above_band_fraction, 0.5);
   EXPECT_DOUBLE_EQ(summary.gap_mean, 0.15e-3);
@@ -72,8 +72,8 @@ TEST(GapSums, PathOverNothingIsAboveTheBandButInNoMean) {
 }
 
 TEST(GapSums, WithoutPathThereAreNoFigures) {
-  GapSums s = sums();
-  s.add(0.01e-3, 0.01e-3, 0, 1, 1);
+  GapSums s;
+  s.add(0.01e-3, 0.01e-3, kBand, 0, 1, 1);
   const DepositionSummary summary = summary_of(s);
   EXPECT_EQ(summary.length, 0);
   EXPECT_EQ(summary.in_band_fraction, 0);

@@ -1,0 +1,76 @@
+#include "rehearsal/fill_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace understudy::rehearsal {
+namespace {
+
+constexpr double kShortest = 0.09e-3;    // [m]: what is shorter has no direction to speak of
+constexpr double kAlongside = 0.98;      // cosine of the angle between neighbours
+constexpr double kSameLevel = 0.25;      // of the height
+constexpr double kLeastLength = 100e-3;  // [m]
+constexpr double kShare = 0.5;
+
+double section(double width, double height) {
+  return (width - height) * height + std::numbers::pi / 4 * height * height;
+}
+
+Vec3 vector(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+}  // namespace
+
+void FillWatch::add(const sim::LaidBead& bead, std::size_t before) {
+  const bool lies = bead.adhesion == sim::Adhesion::sticks || bead.adhesion == sim::Adhesion::fused;
+  if (!lies || bead.length < kShortest || bead.height <= 0) return;
+  const Vec3 aside_W = bead.normal_W.cross(bead.to_W - bead.from_W).normalized();
+  if (!aside_W.allFinite()) return;
+  look(bead, aside_W, before);
+  look(bead, -aside_W, before);
+}
+
+void FillWatch::look(const sim::LaidBead& bead, const Vec3& aside_W, std::size_t before) {
+  const Vec3 middle_W = 0.5 * (bead.from_W + bead.to_W) + 0.5 * bead.height * bead.normal_W;
+  const auto hit = workpiece_->beads().ray_hit(middle_W, aside_W, reach_, before);
+  if (!hit) return;
+  const sim::Bead other = workpiece_->beads().bead(hit->bead);
+  const Vec3 from_W = vector(other.from_W), along_W = vector(other.to_W) - from_W;
+  const Vec3 heading_W = (bead.to_W - bead.from_W).normalized();
+  if (std::abs(along_W.dot(heading_W)) < kAlongside * along_W.norm() || along_W.norm() < kShortest) return;
+  const Vec3 apart_W = from_W - middle_W;
+  if (std::abs(apart_W.dot(bead.normal_W)) > kSameLevel * bead.height) return;
+  const double spacing = apart_W.dot(aside_W);
+  if (spacing <= 0 || spacing > reach_) return;
+  const double mean = 0.5 * (section(bead.width, bead.height) +
+                             section(static_cast<double>(other.width), static_cast<double>(other.height)));
+  samples_.push_back({static_cast<float>(mean / (spacing * bead.height)), static_cast<float>(bead.length),
+                      static_cast<float>(bead.time), bead.line, bead.from_W});
+}
+
+std::optional<FillFigures> FillWatch::figures() const {
+  std::vector<std::size_t> order(samples_.size());
+  double total = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = i;
+    total += static_cast<double>(samples_[i].length);
+  }
+  if (total < kLeastLength) return std::nullopt;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return samples_[a].factor < samples_[b].factor; });
+  double passed = 0;
+  for (const std::size_t i : order) {
+    passed += static_cast<double>(samples_[i].length);
+    if (passed < kShare * total) continue;
+    const float factor = samples_[i].factor;
+    const auto first =
+        std::find_if(samples_.begin(), samples_.end(), [&](const Sample& s) { return s.factor <= factor; });
+    return FillFigures{static_cast<double>(factor), total, first->line, static_cast<double>(first->time),
+                       first->place_W};
+  }
+  return std::nullopt;
+}
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,33 @@
+#include "rehearsal/programmed_areas.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace understudy::rehearsal {
+namespace {
+
+constexpr double kShortestPath = 50e-6;  // [m]: on less, what is fed is no bead
+
+}  // namespace
+
+std::vector<float> programmed_areas(const toolpath::Program& program,
+                                    const machine::MachineDescription& machine) {
+  const double d = machine.tool.filament_diameter, filament_area = std::numbers::pi / 4 * d * d;
+  Vec3 tip = (machine.X_WB * machine.X_BT_home).translation();
+  double fed = 0, most = 0;
+  std::vector<float> areas;
+  for (const toolpath::Step& step : program.steps) {
+    fed += step.filament;
+    const double fresh = std::max(0.0, fed - most);
+    most = std::max(most, fed);
+    const Vec3 end = step.X_WT.translation();
+    const double path = toolpath::moves(step) ? (end - tip).norm() : 0;
+    if (toolpath::moves(step)) tip = end;
+    const auto line = static_cast<std::size_t>(std::max(0, step.line));
+    if (line >= areas.size()) areas.resize(line + line / 2 + 64, 0);
+    if (path > kShortestPath) areas[line] = static_cast<float>(fresh * filament_area / path);
+  }
+  return areas;
+}
+
+}  // namespace understudy::rehearsal

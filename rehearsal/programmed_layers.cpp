@@ -1,0 +1,178 @@
+#include "rehearsal/programmed_layers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "rehearsal/programmed_areas.h"
+#include "sim/deposition/bead_section.h"
+#include "sim/deposition/workpiece.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+constexpr double kStretch = 50e-3;     // [m], of path that shares a layer
+constexpr double kLowest = 0.1;        // quantile of its gaps
+constexpr double kSpacing = 2e-3;      // [m], between two looks along a line
+constexpr int kMostLooks = 25;         // on one line
+constexpr double kLeastLayer = 20e-6;  // [m]: what is nearer is the side of a bead of the same layer
+constexpr double kMostLayer = 2e-3;    // [m]: what is farther below is no layer but air
+
+std::array<float, 3> floats(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// The part as it grows, in lines as long as the program has them.
+class Stack {
+ public:
+  Stack(const machine::MachineDescription& machine, const std::shared_ptr<const geometry::Mesh>& part)
+      : workpiece_(part), flat_(machine.tool.flat_diameter) {}
+
+  double gap(const Vec3& tip_W, const Mat3& R) const {
+    const auto below = workpiece_.below(make_pose(R, tip_W), fresh_from_);
+    return below ? below->distance : std::numeric_limits<double>::infinity();
+  }
+
+  void move(double path) {
+    path_ += path;
+    while (!ends_.empty() && ends_.front() < path_ - flat_ - 2 * last_width_) {
+      ends_.pop_front();
+      ++fresh_from_;
+    }
+  }
+
+  void add(const Vec3& from_W, const Vec3& to_W, const Vec3& axis_W, double gap, double area, int line) {
+    const double strand = std::sqrt(4 * area / std::numbers::pi);
+    const bool lies = gap > 0 && gap < kMostLayer;
+    last_width_ = sim::bead_width(area, lies ? gap : 0);
+    sim::Bead bead;
+    bead.height = static_cast<float>(lies ? std::min(gap, last_width_) : strand);
+    bead.width = std::max(bead.height, static_cast<float>(last_width_));
+    const Vec3 down = 0.5 * static_cast<double>(bead.height) * axis_W;
+    bead.from_W = floats(from_W - down);
+    bead.to_W = floats(to_W - down);
+    bead.up_W = floats(axis_W);
+    bead.line = line;
+    workpiece_.add(bead);
+    ends_.push_back(path_);
+  }
+
+ private:
+  sim::Workpiece workpiece_;
+  double flat_;
+  double path_ = 0, last_width_ = 0;  // [m]
+  std::deque<double> ends_;           // path at the end of each bead that is still under the nozzle
+  std::size_t fresh_from_ = 0;
+};
+
+/// Of values with their lengths.
+double quantile_by_length(std::vector<std::pair<double, double>> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  double total = 0, passed = 0;
+  for (const auto& [value, length] : values) total += length;
+  for (const auto& [value, length] : values)
+    if ((passed += length) >= share * total) return value;
+  return values.back().first;
+}
+
+}  // namespace
+
+/// A line and what lies below it.
+struct ProgrammedLayers::Sample {
+  double length = 0, gap = 0, area = 0;  // [m], [m], [m^2]
+  int line = 0;
+};
+
+struct ProgrammedLayers::Stretch {
+  Layer layer;
+  double length = 0;  // [m], with something below
+  int first_line = 0, last_line = 0;
+};
+
+ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
+                                   const machine::MachineDescription& machine,
+                                   const std::shared_ptr<const geometry::Mesh>& part)
+    : limits_(machine.gap) {
+  const std::vector<float> areas = programmed_areas(program, machine);
+  Stack stack(machine, part);
+  std::vector<Sample> samples;
+  std::vector<Stretch> stretches;
+  double length_so_far = 0;
+  Vec3 tip = (machine.X_WB * machine.X_BT_home).translation();
+  for (const toolpath::Step& step : program.steps) {
+    if (!toolpath::moves(step)) continue;
+    const Vec3 from = tip, to = step.X_WT.translation();
+    const double length = (to - from).norm();
+    tip = to;
+    stack.move(length);
+    const double area = static_cast<double>(areas[static_cast<std::size_t>(std::max(0, step.line))]);
+    if (step.filament <= 0 || area <= 0 || length == 0) continue;
+    const int looks = std::clamp(static_cast<int>(std::ceil(length / kSpacing)), 1, kMostLooks);
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < looks; ++i) {
+      const double gap = stack.gap(from + (i + 0.5) / looks * (to - from), step.X_WT.linear());
+      if (gap > kLeastLayer) least = std::min(least, gap);
+      if (gap > kLeastLayer && gap < kMostLayer) samples.push_back({length / looks, gap, area, step.line});
+    }
+    stack.add(from, to, step.X_WT.linear().col(2), least, area, step.line);
+    length_so_far += length;
+    if (length_so_far < kStretch) continue;
+    stretches.push_back(close(samples));
+    length_so_far = 0;
+  }
+  stretches.push_back(close(samples));
+  for (const Stretch& stretch : stretches) {
+    const auto last = static_cast<std::size_t>(std::max(0, stretch.last_line));
+    if (layers_.size() <= last) layers_.resize(last + 1);
+    for (auto line = static_cast<std::size_t>(std::max(0, stretch.first_line)); line <= last; ++line)
+      layers_[line] = stretch.layer;
+  }
+  typical_ = typical(stretches);
+}
+
+/// Ends a stretch of path: the layer of its samples, which are taken out.
+ProgrammedLayers::Stretch ProgrammedLayers::close(std::vector<Sample>& samples) {
+  Stretch stretch;
+  if (samples.empty()) return stretch;
+  std::vector<std::pair<double, double>> gaps, areas;
+  for (const Sample& sample : samples) {
+    gaps.emplace_back(sample.gap, sample.length);
+    areas.emplace_back(sample.area, sample.length);
+    stretch.length += sample.length;
+  }
+  stretch.layer = {static_cast<float>(quantile_by_length(std::move(gaps), kLowest)),
+                   static_cast<float>(quantile_by_length(std::move(areas), 0.5))};
+  stretch.first_line = samples.front().line;
+  stretch.last_line = samples.back().line;
+  samples.clear();
+  return stretch;
+}
+
+ProgrammedLayers::Layer ProgrammedLayers::typical(const std::vector<Stretch>& stretches) {
+  std::vector<std::pair<double, double>> layers, areas;
+  for (const Stretch& stretch : stretches) {
+    layers.emplace_back(static_cast<double>(stretch.layer.layer), stretch.length);
+    areas.emplace_back(static_cast<double>(stretch.layer.area), stretch.length);
+  }
+  return {static_cast<float>(quantile_by_length(std::move(layers), 0.5)),
+          static_cast<float>(quantile_by_length(std::move(areas), 0.5))};
+}
+
+sim::GapBand ProgrammedLayers::band(int line) const {
+  const auto at = static_cast<std::size_t>(std::max(0, line));
+  const Layer layer = at < layers_.size() ? layers_[at] : Layer{};
+  if (layer.layer <= 0) return sim::gap_band(limits_);
+  return sim::gap_band(limits_, static_cast<double>(layer.layer), static_cast<double>(layer.area));
+}
+
+sim::GapBand ProgrammedLayers::typical_band() const {
+  if (typical_.layer <= 0) return sim::gap_band(limits_);
+  return sim::gap_band(limits_, static_cast<double>(typical_.layer), static_cast<double>(typical_.area));
+}
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,45 @@
+// How high over what is below each line of a program is meant to lie.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "machine/description.h"
+#include "sim/deposition/gap_band.h"
+#include "toolpath/program.h"
+
+namespace understudy::rehearsal {
+
+/// The program laid on the part as drawn, or on a flat table, by a machine without errors: what the program
+/// means, whatever the twin then does. A line's layer is the tenth percentile of the gaps over 50 mm of path
+/// about it, so that a line over a hollow has the layer of those beside it.
+class ProgrammedLayers {
+ public:
+  /// The part may be null.
+  ProgrammedLayers(const toolpath::Program& program, const machine::MachineDescription& machine,
+                   const std::shared_ptr<const geometry::Mesh>& part);
+
+  /// The band of gaps that is good on this line of the file; the machine's own where it has no layer.
+  sim::GapBand band(int line) const;
+  /// The band over most of the path.
+  sim::GapBand typical_band() const;
+  /// [m], median over the path; 0: nothing is printed on anything.
+  double typical_layer() const { return static_cast<double>(typical_.layer); }
+
+ private:
+  struct Layer {
+    float layer = 0;  // [m]; 0: none
+    float area = 0;   // [m^2]
+  };
+  struct Sample;
+  struct Stretch;
+  static Stretch close(std::vector<Sample>& samples);
+  static Layer typical(const std::vector<Stretch>& stretches);
+
+  machine::GapLimits limits_;
+  std::vector<Layer> layers_;  // by line
+  Layer typical_;
+};
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,63 @@
+#include "rehearsal/programmed_layers.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "toolpath/gcode/gcode.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+// Filament of 1 mm2: E is the volume in mm3.
+machine::MachineDescription printer() {
+  machine::MachineDescription machine;
+  machine.tool.filament_diameter = std::sqrt(4 / std::numbers::pi) * 1e-3;
+  machine.tool.flat_diameter = 1e-3;
+  machine.tool.nozzle_diameter = 0.4e-3;
+  machine.gap = {0.1e-3, 0.2e-3, 0.13e-3, 2e-3};
+  return machine;
+}
+
+/// Rows of 20 mm, 0.386 mm apart, at each of these heights [mm]; 0.1157 mm2 of bead.
+std::string rows(const std::vector<double>& heights) {
+  std::string text = "M83\nG1 F600\n";
+  for (const double z : heights)
+    for (int i = 0; i < 10; ++i) text += fmt::format("G0 X0 Y{0} Z{1}\nG1 X20 Y{0} E2.314\n", 0.386 * i, z);
+  return text;
+}
+
+ProgrammedLayers layers_of(const std::string& text) {
+  return {toolpath::parse_gcode(text, "p", {}), printer(), nullptr};
+}
+
+TEST(ProgrammedLayers, AreTheHeightsOverWhatTheProgramLaidBefore) {
+  const ProgrammedLayers layers = layers_of(rows({0.2, 0.5, 0.8, 1.1}));
+  EXPECT_NEAR(layers.typical_layer(), 0.3e-3, 1e-6);
+  EXPECT_NEAR(layers.band(4).low, 0.2e-3 / 1.3, 1e-6) << "a first layer of 0.2 mm";
+  EXPECT_NEAR(layers.band(70).low, 0.3e-3 / 1.3, 1e-6);
+}
+
+TEST(ProgrammedLayers, ALineOverAHollowHasTheLayerOfThoseBeside) {
+  std::string text = rows({0.2, 0.5});
+  text += "G0 X0 Y10 Z0.8\nG1 X20 E2.314\n" + rows({0.8}).substr(12);
+  EXPECT_NEAR(layers_of(text).band(44).low, 0.3e-3 / 1.3, 1e-6) << "0.8 mm above the table";
+}
+
+TEST(ProgrammedLayers, WhatHangsInTheAirHasTheBandOfTheMachine) {
+  const ProgrammedLayers layers = layers_of(rows({30}));
+  EXPECT_EQ(layers.typical_layer(), 0);
+  EXPECT_EQ(layers.band(4).high, 0.2e-3);
+  EXPECT_EQ(layers.typical_band().high, 0.2e-3);
+}
+
+TEST(ProgrammedLayers, LinesThatTheProgramDoesNotHaveHaveTheBandOfTheMachine) {
+  const ProgrammedLayers layers = layers_of(rows({0.3}));
+  EXPECT_EQ(layers.band(100000).high, 0.2e-3);
+  EXPECT_EQ(layers.band(-1).high, 0.2e-3);
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal
