@@ -109,6 +109,10 @@ SolveStatus Mechanism::pose_at_turns(const RotaryTarget& /*at*/, Pose& /*X_BT*/)
   return SolveStatus::bad_input;
 }
 
+SolveStatus Mechanism::parts_at_turns(const RotaryTarget& /*at*/, Mat3& /*table*/, Mat3& /*head*/) const {
+  return SolveStatus::bad_input;
+}
+
 SolveStatus Mechanism::pose_at_slides(const RotaryTarget& /*at*/, Pose& /*X_BT*/) const {
   return SolveStatus::bad_input;
 }

@@ -81,16 +81,22 @@ class Mechanism {
   virtual void check(const Pose& X_BT, std::span<const double> axes,
                      std::vector<LimitViolation>& violations) const = 0;
 
-  /// The two rotary words of a machine that has them, else none. The functions below are for the former,
-  /// `bad_input` elsewhere.
-  virtual std::span<const RotaryWord> rotary_words() const { return {}; }
+  /// The one or two rotary words of a machine that has them, else none. The functions below are for the
+  /// former, `bad_input` elsewhere.
+  virtual std::span<const AxisWord> rotary_words() const { return {}; }
+  /// Whether X Y Z can state the slides of this machine.
+  virtual bool has_slide_words() const { return false; }
   /// The pose with the tip and both turns as given (tool-centre-point coordinates).
   virtual SolveStatus pose_at_turns(const RotaryTarget& at, Pose& X_BT) const;
-  /// The pose with the slides and both turns as given (machine coordinates), and the slides of a tip.
+  /// How those of them that carry the work and those that carry the tool turn the latter, seen from the work:
+  /// R_BT = table * head * R_BT of all axes at 0.
+  virtual SolveStatus parts_at_turns(const RotaryTarget& at, Mat3& table, Mat3& head) const;
+  /// The pose with the slides and both turns as given (machine coordinates), and the slides of a tip; for
+  /// machines with slide words.
   virtual SolveStatus pose_at_slides(const RotaryTarget& at, Pose& X_BT) const;
   virtual SolveStatus slides_at_turns(const RotaryTarget& at, Vec3& slides) const;
   /// The axes that hold the tip there with the turns as they are, branch included, singular or not, and what
-  /// they do while tip and turns move at `rate`.
+  /// they do while tip and turns move at `rate`. `axes` holds near ones on entry: the branch of an arm.
   virtual SolveStatus axes_at_turns(const RotaryTarget& at, const RotaryTarget& rate, std::span<double> axes,
                                     std::span<double> axis_rates) const;
 };

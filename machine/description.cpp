@@ -13,6 +13,7 @@
 #include "machine/file/calibration_section.h"
 #include "machine/file/chain_section.h"
 #include "machine/file/gap_sensor_section.h"
+#include "machine/file/gcode_section.h"
 #include "machine/file/hexapod_section.h"
 #include "machine/file/optics_section.h"
 #include "machine/file/tool_section.h"
@@ -109,10 +110,12 @@ void read_machine(YamlMap& root, MachineFile& file) {
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
   const bool chain = m.mechanism != kinematics::kHexapod;
-  if (chain)
+  if (chain) {
     read_chain(root, m);
-  else
+    read_gcode_section(root, m);
+  } else {
     read_hexapod(root, m);
+  }
   read_calibration(root, m, file.calibrated);
   root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool); });
   if (root.has("process"))

@@ -15,6 +15,7 @@
 #include "geometry/shape.h"
 #include "kinematics/chain/chain.h"
 #include "kinematics/hexapod/hexapod_passive_rotation.h"
+#include "machine/program_dialect.h"
 
 namespace understudy::machine {
 
@@ -236,6 +237,7 @@ struct MachineDescription {
   kinematics::PerAxis<Drive> drives{};  ///< one an axis
   Tool tool;
   Process process;             ///< of a tool that prints
+  ProgramDialect dialect;      ///< of its programs
   bool has_microscope = true;  ///< with its laser; without, there is no gap control
   Laser laser;                 ///< what the controller reckons with: calibrated where it was
   Microscope microscope;       ///< likewise

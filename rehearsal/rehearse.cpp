@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -23,10 +22,10 @@
 #include "rehearsal/fixture.h"
 #include "rehearsal/gap_belief.h"
 #include "rehearsal/library_versions.h"
+#include "rehearsal/program_reading.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/request/input_digest.h"
 #include "rehearsal/request/memory_need.h"
-#include "rehearsal/rotary_words.h"
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/surface.h"
@@ -34,7 +33,6 @@
 #include "sim/as_built/truth.h"
 #include "toolpath/crowding.h"
 #include "toolpath/duration.h"
-#include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
 namespace fs = std::filesystem;
@@ -49,45 +47,6 @@ control::GapControl gap_control_of(const std::string& word, const machine::Machi
         fmt::format("gap control '{}' needs a laser and a microscope; {} has none: off", word, machine.name));
   }
   throw InputError("gap control '" + word + "': one of off, start, continuous");
-}
-
-toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
-                                     const machine::MachineDescription& machine) {
-  toolpath::GcodeOptions gcode;
-  gcode.X_WT_home = machine.X_WB * machine.X_BT_home;
-  gcode.rotary = rotary_words(machine);
-  if (dialect.extruder_letter != "E" && dialect.extruder_letter != "A")
-    throw InputError("extruder letter '" + dialect.extruder_letter + "': one of E, A");
-  gcode.extruder_letter = dialect.extruder_letter[0];
-  for (int i = 0; i < 3; ++i) gcode.offset_W[i] = from_mm(dialect.place_mm[static_cast<std::size_t>(i)]);
-  gcode.b_sign = dialect.b_sign;
-  gcode.c_sign = dialect.c_sign;
-  gcode.ignored = dialect.ignored;
-  if (dialect.coordinates.empty()) return gcode;
-  using Coordinates = toolpath::RotaryWords::Coordinates;
-  const std::map<std::string, Coordinates> words{
-      {"tip", Coordinates::tip}, {"machine", Coordinates::machine}, {"crossing", Coordinates::crossing}};
-  const auto word = words.find(dialect.coordinates);
-  if (word == words.end())
-    throw InputError("coordinates '" + dialect.coordinates + "': one of tip, machine, crossing");
-  if (!gcode.rotary)
-    throw InputError("coordinates '" + dialect.coordinates + "': " + machine.name + " has no rotary words");
-  gcode.rotary->coordinates = word->second;
-  return gcode;
-}
-
-/// With the temperature that the request asks for ahead of it.
-toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
-  const toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
-  toolpath::Program program = toolpath::read_gcode(request.program, options);
-  if (!request.dialect.temperature_c) return program;
-  toolpath::Step heat;
-  heat.kind = toolpath::StepKind::temperature;
-  heat.X_WT = options.X_WT_home;
-  heat.temperature = *request.dialect.temperature_c + kCelsiusZero;
-  heat.wait = true;
-  program.steps.insert(program.steps.begin(), heat);
-  return program;
 }
 
 machine::AcceptedErrors accepted_errors(const RehearsalRequest& request) {

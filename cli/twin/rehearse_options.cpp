@@ -37,8 +37,9 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
   command.add_option("--place", dialect.place_mm, "X,Y,Z in mm: where the program's origin stands")
       ->delimiter(',')
       ->group("Programs of other machines");
-  command.add_option("--extruder-letter", dialect.extruder_letter, "letter of the filament's axis: E or A")
-      ->capture_default_str()
+  command
+      .add_option("--extruder-letter", dialect.extruder_letter,
+                  "letter of the filament's axis, such as A; without it the machine file's, else E")
       ->group("Programs of other machines");
   command
       .add_option(
@@ -64,8 +65,9 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
   command
       .add_option(
           "--coordinates", dialect.coordinates,
-          "what X Y Z mean beside B C: tip (on the work), machine (the slides), crossing (the slides of a "
-          "machine whose turning axes cross at the program's origin)")
+          "what X Y Z mean beside rotary words: tip (on the work), machine (the slides), crossing (the "
+          "slides "
+          "of a machine whose turning axes cross at the program's origin); without it the machine file's")
       ->group("Programs of other machines");
 }
 

@@ -31,20 +31,20 @@ PathSegment PathKinematics::segment(const toolpath::Step& step, const Pose& X_WT
   std::optional<PathSegment::Rotary> rotary;
   if (!rotary_words_.empty()) {
     const toolpath::RotaryTurns from{rotary_words_[0].reading(axes_begin),
-                                     rotary_words_[1].reading(axes_begin)};
+                                     rotary_words_.size() > 1 ? rotary_words_[1].reading(axes_begin) : 0};
     if (!moves || step.rotary) rotary = {from, moves ? *step.rotary : from};
   }
   return make_segment(step, X_WT_begin, rotary, limits);
 }
 
 void PathKinematics::require_turns(const toolpath::Step& step) const {
-  if (rotary_words_.empty()) refuse(step.line, "B and C on a machine without rotary axes");
+  if (rotary_words_.empty()) refuse(step.line, "rotary words on a machine without rotary axes");
   Pose X_BT;
   if (mechanism_.pose_at_turns({X_BW_ * step.X_WT.translation(), step.rotary->b, step.rotary->c}, X_BT) !=
       SolveStatus::ok)
-    refuse(step.line, "B or C is not finite");
+    refuse(step.line, "a rotary word is not finite");
   if ((tool_axis(X_WB_ * X_BT) - tool_axis(step.X_WT)).norm() > kSamePose)
-    refuse(step.line, "the pose is not the one that B and C make");
+    refuse(step.line, "the pose is not the one that the rotary words make");
 }
 
 SolveStatus PathKinematics::axes(const Pose& X_WT, kinematics::AxisVector& position) const {
@@ -170,7 +170,7 @@ std::optional<PathSegment> PathKinematics::self_motion_before(const PathSegment&
 
 void PathKinematics::require_reachable(PathSegment& segment, PoseCheck check,
                                        kinematics::AxisVector& position) const {
-  if (segment.rotary && check == PoseCheck::solvable) {  // all of it is, in closed form
+  if (segment.rotary && check == PoseCheck::solvable && !mechanism_.follows_spin()) {  // by slides, all of it
     if (axes_at(segment, segment.length, position) != SolveStatus::ok)
       refuse(segment.line, "the axes are not finite");
     return;

@@ -65,7 +65,7 @@ class PathKinematics {
   const kinematics::Mechanism& mechanism_;
   Pose X_WB_, X_BW_;
   int axis_count_;
-  std::span<const kinematics::RotaryWord> rotary_words_;
+  std::span<const kinematics::AxisWord> rotary_words_;
 };
 
 }  // namespace understudy::control

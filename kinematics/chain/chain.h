@@ -67,6 +67,9 @@ struct ChainDescription {
   double condition_max = kEndless;  ///< of axis_rates with that scale
   /// Of a calibrated machine, whose `chain` is the measured one: the chain as drawn. Else without axes.
   Chain design = {};
+  /// One or two words of programs that state turning axes, and those of X Y Z in machine coordinates: all
+  /// three or none (chain_turns.h).
+  std::vector<AxisWord> turn_words = {}, slide_words = {};
 };
 
 /// The mechanism of its kind; a numeric inverse where the kind has none of its own.

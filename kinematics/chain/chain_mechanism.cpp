@@ -67,7 +67,8 @@ bool is_pose(const Pose& X) {
 ChainMechanism::ChainMechanism(const ChainDescription& description, bool follows_spin)
     : description_(description),
       follows_spin_(follows_spin),
-      X_ST_home_(kinematics::forward(description_.chain, description_.home)) {}
+      X_ST_home_(kinematics::forward(description_.chain, description_.home)),
+      turns_(description_.turn_words.empty() ? nullptr : std::make_unique<ChainTurns>(description_)) {}
 
 std::string ChainMechanism::axis_name(int axis) const { return chain_.axes[axis].name; }
 bool ChainMechanism::axis_is_angle(int axis) const { return chain_.axes[axis].angle; }
@@ -170,6 +171,36 @@ void ChainMechanism::check(const Pose& X_ST, std::span<const double> axes,
   const double condition = condition_number(X_ST, axes);
   if (condition > description_.condition_max)
     violations.push_back({LimitKind::singularity, "tool pose", condition, description_.condition_max, "1"});
+}
+
+bool ChainMechanism::can_turn(const RotaryTarget& at) const {
+  return turns_ != nullptr && at.p_BT.allFinite() && std::isfinite(at.b) && std::isfinite(at.c);
+}
+
+SolveStatus ChainMechanism::pose_at_turns(const RotaryTarget& at, Pose& X_ST) const {
+  return can_turn(at) ? turns_->pose_at_turns(at, X_ST) : SolveStatus::bad_input;
+}
+
+SolveStatus ChainMechanism::parts_at_turns(const RotaryTarget& at, Mat3& table, Mat3& head) const {
+  if (!can_turn(at)) return SolveStatus::bad_input;
+  turns_->parts_at_turns(at, table, head);
+  return SolveStatus::ok;
+}
+
+SolveStatus ChainMechanism::pose_at_slides(const RotaryTarget& at, Pose& X_ST) const {
+  return can_turn(at) ? turns_->pose_at_slides(at, X_ST) : SolveStatus::bad_input;
+}
+
+SolveStatus ChainMechanism::slides_at_turns(const RotaryTarget& at, Vec3& slides) const {
+  return can_turn(at) ? turns_->slides_at_turns(at, slides) : SolveStatus::bad_input;
+}
+
+SolveStatus ChainMechanism::axes_at_turns(const RotaryTarget& at, const RotaryTarget& rate,
+                                          std::span<double> axes, std::span<double> axis_rates) const {
+  const std::size_t n = chain_.axes.size();
+  if (!can_turn(at) || !can_turn(rate) || axes.size() < n || axis_rates.size() < n)
+    return SolveStatus::bad_input;
+  return turns_->axes_at_turns(at, rate, axes, axis_rates);
 }
 
 }  // namespace understudy::kinematics

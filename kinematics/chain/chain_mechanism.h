@@ -1,7 +1,10 @@
 // What all open chains share behind `Mechanism`: everything but the inverse.
 #pragma once
 
+#include <memory>
+
 #include "kinematics/chain/chain.h"
+#include "kinematics/chain/chain_turns.h"
 
 namespace understudy::kinematics {
 
@@ -25,6 +28,15 @@ class ChainMechanism : public Mechanism {
   void check(const Pose& X_ST, std::span<const double> axes,
              std::vector<LimitViolation>& violations) const override;
 
+  std::span<const AxisWord> rotary_words() const override { return description_.turn_words; }
+  bool has_slide_words() const override { return !description_.slide_words.empty(); }
+  SolveStatus pose_at_turns(const RotaryTarget& at, Pose& X_ST) const override;
+  SolveStatus parts_at_turns(const RotaryTarget& at, Mat3& table, Mat3& head) const override;
+  SolveStatus pose_at_slides(const RotaryTarget& at, Pose& X_ST) const override;
+  SolveStatus slides_at_turns(const RotaryTarget& at, Vec3& slides) const override;
+  SolveStatus axes_at_turns(const RotaryTarget& at, const RotaryTarget& rate, std::span<double> axes,
+                            std::span<double> axis_rates) const override;
+
  protected:
   const Chain& chain() const { return chain_; }
   const ChainDescription& description() const { return description_; }
@@ -45,8 +57,11 @@ class ChainMechanism : public Mechanism {
 
   ChainDescription description_;
   const Chain& chain_ = description_.chain;
+  bool can_turn(const RotaryTarget& at) const;
+
   bool follows_spin_;
   Pose X_ST_home_;
+  std::unique_ptr<const ChainTurns> turns_;  // of programs with rotary words
 };
 
 /// Angle equal to `angle` modulo a turn that is nearest to `near`. [rad]

@@ -52,12 +52,22 @@ FiveAxes rates_at_tip(const FiveAxisGeometry& geometry, const RotaryTarget& at, 
   return {slides.x(), slides.y(), slides.z(), rate.b, rate.c};
 }
 
+/// Whether the words are X Y Z and the turns b and c, each as the axis counts.
+bool words_are_axes(const ChainDescription& d) {
+  const auto plain = [](const AxisWord& word, std::size_t axis) {
+    return word.axis == axis && word.sign == 1 && word.zero == 0;
+  };
+  return d.turn_words.size() == 2 && d.slide_words.size() == 3 && plain(d.turn_words[0], kB) &&
+         plain(d.turn_words[1], kC) && plain(d.slide_words[0], kX) && plain(d.slide_words[1], kY) &&
+         plain(d.slide_words[2], kZ);
+}
+
 class FiveAxis final : public ChainMechanism {
  public:
   explicit FiveAxis(const ChainDescription& description)
       : ChainMechanism(description, false),
         geometry_(geometry_of(description.parameters)),
-        words_{{{'B', kB, 1, description.home[kB]}, {'C', kC, 1, description.home[kC]}}} {}
+        plain_words_(words_are_axes(description)) {}
 
   // The branch that breaks fewer ranges; of equal ones the nearer to `previous`.
   SolveStatus inverse(const Pose& X_ST, std::span<const double> previous,
@@ -81,22 +91,21 @@ class FiveAxis final : public ChainMechanism {
     return SolveStatus::ok;
   }
 
-  std::span<const RotaryWord> rotary_words() const override { return words_; }
-
+  // Words that are the axes themselves have closed forms.
   SolveStatus pose_at_turns(const RotaryTarget& at, Pose& X_ST) const override {
-    if (!finite(at)) return SolveStatus::bad_input;
+    if (!plain_words_ || !finite(at)) return ChainMechanism::pose_at_turns(at, X_ST);
     X_ST = five_axis_tip_pose(at.p_BT, at.b, at.c);
     return SolveStatus::ok;
   }
 
   SolveStatus pose_at_slides(const RotaryTarget& at, Pose& X_ST) const override {
-    if (!finite(at)) return SolveStatus::bad_input;
+    if (!plain_words_ || !finite(at)) return ChainMechanism::pose_at_slides(at, X_ST);
     X_ST = five_axis_pose(geometry_, {at.p_BT.x(), at.p_BT.y(), at.p_BT.z(), at.b, at.c});
     return SolveStatus::ok;
   }
 
   SolveStatus slides_at_turns(const RotaryTarget& at, Vec3& slides) const override {
-    if (!finite(at)) return SolveStatus::bad_input;
+    if (!plain_words_ || !finite(at)) return ChainMechanism::slides_at_turns(at, slides);
     const FiveAxes axes = five_axis_at_tip(geometry_, at.p_BT, at.b, at.c);
     slides = {axes[kX], axes[kY], axes[kZ]};
     return SolveStatus::ok;
@@ -104,8 +113,9 @@ class FiveAxis final : public ChainMechanism {
 
   SolveStatus axes_at_turns(const RotaryTarget& at, const RotaryTarget& rate, std::span<double> axes,
                             std::span<double> axis_rates) const override {
-    if (axes.size() < kFiveAxes || axis_rates.size() < kFiveAxes || !finite(at) || !finite(rate))
-      return SolveStatus::bad_input;
+    if (!plain_words_ || axes.size() < kFiveAxes || axis_rates.size() < kFiveAxes || !finite(at) ||
+        !finite(rate))
+      return ChainMechanism::axes_at_turns(at, rate, axes, axis_rates);
     const FiveAxes q = five_axis_at_tip(geometry_, at.p_BT, at.b, at.c);
     const FiveAxes q_rate = rates_at_tip(geometry_, at, rate);
     std::copy(q.begin(), q.end(), axes.begin());
@@ -139,7 +149,7 @@ class FiveAxis final : public ChainMechanism {
   }
 
   FiveAxisGeometry geometry_;
-  std::array<RotaryWord, 2> words_;
+  bool plain_words_;
 };
 
 }  // namespace

@@ -16,11 +16,11 @@ namespace understudy::rehearsal {
 /// How a program of another machine is read (docs/gcode.md).
 struct DialectRequest {
   std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
-  std::string extruder_letter = "E";        ///< E or A
+  std::string extruder_letter;              ///< E, A...; empty: the machine's
   int b_sign = 1, c_sign = 1;               ///< -1: the program counts that axis the other way round
   std::vector<std::string> ignored;         ///< commands passed over with their lines, upper case
   std::optional<double> temperature_c;      ///< of the nozzle from the start on
-  std::string coordinates;                  ///< of rotary programs: tip, machine, crossing; empty: tip
+  std::string coordinates;  ///< of rotary programs: tip, machine, crossing; empty: the machine's
 };
 
 /// What is asked about the surface as printed (docs/surface.md).

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "rehearsal/rehearse.h"
 #include "rehearsal/rotary_words.h"
@@ -136,6 +137,43 @@ TEST_F(RotaryRehearsal, MachineCoordinatesArePosesOfTheChainsAxes) {
   const Pose expected = kinematics::forward(machine_.chain().kinematics.chain, axes);
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_LT((steps[1].X_WT.matrix() - expected.matrix()).norm(), 1e-14);
+}
+
+/// The printer told as a chain of listed axes, with the letters U V counted the other way.
+std::string as_listed_chain(const std::filesystem::path& folder) {
+  std::string text = read_file(UNDERSTUDY_SOURCE_DIR "/models/five-axis/machine.yaml");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  const auto geometry = text.find("geometry:");
+  text.replace(geometry, text.find("conditioning:") - geometry,
+               "geometry:\n  tip_mm: [0, 0, 0]\n  tool_direction: [0, 0, 1]\n"
+               "  tool_carried_by: z\n  work_carried_by: c\n\n");
+  replace("mechanism: five-axis", "mechanism: chain");
+  const auto line = [&](const std::string& name, const std::string& rest) {
+    replace("  - name: " + name + "\n", "  - name: " + name + "\n" + rest);
+  };
+  line("x", "    moves: slides\n    direction: [1, 0, 0]\n    carried_by: frame\n");
+  line("y", "    moves: slides\n    direction: [0, 1, 0]\n    carried_by: x\n");
+  line("z", "    moves: slides\n    direction: [0, 0, 1]\n    carried_by: y\n");
+  line("b",
+       "    moves: turns\n    direction: [0, -1, 0]\n    point_mm: [0, 0, -30]\n    carried_by: frame\n");
+  line("c", "    moves: turns\n    direction: [0, 0, -1]\n    point_mm: [0, 0, 0]\n    carried_by: b\n");
+  replace("{letter: B, axis: b}", "{letter: U, axis: b, sign: -1}");
+  replace("{letter: C, axis: c}", "{letter: V, axis: c, unit: revolutions}");
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "machine.yaml") << text;
+  return (folder / "machine.yaml").string();
+}
+
+TEST_F(RotaryRehearsal, AListedChainRunsByTheWordsOfItsFile) {
+  std::string text = "G21 G90 M82\nG43.4\n";
+  for (const Line& line : kLines)
+    text += fmt::format("{} X{} Y{} Z{} U{} V{}{}\n", line.command, line.tip_mm.x(), line.tip_mm.y(),
+                        line.tip_mm.z(), -line.b_deg, line.c_deg / 360, line.rest);
+  expect_same_trace(run(with_rotary_words()), run(text, as_listed_chain(folder_ / "listed")));
 }
 
 TEST_F(RotaryRehearsal, OtherMachinesHaveNoRotaryWords) {

@@ -3,7 +3,7 @@
 // Words: G0 to G4, G10 G11 G17 to G21 G28 G90 to G94, M2 M6 M30 M82 M83 M104 M106 M107 M109 M207 M220 M221
 // and T, modal, with ; and ( ) comments, E for filament length; what slicers write beside it and the twin has
 // no use for is a list (gcode_words.cpp). Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K
-// alone, the tool axis; or two of A B C, the turning axes of a machine that has them, with G43.4 and G49.
+// alone, the tool axis; or the letters of turning axes of a machine that has them, with G43.4 and G49.
 // Lengths mm (or inch under G20), angles degrees, feeds mm/min.
 #pragma once
 
@@ -13,32 +13,39 @@
 #include <string>
 #include <vector>
 
+#include "core/units.h"
 #include "toolpath/program.h"
 
 namespace understudy::toolpath {
 
 constexpr double kLargestCoordinate = 100;  ///< [m], that is read or written
 
-/// What the two rotary words mean on a machine that has them; b and c are the first and the second. Angles in
-/// [rad], of any number of turns.
+/// What the one or two rotary words mean on a machine that has them; b and c are the first and the second,
+/// c is 0 where there is one. Angles in [rad], of any number of turns.
 struct RotaryWords {
   enum class Coordinates {
     tip,      ///< X Y Z is p_WT (tool-centre-point coordinates, G43.4)
     machine,  ///< X Y Z are the slides (G49)
     /// X Y Z are the slides of some machine whose turning axes cross at the program's origin:
-    /// p_WT = offset_W + Rz(C) Ry(B) (X, Y, Z). No word of the program says so.
+    /// p_WT = offset_W + crossing(B, C) (X, Y, Z). No word of the program says so.
     crossing,
   };
   Coordinates coordinates = Coordinates::tip;  ///< before the program says which
-  std::string letters = "BC";                  ///< of both, out of A, B, C
+  std::string letters = "BC";                  ///< of both, out of kRotaryLetters
+  double b_unit = kDegree, c_unit = kDegree;   ///< [rad] of 1 in the program
   double b_home = 0, c_home = 0;               ///< at X_WT_home
+  /// Commands that switch to `tip` and to `machine`, upper case.
+  std::vector<std::string> tip_commands{"G43.4"}, machine_commands{"G49"};
   /// X_WT of a tip at p_WT.
   std::function<Pose(const Vec3& p_WT, double b, double c)> tip_pose;
-  /// X_WT of slides at X Y Z [m].
+  /// X_WT of slides at X Y Z [m]; without it there are no machine coordinates.
   std::function<Pose(const Vec3& slides, double b, double c)> slides_pose;
   /// The slides [m] that hold the tip at p_WT.
   std::function<Vec3(const Vec3& p_WT, double b, double c)> slides;
+  /// From X Y Z of `crossing` to the tip; without it the rotation of tip_pose.
+  std::function<Pose(double b, double c)> crossing;
 };
+constexpr const char* kRotaryLetters = "ABCDUVW";  ///< that may turn an axis, or feed filament
 
 /// A word that the dialect does not know, and the lines that have it.
 struct UnknownWordCount {
@@ -51,7 +58,7 @@ struct GcodeOptions {
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
   std::optional<RotaryWords> rotary = std::nullopt;  ///< without it A, B and C are errors
   // Of the dialect.
-  char extruder_letter = 'E';  ///< of filament: E or A
+  char extruder_letter = 'E';  ///< of filament: E, or a rotary letter that turns nothing
   Vec3 offset_W{0, 0, 0};      ///< [m], the program's origin in W
   int b_sign = 1, c_sign = 1;  ///< -1: the program counts that axis the other way round
   /// Commands to pass over with their lines, upper case: "M428", "START_PRINT".

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -15,7 +14,17 @@ constexpr const char* kParameters = "XYZBCEFWIJKRPST";
 
 }  // namespace
 
-Block::Block(std::vector<Word> words, const std::string& file, int line, Letters letters)
+std::optional<Command> Letters::switching(const std::string& command) const {
+  if (std::ranges::count(tip_commands, command) > 0) return Command::tip_coordinates;
+  if (std::ranges::count(machine_commands, command) > 0) return Command::machine_coordinates;
+  return std::nullopt;
+}
+
+std::optional<Command> Letters::switching(char letter, double number) const {
+  return switching(fmt::format("{}{:g}", letter, number));
+}
+
+Block::Block(std::vector<Word> words, const std::string& file, int line, const Letters& letters)
     : file_(file), line_(line), letters_(letters) {
   words_.reserve(words.size());
   without_effect_ = read_without_effect(words);
@@ -24,6 +33,9 @@ Block::Block(std::vector<Word> words, const std::string& file, int line, Letters
   check_numbers();
   check_groups();
 }
+
+Block::Block(Command command, const Word& word, const std::string& file, int line, const Letters& letters)
+    : words_{{word, true, command, false}}, file_(file), line_(line), letters_(letters) {}
 
 bool Block::read_without_effect(const std::vector<Word>& words) {
   const std::size_t first = !words.empty() && words.front().letter == 'N' ? 1 : 0;
@@ -54,6 +66,13 @@ void Block::add(const Word& word, bool first) {
   if (word.letter == 'N' && first && !word.bare) return;  // a line number says nothing
   if ((word.letter == 'G' || word.letter == 'M') && !word.bare && !word.quoted) {
     const Meaning* meaning = meaning_of(word.letter, word.value);
+    if (meaning == nullptr || meaning->group == Group::coordinates) {
+      if (const auto command = letters_.switching(word.letter, word.value)) {
+        words_.push_back({word, true, *command, false});
+        return;
+      }
+      meaning = nullptr;
+    }
     if (meaning == nullptr) throw UnknownWord({file_, line_, word.column}, std::string(word.text));
     words_.push_back({word, true, meaning->command, false});
     return;
@@ -75,15 +94,15 @@ void Block::check_letter(const Word& word) const {
   if (word.letter == letters_.extruder) return;
   if (word.letter == 'E')
     fail(word, fmt::format("'{}': this program's extruder is on {}", word.text, letters_.extruder));
-  if (std::strchr("ABC", word.letter) == nullptr) return;
+  if (std::strchr("ABC", word.letter) == nullptr || letters_.rotary.find(word.letter) != std::string::npos)
+    return;
   if (letters_.rotary.empty())
     fail(word,
          fmt::format("'{}': this machine has no rotary axes; orientation is W I J K (quaternion) or I J K "
                      "(tool axis)",
                      word.text));
-  if (letters_.rotary.find(word.letter) == std::string::npos)
-    fail(word, fmt::format("'{}': the rotary axes of this machine are {}", word.text,
-                           fmt::join(letters_.rotary, " and ")));
+  fail(word, fmt::format("'{}': the rotary axes of this machine are {}", word.text,
+                         fmt::join(letters_.rotary, " and ")));
 }
 
 void Block::check_groups() const {

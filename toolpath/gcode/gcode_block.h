@@ -13,8 +13,14 @@ namespace understudy::toolpath {
 
 /// How a dialect uses letters.
 struct Letters {
-  std::string rotary;   ///< two of A, B, C, read as B and C; empty: no such axes
+  std::string rotary;   ///< one or two letters, read as B and C; empty: no such axes
   char extruder = 'E';  ///< is read as E
+  /// The commands that switch tool-centre-point coordinates on and off.
+  std::vector<std::string> tip_commands{"G43.4"}, machine_commands{"G49"};
+
+  /// The command that switches so; nothing for any other. Whether a word of that number is one.
+  std::optional<Command> switching(const std::string& command) const;
+  std::optional<Command> switching(char letter, double number) const;
 };
 
 /// A word that the dialect does not know.
@@ -31,7 +37,10 @@ class UnknownWord : public InputError {
 class Block {
  public:
   /// Throws UnknownWord, and InputError for a letter given twice, or two commands that exclude each other.
-  Block(std::vector<Word> words, const std::string& file, int line, Letters letters);
+  /// `letters` and `file` must outlive the block.
+  Block(std::vector<Word> words, const std::string& file, int line, const Letters& letters);
+  /// A line of this command alone, told in words such as TRAORI.
+  Block(Command command, const Word& word, const std::string& file, int line, const Letters& letters);
 
   bool empty() const { return words_.empty(); }
   /// A command that the twin has no use for, alone on its line, with parameters that it may have.
@@ -70,7 +79,7 @@ class Block {
   std::vector<Entry> words_;
   const std::string& file_;  // of the parser, which outlives its lines
   int line_;
-  Letters letters_;
+  const Letters& letters_;
   bool without_effect_ = false;
 };
 

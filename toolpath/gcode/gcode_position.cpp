@@ -26,6 +26,7 @@ constexpr int kMostArcTurns = 100;
 
 constexpr const char* kOrientationWords = "WIJK";
 constexpr const char* kRotaryWords = "BC";
+constexpr const char* kNoSlides = "the machine's file does not say, under gcode.words, which axes X Y Z are";
 
 }  // namespace
 
@@ -39,14 +40,18 @@ double length_of(const Block& block, const Word& word, double unit) {
 
 GcodePosition::GcodePosition(const GcodeOptions& options)
     : options_(options), coordinates_(options.rotary ? options.rotary->coordinates : Coordinates::tip) {
-  if (options.extruder_letter != 'E' && options.extruder_letter != 'A')
-    throw InputError(fmt::format("extruder on '{}': one of E, A", options.extruder_letter));
+  if (options.extruder_letter != 'E' &&
+      std::string_view(kRotaryLetters).find(options.extruder_letter) == std::string_view::npos)
+    throw InputError(fmt::format("extruder on '{}': one of E, {}", options.extruder_letter,
+                                 fmt::join(std::string_view(kRotaryLetters), ", ")));
   if (options.rotary && options.rotary->letters.find(options.extruder_letter) != std::string::npos)
     throw InputError(
         fmt::format("extruder on '{}': that turns an axis of this machine", options.extruder_letter));
   for (const int sign : {options.b_sign, options.c_sign})
     if (std::abs(sign) != 1)
       throw InputError(fmt::format("the sign of a rotary axis is {}: one of -1, 1", sign));
+  if (coordinates_ == Coordinates::machine && options.rotary && !options.rotary->slides)
+    throw InputError(fmt::format("coordinates 'machine': {}", kNoSlides));
   if (!(options.offset_W.cwiseAbs().maxCoeff() <= kLargestCoordinate))
     throw InputError(fmt::format("the program's offset is beyond {:g} mm", to_mm(kLargestCoordinate)));
   go_home();
@@ -70,7 +75,10 @@ void GcodePosition::set_coordinates(const Block& block) {
   // A shift of the slides is none of the tip, once the table has turned.
   if (origin_ != shift())
     block.fail(*word, fmt::format("'{}' while X Y Z are shifted by G92: G28 ends the shift", word->text));
-  if (next == Coordinates::machine) require_turns(*word, block, false);
+  if (next == Coordinates::machine) {
+    require_turns(*word, block, false);
+    if (!options_.rotary->slides) block.fail(*word, fmt::format("'{}': {}", word->text, kNoSlides));
+  }
   coordinates_ = next;
   programmed_ = programmed_at(X_WT_);
 }
@@ -83,7 +91,14 @@ Vec3 GcodePosition::programmed_at(const Pose& X_WT) const {
   const Vec3 p_WT = X_WT.translation();
   if (coordinates_ == Coordinates::machine) return options_.rotary->slides(p_WT, turns_->b, turns_->c);
   if (coordinates_ == Coordinates::tip) return p_WT;
-  return X_WT.linear().transpose() * (p_WT - options_.offset_W);
+  return crossing().inverse() * Vec3(p_WT - options_.offset_W);
+}
+
+/// From X Y Z of slides whose turning axes cross at the program's origin, to the tip seen from there.
+Pose GcodePosition::crossing() const {
+  const auto& [b, c] = *turns_;
+  if (options_.rotary->crossing) return options_.rotary->crossing(b, c);
+  return make_pose(Mat3(options_.rotary->tip_pose(Vec3::Zero(), b, c).linear()), Vec3::Zero());
 }
 
 Pose GcodePosition::pose_at_programmed() const {
@@ -91,7 +106,7 @@ Pose GcodePosition::pose_at_programmed() const {
   if (coordinates_ == Coordinates::machine) return options_.rotary->slides_pose(programmed_, b, c);
   Pose X_WT = options_.rotary->tip_pose(programmed_, b, c);
   if (coordinates_ == Coordinates::crossing)
-    X_WT.translation() = options_.offset_W + X_WT.linear() * programmed_;
+    X_WT.translation() = options_.offset_W + crossing() * programmed_;
   return X_WT;
 }
 
@@ -104,7 +119,8 @@ void GcodePosition::go_home() {
 }
 
 bool GcodePosition::go_home(Block& block) {
-  const std::string_view axes = options_.rotary ? "XYZBC" : "XYZ";
+  const std::string_view axes =
+      std::string_view("XYZBC").substr(0, 3 + (options_.rotary ? options_.rotary->letters.size() : 0));
   const auto named = [&](char letter) { return block.take(letter) != nullptr; };
   const auto count = std::count_if(axes.begin(), axes.end(), named);
   const bool whole = count == 0 || count == std::ssize(axes);
@@ -112,13 +128,13 @@ bool GcodePosition::go_home(Block& block) {
   return whole;
 }
 
-/// Slides where there are turning axes beside them, else the tip's coordinates.
+/// Slides where the machine's words are theirs, else the tip's coordinates.
 void GcodePosition::home_some(const Block& block) {
-  const bool rotary = options_.rotary.has_value();
+  const bool rotary = options_.rotary.has_value(), slides = rotary && options_.rotary->slides;
   const Vec3 p_home = options_.X_WT_home.translation();
   Vec3 p = X_WT_.translation(), home = p_home;
-  if (rotary) {
-    require_turns(*block.find_any("XYZBC"), block, false);
+  if (rotary) require_turns(*block.find_any("XYZBC"), block, false);
+  if (slides) {
     p = options_.rotary->slides(p, turns_->b, turns_->c);
     home = options_.rotary->slides(p_home, options_.rotary->b_home, options_.rotary->c_home);
   }
@@ -129,21 +145,29 @@ void GcodePosition::home_some(const Block& block) {
   }
   if (block.find('B') != nullptr) turns_->b = options_.rotary->b_home, turns_origin_.b = 0;
   if (block.find('C') != nullptr) turns_->c = options_.rotary->c_home, turns_origin_.c = 0;
-  X_WT_ = rotary ? options_.rotary->slides_pose(p, turns_->b, turns_->c) : make_pose(Mat3(X_WT_.linear()), p);
+  X_WT_ = slides   ? options_.rotary->slides_pose(p, turns_->b, turns_->c)
+          : rotary ? options_.rotary->tip_pose(p, turns_->b, turns_->c)
+                   : make_pose(Mat3(X_WT_.linear()), p);
   programmed_ = programmed_at(X_WT_);
+}
+
+/// [rad] of 1 in the first or the second rotary word.
+double GcodePosition::turn_unit(int word) const {
+  if (!options_.rotary) return 0;
+  return word == 0 ? options_.b_sign * options_.rotary->b_unit : options_.c_sign * options_.rotary->c_unit;
 }
 
 void GcodePosition::rename(Block& block, double unit) {
   for (int i = 0; i < 3; ++i)
     if (const Word* word = block.take("XYZ"[i])) origin_[i] = programmed_[i] - length_of(block, *word, unit);
-  const auto rename_turn = [&](char letter, double RotaryTurns::*axis, int sign) {
+  const auto rename_turn = [&](char letter, double RotaryTurns::*axis, double unit_of_turn) {
     const Word* word = block.take(letter);
     if (word == nullptr) return;
     require_turns(*word, block, false);
-    turns_origin_.*axis = (*turns_).*axis - sign * from_deg(word->value);
+    turns_origin_.*axis = (*turns_).*axis - unit_of_turn * word->value;
   };
-  rename_turn('B', &RotaryTurns::b, options_.b_sign);
-  rename_turn('C', &RotaryTurns::c, options_.c_sign);
+  rename_turn('B', &RotaryTurns::b, turn_unit(0));
+  rename_turn('C', &RotaryTurns::c, turn_unit(1));
 }
 
 void GcodePosition::move(Block& block, double unit, bool relative) {
@@ -245,12 +269,13 @@ bool GcodePosition::read_turns(Block& block, bool relative) {
   const Word* b = block.take('B');
   const Word* c = block.take('C');
   if (b == nullptr && c == nullptr) return false;
-  require_turns(b != nullptr ? *b : *c, block, !relative && b != nullptr && c != nullptr);
+  require_turns(b != nullptr ? *b : *c, block,
+                !relative && b != nullptr && (c != nullptr || options_.rotary->letters.size() == 1));
   RotaryTurns turns = turns_.value_or(RotaryTurns{});
-  const auto read = [&](const Word* word, double RotaryTurns::*axis, int sign) {
+  const auto read = [&](const Word* word, double RotaryTurns::*axis, double unit_of_turn) {
     if (word == nullptr) return;
     const double before = relative ? turns.*axis : turns_origin_.*axis;
-    turns.*axis = before + sign * from_deg(word->value);
+    turns.*axis = before + unit_of_turn * word->value;
     if (!(std::abs(turns.*axis) <= kLargestTurn))
       block.fail(*word, fmt::format("'{}' leads to {:.10g} deg, beyond {:.10g} deg", word->text,
                                     to_deg(turns.*axis), to_deg(kLargestTurn)));
@@ -259,8 +284,8 @@ bool GcodePosition::read_turns(Block& block, bool relative) {
       block.fail(*word, fmt::format("'{}' turns {:.0f} times, more than {:.0f} in one move", word->text,
                                     by / kWholeTurn, kMostTurns));
   };
-  read(b, &RotaryTurns::b, options_.b_sign);
-  read(c, &RotaryTurns::c, options_.c_sign);
+  read(b, &RotaryTurns::b, turn_unit(0));
+  read(c, &RotaryTurns::c, turn_unit(1));
   turns_ = turns;
   return true;
 }

@@ -47,6 +47,8 @@ class GcodePosition {
   Vec3 shift() const;  // origin_ without G92
   Vec3 programmed_at(const Pose& X_WT) const;
   Pose pose_at_programmed() const;
+  Pose crossing() const;
+  double turn_unit(int word) const;
   void refuse_two_orientations(const Block& block) const;
   void read_lengths(Block& block, double unit, bool relative);
   void read_centre(Block& block, double unit, Arc& arc) const;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <optional>
 #include <string_view>
 
@@ -77,6 +78,37 @@ class UnknownWords {
   std::vector<UnknownWordCount> counts_;
 };
 
+/// Throws InputError for a switching command that means something else.
+Letters letters_of(const GcodeOptions& options) {
+  Letters letters;
+  letters.extruder = options.extruder_letter;
+  if (!options.rotary) return letters;
+  letters.rotary = options.rotary->letters;
+  letters.tip_commands = options.rotary->tip_commands;
+  letters.machine_commands = options.rotary->machine_commands;
+  for (const auto* commands : {&letters.tip_commands, &letters.machine_commands})
+    for (const std::string& command : *commands) {
+      double number = 0;
+      const char* end = command.data() + command.size();
+      const bool coded = (command[0] == 'G' || command[0] == 'M') &&
+                         std::from_chars(command.data() + 1, end, number).ptr == end;
+      const Meaning* meaning = coded ? meaning_of(command[0], number) : nullptr;
+      if ((meaning != nullptr && meaning->group != Group::coordinates) ||
+          (coded && without_effect(command[0], number) != nullptr) || is_line_without_effect(command))
+        throw InputError(
+            fmt::format("'{}' cannot switch tool-centre-point control: it has another meaning", command));
+    }
+  return letters;
+}
+
+/// The line of a firmware's command in words: it switches coordinates, or is not known.
+Block block_of(const std::string& command, std::string_view text, const Place& place, const std::string& file,
+               const Letters& letters) {
+  const auto switching = letters.switching(command);
+  if (!switching) throw UnknownWord(place, command);
+  return {*switching, Word{command[0], 0, text, place.column}, file, place.line, letters};
+}
+
 }  // namespace
 
 Program parse_gcode(const std::string& text, const std::string& file, const GcodeOptions& options) {
@@ -84,7 +116,7 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
   program.file = file;
   program.sha256 = sha256_hex(text);
   GcodeState state(options);
-  const Letters letters{options.rotary ? options.rotary->letters : "", options.extruder_letter};
+  const Letters letters = letters_of(options);
   program.steps.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
   UnknownWords unknown;
   std::string_view rest = text;
@@ -96,9 +128,9 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
                        fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
     if (is_passed_over(words, options)) continue;
     try {
-      if (const std::string word = command_in_words(words); !word.empty())
-        throw UnknownWord({file, line, column_of(words)}, word);
-      Block block(lex_line(words, file, line), file, line, letters);
+      const std::string word = command_in_words(words);
+      Block block = word.empty() ? Block(lex_line(words, file, line), file, line, letters)
+                                 : block_of(word, words, {file, line, column_of(words)}, file, letters);
       state.run(block, program.steps);
     } catch (const UnknownWord& error) {
       unknown.add(error);

@@ -160,8 +160,9 @@ TEST(PathKinematics, TurnsOfAStepHaveToMakeItsPose) {
     }
     return "no error";
   };
-  EXPECT_THAT(refusal(five), testing::HasSubstr("line 7: the pose is not the one that B and C make"));
-  EXPECT_THAT(refusal(hexapod), testing::HasSubstr("B and C on a machine without rotary axes"));
+  EXPECT_THAT(refusal(five),
+              testing::HasSubstr("line 7: the pose is not the one that the rotary words make"));
+  EXPECT_THAT(refusal(hexapod), testing::HasSubstr("rotary words on a machine without rotary axes"));
 }
 
 }  // namespace

@@ -165,12 +165,12 @@ TEST(RotaryMotion, TurnsThatTheMachineOrThePoseDoesNotHaveAreRefused) {
   step.rotary = {0, 0};
   auto planner = hexapod.planner();
   EXPECT_THAT([&] { planner.push(step); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr(
-                                               "line 7: B and C on a machine without rotary axes")));
+                                               "line 7: rotary words on a machine without rotary axes")));
   auto steps = printer().program("G1 X1 B10 F600\n").steps;
   steps[0].rotary->b = from_deg(11);
   MotionPlanner other(*printer().mechanism, printer().machine.X_WB, printer().limits, {printer().X_WT_home});
   EXPECT_THAT([&] { other.push(steps[0]); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr(
-                                                 "the pose is not the one that B and C make")));
+                                                 "the pose is not the one that the rotary words make")));
 }
 
 }  // namespace

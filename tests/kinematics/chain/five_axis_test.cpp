@@ -19,6 +19,12 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr FiveAxisGeometry kOffset{from_mm(4), from_mm(-35), from_mm(-1.5), from_mm(2.5)};
 
+void set_home(ChainDescription& d, const AxisVector& home) {
+  d.home = home;
+  d.slide_words = {{'X', 0, 1, home[0]}, {'Y', 1, 1, home[1]}, {'Z', 2, 1, home[2]}};
+  d.turn_words = {{'B', 3, 1, home[3]}, {'C', 4, 1, home[4]}};
+}
+
 ChainDescription described(const FiveAxisGeometry& g, double b_max = kEndless) {
   ChainDescription d;
   d.kind = "five-axis";
@@ -26,7 +32,7 @@ ChainDescription described(const FiveAxisGeometry& g, double b_max = kEndless) {
   d.chain = five_axis_chain(g);
   d.chain.axes[3].lower = -b_max;
   d.chain.axes[3].upper = b_max;
-  d.home = {0, 0, 0.1, 0, 0};
+  set_home(d, {0, 0, 0.1, 0, 0});
   return d;
 }
 
@@ -183,7 +189,7 @@ TEST(FiveAxis, ProgramWordsAreAxesOrTipAsTheSwitchSays) {
 
 TEST(FiveAxis, RotaryWordsAreWhatTheMechanismReadsThemAs) {
   ChainDescription d = described(kOffset);
-  d.home = {0, 0, 0.1, 0.2, -0.3};
+  set_home(d, {0, 0, 0.1, 0.2, -0.3});
   const auto mechanism = make_chain_mechanism(d);
   const auto words = mechanism->rotary_words();
   ASSERT_EQ(words.size(), 2u);

@@ -110,8 +110,8 @@ TEST(GcodeDialect, ExtruderOnATakesThePlaceOfE) {
   EXPECT_NEAR(steps[0].filament, 0.5e-3, kRounding);
   EXPECT_THAT(rejection("G1 X10 E1 F600", options),
               StartsWith("p.gcode:1:8: 'E1': this program's extruder is on A"));
-  options.extruder_letter = 'U';
-  EXPECT_THAT(rejection("G0 X1", options), HasSubstr("extruder on 'U': one of E, A"));
+  options.extruder_letter = 'Q';
+  EXPECT_THAT(rejection("G0 X1", options), HasSubstr("extruder on 'Q': one of E, A, B"));
 }
 
 TEST(GcodeDialect, FlowScalesFilamentFromThereOn) {

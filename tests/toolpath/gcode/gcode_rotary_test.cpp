@@ -243,5 +243,107 @@ TEST(GcodeRotary, AMachineWithoutRotaryAxesRefusesWordsAndSwitches) {
   }
 }
 
+/// Refused with this text; "" where it is read.
+std::string refusal(const std::string& text, const GcodeOptions& options) {
+  try {
+    parse_gcode(text, "p.gcode", options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GcodeRotary, LettersAreThoseOfTheMachine) {
+  for (const std::string letters : {"AC", "UV", "WD", "CB"}) {
+    GcodeOptions options = five_axis(Coordinates::tip);
+    options.rotary->letters = letters;
+    const auto text = [&](const char* line) {
+      std::string t = line;
+      for (char& c : t)
+        if (c == '#' || c == '@') c = letters[c == '#' ? 0 : 1];
+      return t;
+    };
+    const auto steps = parse_gcode(text("G0 X5 #30 @40\nG91 G0 #10\n"), "p.gcode", options).steps;
+    ASSERT_EQ(steps.size(), 2u);
+    expect_pose(steps[0], {5, 0, 50}, 30, 40);
+    expect_pose(steps[1], {5, 0, 50}, 40, 40);
+    EXPECT_NE(refusal(text("G0 X5 #30 #30\n"), options), "");
+  }
+}
+
+TEST(GcodeRotary, OneLetterLeavesTheOtherTurnAlone) {
+  GcodeOptions options = five_axis(Coordinates::tip);
+  options.rotary->letters = "B";
+  const auto steps =
+      parse_gcode("G0 X5 B30\nG1 I0 J0 K1 F100\nG0 B20\nG28 X Y Z B\n", "p.gcode", options).steps;
+  ASSERT_EQ(steps.size(), 4u);
+  expect_pose(steps[0], {5, 0, 50}, 30, 0);
+  expect_pose(steps[2], {5, 0, 50}, 20, 0);  // one word is enough after I J K
+  EXPECT_EQ(steps[3].kind, StepKind::home);
+  EXPECT_THAT(refusal("G0 X5 C30\n", options), HasSubstr("the rotary axes of this machine are B"));
+}
+
+TEST(GcodeRotary, AUnitIsThatOfItsWord) {
+  GcodeOptions options = five_axis(Coordinates::tip);
+  options.rotary->b_unit = 1;              // radians
+  options.rotary->c_unit = from_deg(360);  // revolutions
+  const auto steps = parse_gcode("G0 X5 B0.5 C0.25\nG92 C0\nG0 C0.5\n", "p.gcode", options).steps;
+  expect_pose(steps[0], {5, 0, 50}, to_deg(0.5), 90);
+  expect_pose(steps[1], {5, 0, 50}, to_deg(0.5), 270);
+}
+
+TEST(GcodeRotary, TheMachineNamesWhatSwitchesItsCoordinates) {
+  GcodeOptions options = five_axis(Coordinates::tip);
+  options.rotary->tip_commands = {"M128", "TRAORI"};
+  options.rotary->machine_commands = {"M129", "TRAFOOF"};
+  for (const std::string line : {"M129", "trafoof", "N20 TRAFOOF ; off"}) {
+    const auto steps = parse_gcode(line + "\nG0 X10 Z0 B90\n", "p.gcode", options).steps;
+    expect_pose(steps.back(), carried(90, 0, {10, 0, 0}), 90, 0);
+  }
+  const auto back = parse_gcode("M129\nTRAORI\nG0 X10 Z0 B90\n", "p.gcode", options).steps;
+  expect_pose(back.back(), {10, 0, 0}, 90, 0);
+  EXPECT_THAT(refusal("G49\nG0 X1\n", options), HasSubstr("unknown word 'G49'"));
+  EXPECT_THAT(refusal("TRACYL\nG0 X1\n", options), HasSubstr("unknown word 'TRACYL'"));
+  for (const std::string taken : {"G1", "M105", "M117", "G21"}) {
+    options.rotary->tip_commands = {taken};
+    EXPECT_THAT(refusal("G0 X1\n", options), HasSubstr("'" + taken + "' cannot switch"));
+  }
+}
+
+TEST(GcodeRotary, WithoutSlidesThereAreNoMachineCoordinates) {
+  GcodeOptions options = five_axis(Coordinates::tip);
+  options.rotary->slides = nullptr;
+  options.rotary->slides_pose = nullptr;
+  EXPECT_THAT(refusal("G49\nG0 X1\n", options), HasSubstr("p.gcode:1:1: 'G49': the machine's file does not"));
+  // Then G28 X is the tip's.
+  const auto steps = parse_gcode("G0 X5 Y7 B30\nG28 X\n", "p.gcode", options).steps;
+  expect_pose(steps.back(), {0, 7, 50}, 30, 0);
+  options.rotary->coordinates = Coordinates::machine;
+  EXPECT_THAT(refusal("G0 X1\n", options), HasSubstr("coordinates 'machine': the machine's file"));
+}
+
+TEST(GcodeRotary, FilamentMayBeOnAnyLetterThatTurnsNothing) {
+  GcodeOptions options = five_axis(Coordinates::tip);
+  options.extruder_letter = 'U';
+  EXPECT_DOUBLE_EQ(parse_gcode("G1 X5 U2 B3 F100\n", "p.gcode", options).steps[0].filament, 2e-3);
+  options.extruder_letter = 'C';
+  EXPECT_THAT(refusal("G0 X1\n", options), HasSubstr("extruder on 'C': that turns an axis"));
+  options.extruder_letter = 'F';
+  EXPECT_THAT(refusal("G0 X1\n", options), HasSubstr("extruder on 'F': one of E, A, B, C, D, U, V, W"));
+}
+
+/// A head 60 mm long that turns as a whole: a table that does not turn.
+TEST(GcodeRotary, CrossingIsWhatTheMachineSays) {
+  GcodeOptions options = five_axis(Coordinates::crossing);
+  options.rotary->crossing = [](double b, double c) -> Pose {
+    return make_pose(Mat3(Mat3::Identity()),
+                     Vec3(turned(to_deg(b), to_deg(c)) * Vec3(0, 0, -0.06) + Vec3(0, 0, 0.06)));
+  };
+  options.offset_W = Vec3(0.001, 0, 0);
+  const auto steps = parse_gcode("G0 X5 Y0 Z10 B90\nG0 X6\n", "p.gcode", options).steps;
+  expect_pose(steps[0], {1 + 5 - 60, 0, 10 + 60}, 90, 0);
+  expect_pose(steps[1], {1 + 6 - 60, 0, 10 + 60}, 90, 0);
+}
+
 }  // namespace
 }  // namespace understudy::toolpath
