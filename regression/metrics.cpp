@@ -22,7 +22,8 @@ constexpr Kind kKinds[] = {
     {"axis_velocity", ""}, {"axis_acceleration", ""},  {"singularity", ""},
     {"unreachable", ""},   {"collision", "collision"}, {"near_collision", "collision"},
     {"gap", "gap"},        {"adhesion", "gap"},        {"sag", "sag"},
-    {"flow", "print"},     {"accuracy", "accuracy"},   {"registration", "registration"}};
+    {"flow", "print"},     {"accuracy", "accuracy"},   {"registration", "registration"},
+    {"reading", ""}};
 
 // Figures of the contract, by section.
 constexpr const char* kFigures[] = {"print.duration_s",

@@ -1,10 +1,29 @@
 #include "rehearsal/program_reading.h"
 
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "core/error.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
+#include "rehearsal/readings.h"
 #include "rehearsal/rotary_words.h"
 
 namespace understudy::rehearsal {
+namespace {
+
+/// Called where `error` is caught. Of words that mean nothing to this machine: what says more.
+[[noreturn]] void offer_inspection(const InputError& error, const RehearsalRequest& request) {
+  const std::string what = error.what();
+  if (what.find("unknown word") == std::string::npos && what.find("rotary axes") == std::string::npos) throw;
+  throw InputError(fmt::format("{}; `understudy inspect {} --machine {}` shows what to do", what,
+                               request.program, request.machine));
+}
+
+}  // namespace
+
 toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
                                      const machine::MachineDescription& machine) {
   toolpath::GcodeOptions gcode;
@@ -26,7 +45,13 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
 
 toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
   const toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
-  toolpath::Program program = toolpath::read_gcode(request.program, options);
+  toolpath::Program program = [&] {
+    try {
+      return toolpath::read_gcode(request.program, options);
+    } catch (const InputError& error) {
+      offer_inspection(error, request);
+    }
+  }();
   if (!request.dialect.temperature_c) return program;
   toolpath::Step heat;
   heat.kind = toolpath::StepKind::temperature;
@@ -35,6 +60,17 @@ toolpath::Program read_program(const RehearsalRequest& request, const machine::M
   heat.wait = true;
   program.steps.insert(program.steps.begin(), heat);
   return program;
+}
+
+std::optional<Finding> misread_words(const RehearsalRequest& request, const toolpath::Program& program,
+                                     const machine::MachineDescription& machine) {
+  const auto turned = [&](const toolpath::Step& s) {
+    return s.kind == toolpath::StepKind::print && s.rotary &&
+           (s.rotary->b != program.steps.front().rotary->b || s.rotary->c != program.steps.front().rotary->c);
+  };
+  if (std::ranges::none_of(program.steps, turned)) return std::nullopt;
+  return misread_words(program, {request.program, read_file(request.program)},
+                       gcode_options(request.dialect, machine), request.machine);
 }
 
 }  // namespace understudy::rehearsal

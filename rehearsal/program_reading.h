@@ -1,7 +1,10 @@
 // The program of a request, read as the machine and the request say.
 #pragma once
 
+#include <optional>
+
 #include "machine/description.h"
+#include "rehearsal/findings/finding.h"
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
 
@@ -11,7 +14,12 @@ namespace understudy::rehearsal {
 toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
                                      const machine::MachineDescription& machine);
 
-/// With the temperature that the request asks for ahead of it. Throws InputError as read_gcode() does.
+/// With the temperature that the request asks for ahead of it. Throws InputError as read_gcode() does, with
+/// the command that says more where words mean nothing to this machine.
 toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine);
+
+/// A finding where its rotary words are for another kind of machine (readings.h).
+std::optional<Finding> misread_words(const RehearsalRequest& request, const toolpath::Program& program,
+                                     const machine::MachineDescription& machine);
 
 }  // namespace understudy::rehearsal

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,8 +35,9 @@ std::optional<double> number_of(const std::map<std::string, std::string>& facts,
              : std::nullopt;
 }
 
-/// Whether a line has a word of one of these letters with a number, outside of comments.
-bool has_word(std::string_view text, const std::string& letters) {
+/// The letters of words with a number on lines of G commands, outside of comments.
+std::set<char> letters_of(std::string_view text) {
+  std::set<char> letters;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
@@ -43,11 +45,24 @@ bool has_word(std::string_view text, const std::string& letters) {
     line = line.substr(0, line.find_first_of(";("));
     if (!line.starts_with('G') && !line.starts_with('g') && !line.starts_with('N')) continue;
     for (std::size_t i = 0; i + 1 < line.size(); ++i)
-      if (letters.find(line[i]) != std::string::npos &&
-          std::string_view("0123456789.-+").find(line[i + 1]) != std::string_view::npos)
-        return true;
+      if (std::string_view("0123456789.-+").find(line[i + 1]) != std::string_view::npos)
+        letters.insert(static_cast<char>(std::toupper(static_cast<unsigned char>(line[i]))));
   }
-  return false;
+  return letters;
+}
+
+/// Those that turn axes, as far as a program tells: W beside I J K is a quaternion's.
+std::string turning_letters(std::string_view text, char extruder) {
+  const std::set<char> letters = letters_of(text);
+  std::string turning;
+  for (const char letter : std::string_view(toolpath::kRotaryLetters))
+    if (letters.contains(letter) && letter != extruder && !(letter == 'W' && letters.contains('K')))
+      turning += letter;
+  return turning;
+}
+
+bool all_among(const std::string& letters, const std::string& known) {
+  return std::ranges::all_of(letters, [&](char c) { return known.find(c) != std::string::npos; });
 }
 
 /// G and M words, and a firmware's commands in words; a parameter cannot be passed over.
@@ -63,9 +78,7 @@ class Inspector {
     result_.request.program = program;
     result_.request.machine = machine;
     result_.lines = static_cast<int>(std::count(text_.begin(), text_.end(), '\n'));
-    result_.machine_nozzle = machine_.tool.nozzle_diameter;
-    options_.X_WT_home = machine_.X_WB * machine_.X_BT_home;
-    options_.rotary = rotary_words(machine_);
+    take(machine_);
     options_.unknown = &result_.unknown;
   }
 
@@ -73,8 +86,11 @@ class Inspector {
     result_.slicer_facts = toolpath::slicer_facts(text_);
     if (const auto nozzle = number_of(result_.slicer_facts, "nozzle_diameter"))
       result_.nozzle = from_mm(*nozzle);
-    if (options_.rotary && has_word(text_, options_.rotary->letters))
-      rank_readings();
+    const std::string turning = turning_letters(text_, options_.extruder_letter);
+    if (!all_among(turning, options_.rotary ? options_.rotary->letters : "")) read_for_others(turning);
+    const bool known = result_.foreign_words.empty() || !result_.machines_with_words.empty();
+    if (options_.rotary && !turning.empty() && known)
+      rank();
     else
       summarise_as(options_);
     request_words();
@@ -83,58 +99,50 @@ class Inspector {
   }
 
  private:
-  toolpath::GcodeOptions as(const RotaryReading& reading) const {
-    toolpath::GcodeOptions options = options_;
-    using Coordinates = toolpath::RotaryWords::Coordinates;
-    options.rotary->coordinates = reading.coordinates == "machine"    ? Coordinates::machine
-                                  : reading.coordinates == "crossing" ? Coordinates::crossing
-                                                                      : Coordinates::tip;
-    options.b_sign = reading.b_sign;
-    options.c_sign = reading.c_sign;
-    return options;
-  }
-
   Vec3 start_W() const { return options_.X_WT_home.translation(); }
 
-  void rank_readings() {
-    std::string refusal;
-    for (const char* coordinates : {"tip", "machine", "crossing"})
-      for (const int b : {1, -1})
-        for (const int c : {1, -1}) {
-          RotaryReading reading{coordinates, b, c, {}};
-          try {
-            reading.quality =
-                toolpath::reading_quality(toolpath::parse_gcode(text_, file_, as(reading)), start_W());
-            result_.readings.push_back(reading);
-          } catch (const InputError& error) {
-            refusal = error.what();  // a program with G43.4 cannot be read as crossing
-          }
-        }
-    if (result_.readings.empty()) throw InputError(refusal);
-    sort_by_rank();
-    const RotaryReading& best = result_.readings.front();
-    result_.request.dialect.coordinates = best.coordinates;
-    result_.request.dialect.b_sign = best.b_sign;
-    result_.request.dialect.c_sign = best.c_sign;
-    summarise_as(as(best));
+  /// A ready machine that has these words takes the place of the one that does not.
+  void read_for_others(const std::string& turning) {
+    result_.foreign_words = turning;
+    std::optional<std::pair<double, std::string>> best;
+    for (const std::string& name : machine::machine_names()) {
+      const machine::MachineDescription other = machine::load_machine(name);
+      const auto words = rotary_words(other);
+      if (!words || words->letters.size() != turning.size() || !all_among(turning, words->letters)) continue;
+      result_.machines_with_words.push_back(name);
+      take(other);
+      const double angle = rank_readings({file_, text_}, options_).front().quality.out_of_layer;
+      if (!best || angle < best->first) best = {angle, name};
+    }
+    if (best) {
+      result_.request.machine = best->second;
+      return take(machine::load_machine(best->second));
+    }
+    toolpath::RotaryWords still;  // whatever they turn
+    still.letters = turning.substr(0, 2);
+    still.tip_pose = [](const Vec3& p_WT, double, double) -> Pose {
+      return make_pose(Quat::Identity(), p_WT);
+    };
+    options_.rotary = still;
   }
 
-  /// The sum of both ranks; equal sums by the angle. Values that agree to a per mille share their rank, and
-  /// the reading without options comes first among equals.
-  void sort_by_rank() {
-    auto& readings = result_.readings;
-    const auto rank = [&](const RotaryReading& reading, auto value) {
-      return std::count_if(readings.begin(), readings.end(),
-                           [&](const RotaryReading& other) { return value(other) < 0.999 * value(reading); });
-    };
-    const auto angle = [](const RotaryReading& r) { return r.quality.out_of_layer; };
-    const auto step = [](const RotaryReading& r) { return r.quality.longest_step; };
-    std::vector<std::pair<std::pair<std::ptrdiff_t, double>, RotaryReading>> ranked;
-    for (const RotaryReading& r : readings)
-      ranked.push_back({{rank(r, angle) + rank(r, step), std::round(1e6 * angle(r))}, r});
-    std::stable_sort(ranked.begin(), ranked.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t i = 0; i < ranked.size(); ++i) readings[i] = ranked[i].second;
+  void take(const machine::MachineDescription& machine) {
+    machine_ = machine;
+    result_.machine_nozzle = machine_.tool.nozzle_diameter;
+    options_.X_WT_home = machine_.X_WB * machine_.X_BT_home;
+    options_.rotary = rotary_words(machine_);
+    options_.extruder_letter = machine_.dialect.extruder_letter;
+  }
+
+  void rank() {
+    result_.readings = rank_readings({file_, text_}, options_);
+    result_.rotary_letters = options_.rotary->letters;
+    const RotaryReading& best = result_.readings.front();
+    coordinates_ = best.coordinates;
+    if (coordinates_ != machine_.dialect.coordinates) result_.request.dialect.coordinates = coordinates_;
+    result_.request.dialect.b_sign = best.b_sign;
+    result_.request.dialect.c_sign = best.c_sign;
+    summarise_as(read_as(best, options_));
   }
 
   void summarise_as(const toolpath::GcodeOptions& options) {
@@ -161,7 +169,7 @@ class Inspector {
   /// Onto the table, and to its middle where it does not lie on it.
   void request_place() {
     const auto& printed = result_.summary.printed;
-    if (!printed || result_.request.dialect.coordinates == "machine") return;
+    if (!printed || coordinates_ == "machine") return;
     auto& place = result_.request.dialect.place_mm;
     const double lowest = printed->lower.z();
     // High above the table it may print on a part; a program of rotary words counts from its table's pivots.
@@ -181,6 +189,7 @@ class Inspector {
   std::string file_, text_;
   machine::MachineDescription machine_;
   toolpath::GcodeOptions options_;
+  std::string coordinates_;  // of the best reading
   Inspection result_;
 };
 
@@ -195,8 +204,7 @@ std::string rehearse_command(const RehearsalRequest& request, const std::string&
   std::string command = fmt::format("understudy rehearse {} --machine {}", request.program, request.machine);
   if (dialect.place_mm != std::array<double, 3>{0, 0, 0})
     command += fmt::format(" --place {}", fmt::join(dialect.place_mm, ","));
-  if (!dialect.coordinates.empty() && dialect.coordinates != "tip")
-    command += " --coordinates " + dialect.coordinates;
+  if (!dialect.coordinates.empty()) command += " --coordinates " + dialect.coordinates;
   if (dialect.b_sign < 0) command += " --b-sign -1";
   if (dialect.c_sign < 0) command += " --c-sign -1";
   if (!dialect.ignored.empty()) command += fmt::format(" --ignore {}", fmt::join(dialect.ignored, ","));

@@ -6,19 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "rehearsal/readings.h"
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/inspection/program_summary.h"
-#include "toolpath/inspection/reading_quality.h"
 
 namespace understudy::rehearsal {
-
-/// One way to read a program's rotary words (docs/gcode.md).
-struct RotaryReading {
-  std::string coordinates;  ///< tip, machine, crossing
-  int b_sign = 1, c_sign = 1;
-  toolpath::ReadingQuality quality;
-};
 
 constexpr double kFarAbove = 2e-3;  ///< [m] above the table, where no first layer begins
 
@@ -28,15 +21,20 @@ struct Inspection {
   std::map<std::string, std::string> slicer_facts;  ///< from comments
   toolpath::ProgramSummary summary;                 ///< under the first of `readings`, if there are any
   std::vector<RotaryReading> readings;              ///< the most likely first; none without rotary words
-  std::optional<double> nozzle;                     ///< [m], that the slicer worked for
-  double machine_nozzle = 0;                        ///< [m]
+  std::string rotary_letters;                       ///< that `readings` are about
+  /// Rotary words of the program that the machine does not have, such as "AC", and the machines of models/
+  /// that have them. The first of those then takes the machine's place here and in `request`; without any,
+  /// the words are read as if they turned nothing.
+  std::string foreign_words;
+  std::vector<std::string> machines_with_words;
+  std::optional<double> nozzle;  ///< [m], that the slicer worked for
+  double machine_nozzle = 0;     ///< [m]
   /// How it may be rehearsed: dialect, place on the table, words to ignore, temperature.
   RehearsalRequest request;
 };
 
-/// Reads `program` as for `machine`; unknown words are counted, not refused. Readings are ranked by how far
-/// the printed path leaves the plane across the tool, and by the longest printed step (the sum of both
-/// ranks). Throws InputError as read_gcode() does.
+/// Reads `program` as for `machine`; unknown words are counted, not refused. Readings are ranked as
+/// rank_readings() does. Throws InputError as read_gcode() does.
 Inspection inspect(const std::string& program, const std::string& machine);
 
 /// "understudy rehearse ..." with the options that differ from their defaults.

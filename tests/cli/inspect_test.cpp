@@ -31,6 +31,29 @@ TEST(Inspect, SaysWhatAProgramUsesAndHowToRehearseIt) {
   EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
 }
 
+TEST(Inspect, WordsThatTheMachineLacksLeadToOneThatHasThem) {
+  const Folder folder;
+  std::string text = "M104 S200\nM83\nG0 X-5 Y0 Z5\n";
+  for (int i = 0; i <= 10; ++i)
+    text += "G1 X" + std::to_string(i - 5) + " Z0.2 A0 C" + std::to_string(i) + " E0.04 F600\n";
+  const std::string program = folder.write("turn.gcode", text);
+  const Outcome refused = understudy("rehearse " + program + " --machine hexapod --out " + (folder / "no"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("'A0': this machine has no rotary axes"));
+  EXPECT_THAT(refused.err,
+              HasSubstr("`understudy inspect " + program + " --machine hexapod` shows what to do"));
+  const Outcome seen = understudy("inspect " + program + " --machine hexapod");
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  EXPECT_THAT(seen.out, HasSubstr("A C turn axes that hexapod does not have: read here as for "));
+  EXPECT_THAT(seen.out, HasSubstr("trunnion-ac"));
+  const auto command = seen.out.find("understudy rehearse");
+  std::string words = seen.out.substr(command + 11);
+  words = words.substr(0, words.find(" --out"));
+  const Outcome rehearsed =
+      understudy(words + " --engine quasistatic --no-pictures --out " + (folder / "out"));
+  EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
+}
+
 TEST(Inspect, WhatIsNoProgramIsBadInput) {
   const Folder folder;
   for (const std::string& program :

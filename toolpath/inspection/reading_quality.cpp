@@ -17,14 +17,16 @@ constexpr double kShortest = 1e-6;       // [m]
 
 ReadingQuality reading_quality(const Program& program, const Vec3& start_W) {
   ReadingQuality quality;
-  std::vector<double> all, leaning;
+  std::vector<double> all, leaning, sections;
   Vec3 tip_W = start_W;
   for (const Step& step : program.steps) {
     if (!moves(step)) continue;
     const Vec3 path = step.X_WT.translation() - tip_W;
     tip_W = step.X_WT.translation();
     const double length = path.norm();
-    if (step.kind != StepKind::print || length < kShortest) continue;
+    if (step.kind != StepKind::print) continue;
+    if (step.filament > 0) sections.push_back(step.filament / std::max(length, kShortest));
+    if (length < kShortest) continue;
     quality.longest_step = std::max(quality.longest_step, length);
     const Vec3 axis = tool_axis(step.X_WT);
     const double angle = std::asin(std::min(1.0, std::abs(path.dot(axis)) / length));
@@ -34,6 +36,9 @@ ReadingQuality reading_quality(const Program& program, const Vec3& start_W) {
   const std::vector<double>& angles = leaning.empty() ? all : leaning;
   quality.moves = static_cast<int>(angles.size());
   if (!angles.empty()) quality.out_of_layer = quantile(angles, 0.5);
+  if (sections.empty()) return quality;
+  quality.bead_spread = quantile(sections, 0.9) / quantile(sections, 0.1);
+  quality.filament_share = quantile(sections, 0.5);
   return quality;
 }
 

@@ -45,5 +45,17 @@ TEST(ReadingQuality, OnlyLeaningMovesCountWhereThereAreAny) {
   EXPECT_NEAR(q.longest_step, std::sqrt(2) * 1e-3, 1e-12);
 }
 
+// Nine beads of 0.1 mm of filament on 1 mm, then three of the same on a quarter of it.
+TEST(ReadingQuality, BeadsThatDifferTell) {
+  std::string text = "M83\nG0 X0 Y0 Z0\n";
+  for (int i = 1; i <= 9; ++i) text += fmt::format("G1 X{} E0.1 F60\n", i);
+  const ReadingQuality even = reading_quality(parse_gcode(text, "p", {}), Vec3::Zero());
+  EXPECT_NEAR(even.bead_spread, 1, 1e-9);
+  EXPECT_NEAR(even.filament_share, 0.1, 1e-12);
+  for (int i = 0; i < 3; ++i) text += fmt::format("G1 X{} E0.1\n", 9.25 + 0.25 * i);
+  EXPECT_NEAR(reading_quality(parse_gcode(text, "p", {}), Vec3::Zero()).bead_spread, 4, 1e-9);
+  EXPECT_EQ(reading_quality(parse_gcode("G0 X1\n", "p", {}), Vec3::Zero()).bead_spread, 1);
+}
+
 }  // namespace
 }  // namespace understudy::toolpath

@@ -1,0 +1,141 @@
+// Programs of rotary words that were written for a machine of another kind: a ring printed square to its
+// surface, told as the slides of several machines. The slides are worked out here, rotation by rotation.
+#include "rehearsal/readings.h"
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "machine/description.h"
+#include "rehearsal/program_reading.h"
+#include "rehearsal/rehearse.h"
+#include "tests/temporary_folder.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+using ::testing::HasSubstr;
+
+Mat3 about(const Vec3& axis, double angle) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
+
+/// Around a torus beside the origin, as a program for these machines; lengths in mm, the pivot 60 mm above
+/// the tip. A pivot offsets the surface, which of a sphere would be another sphere. E keeps the beads even.
+std::string ring(const std::string& machine) {
+  std::string text = "M104 S200\nM83\n";
+  const Vec3 up(0, 0, 1), pivot(0, 0, -60);
+  Vec3 before = Vec3::Zero();
+  for (double lean = 15; lean <= 39; lean += 3)
+    for (int i = 0; i <= 60; ++i) {
+      // A wave across the rings: a ring alone would not tell the sense of C.
+      const double c = 2 * std::numbers::pi * i / 60, b = from_deg(lean + 2 * std::sin(5 * c));
+      const Mat3 head = about(Vec3::UnitY(), b), table = about(up, c), both = table * head;
+      const Vec3 tip = Vec3(3, -4, 5) + 15 * (table * Vec3::UnitX()) + 8 * (both * up);
+      Vec3 p = tip;
+      if (machine == "crossing") p = both.transpose() * tip;
+      if (machine == "head") p = table.transpose() * tip - head * pivot + pivot;
+      if (machine == "double-head") p = tip - both * pivot + pivot;
+      text +=
+          fmt::format("G{} X{:.5f} Y{:.5f} Z{:.5f} B{:.5f} C{:.5f}{} F600\n", i ? 1 : 0, p.x(), p.y(), p.z(),
+                      to_deg(b), to_deg(c), i ? fmt::format(" E{:.5f}", 0.03 * (tip - before).norm()) : "");
+      before = tip;
+    }
+  return text;
+}
+
+toolpath::GcodeOptions five_axis() { return gcode_options({}, machine::load_machine("five-axis")); }
+
+TEST(Readings, TheKindOfMachineAndItsPivotAreFoundFromThePath) {
+  for (const std::string machine : {"tip", "crossing", "head", "double-head"}) {
+    const RotaryReading best = rank_readings({"p.gcode", ring(machine)}, five_axis()).front();
+    const bool head = machine.ends_with("head");
+    EXPECT_EQ(best.coordinates.substr(0, machine.size()), machine);
+    EXPECT_EQ(best.b_sign, 1) << machine;
+    EXPECT_EQ(best.c_sign, 1) << machine;
+    EXPECT_LT(to_deg(best.quality.out_of_layer), 2) << machine;
+    // E has five digits, and moves are chords.
+    if (!head) continue;
+    EXPECT_NEAR(std::stod(best.coordinates.substr(machine.size() + 1)), 60, 0.5) << machine;
+  }
+}
+
+TEST(Readings, AHeadsSlidesAreTurnedIntoTheTip) {
+  toolpath::GcodeOptions options = five_axis();
+  options = read_as({"head:60", 1, 1, {}}, options);
+  const auto tip = [&](const std::string& line) -> Vec3 {
+    return 1e3 * toolpath::parse_gcode(line, "p", options).steps.back().X_WT.translation();
+  };
+  // The head leans to +x by 90 degrees: the tip swings from 60 mm below the pivot to 60 mm before it, to -x.
+  EXPECT_LT((tip("G0 X10 Y0 Z5 B90 C0") - Vec3(10 - 60, 0, 5 + 60)).norm(), 1e-9);
+  // The table carries it on by a quarter, and with both on the head the pivot stays.
+  EXPECT_LT((tip("G0 X10 Y0 Z5 B90 C90") - Vec3(0, 10 - 60, 65)).norm(), 1e-9);
+  options = read_as({"double-head:60", 1, 1, {}}, five_axis());
+  EXPECT_LT((tip("G0 X10 Y0 Z5 B90 C90") - Vec3(10, -60, 65)).norm(), 1e-9);
+}
+
+class Misread : public testing::Test {
+ protected:
+  Record run(const std::string& text, const std::string& coordinates) {
+    const std::string file = (folder_ / "p.gcode").string();
+    std::ofstream(file) << text;
+    RehearsalRequest request;
+    request.program = file;
+    request.machine = "five-axis";
+    request.engine = "quasistatic";
+    request.keep_scene = false;
+    request.dialect.coordinates = coordinates;
+    request.dialect.place_mm = {0, 0, 20};
+    return rehearse(request);
+  }
+  static const Finding* reading_of(const Record& record) {
+    for (const Finding& finding : record.findings)
+      if (finding.kind == "reading") return &finding;
+    return nullptr;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Misread, AHeadTiltOnATableIsANoGoThatNamesTheReading) {
+  const Record record = run(ring("head"), "");
+  const Finding* finding = reading_of(record);
+  ASSERT_NE(finding, nullptr);
+  EXPECT_FALSE(record.go);
+  EXPECT_EQ(finding->severity, Severity::error);
+  EXPECT_THAT(finding->message, HasSubstr("read as `--coordinates head:"));
+  EXPECT_THAT(finding->message, HasSubstr("`understudy inspect " + (folder_ / "p.gcode").string() +
+                                          " --machine five-axis` ranks the readings"));
+}
+
+TEST_F(Misread, TheRightReadingIsNoFinding) {
+  EXPECT_EQ(reading_of(run(ring("tip"), "")), nullptr);
+  EXPECT_EQ(reading_of(run(ring("head"), "head:60")), nullptr);
+}
+
+TEST_F(Misread, WordsThatMeanNothingHereAreRefusedWithTheCommandThatSaysMore) {
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      run(text, "");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string offer =
+      "; `understudy inspect " + (folder_ / "p.gcode").string() + " --machine five-axis`";
+  EXPECT_THAT(refusal("G0 X1 A5\n"), HasSubstr(offer));
+  EXPECT_THAT(refusal("START_PRINT\nG0 X1\n"), HasSubstr(offer));
+  EXPECT_THAT(refusal("G0 X1.2.3\n"), Not(HasSubstr("understudy inspect")));
+}
+
+TEST(Coordinates, WordsThatAreNoneAreRefused) {
+  for (const char* word : {"tips", "head", "head:", "head:x", "head:60mm", "head:6000", "double-head:nan"})
+    EXPECT_THROW(read_as({word, 1, 1, {}}, five_axis()), InputError) << word;
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal
