@@ -12,7 +12,7 @@ void add_twin_commands(CLI::App&, Action&) {}
 void add_export_mjcf(CLI::App&, Action&) {}
 
 std::vector<std::string> left_out_commands() {
-  return {"rehearse",     "inspect",     "verify", "register",  "scenario",  "sweep",
+  return {"rehearse",     "inspect",     "pose",   "verify",    "register",  "scenario", "sweep",
           "sample-poses", "sample-gaps", "render", "workspace", "benchmark", "schema"};
 }
 
