@@ -125,7 +125,7 @@ Record base_record() {
 }
 
 void add_run(Record& record) {
-  record.print = PrintFigures{18.0021, 84, 4.71234567, 4.6, 0.1, 0.01234567, 2.0, 4.5, 0.1, 412.5};
+  record.print = PrintFigures{18.0021, 84, 4.71234567, 4.6, 0.1, 0.01234567, 2.0, 4.5, 0.1, 412.5, 0.98};
   record.accuracy = AccuracyFigures{88.123456, 109.4, 121.987654, 1.6, 431.25};
   record.gap = GapFigures{0.13, 0.412345678, 0.1312345, 0.101, 0.1288, 0.1611, 0.9925, 10};
   record.collision = CollisionFigures{1.8412, "heater block and part", 0.1011, 184211, 31};
