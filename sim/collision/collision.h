@@ -46,7 +46,7 @@ struct CollisionOptions {
 /// - a contact deeper than margin / 2 is never missed (nozzle against the part: margin / 8), and nothing is
 ///   reported that was not measured at some pose between the snapshots;
 /// - min_clearance() is at most max(0.05 mm, 1 %), min_nozzle_clearance() at most max(margin / 8, 1 %) above
-///   the least that was passed, and never below it;
+///   the least that was passed, and never below it; margin / 4 where the motion ends at the least;
 /// - the depth of a contact is within max(margin, 5 %) of the deepest of its line.
 /// Beads are obstacles from the moment they are in the index, for the nozzle once they are no longer fresh;
 /// they are not followed between two snapshots. A nozzle deeper in beads than bead_press is found within as

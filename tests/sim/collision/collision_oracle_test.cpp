@@ -109,7 +109,8 @@ void compare(std::uint64_t seed, int samples, Tally& tally) {
     const double between = (path + 0.05 * turn) / samples / 2;
     const double reported =
         shape.name == "nozzle" ? observer.min_nozzle_clearance() : observer.min_clearance();
-    const double accuracy = shape.name == "nozzle" ? options.margin / 8 : 0.05e-3;
+    // A motion may end at its least, where nothing comes after that would have been looked at.
+    const double accuracy = shape.name == "nozzle" ? options.margin / 4 : 0.05e-3;
     EXPECT_LE(reported, seen.least + std::max(accuracy, 0.01 * seen.least) + kPolytope)
         << shape.name << ", seed " << seed;
     if (shape.name == "nozzle") {
