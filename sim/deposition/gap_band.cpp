@@ -21,7 +21,7 @@ GapBand gap_band(const machine::GapLimits& limits, double layer, double area) {
   const GapBand stated = gap_band(limits);
   if (std::abs(layer - limits.aim) <= kSameLayer * limits.aim) return stated;
   GapBand band;
-  band.low = layer * limits.accepted_min / limits.aim;
+  band.low = layer > limits.aim ? std::max(stated.low, layer / 2) : layer * limits.accepted_min / limits.aim;
   band.soft_depth = std::max(kSoftDepth, layer / 2);
   // (w - g) g + pi g^2 / 4 = area with w = aspect g.
   const double widest_gap = std::sqrt(area / (kLeastAspect - 1 + kQuarterPi));
