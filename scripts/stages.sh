@@ -9,8 +9,9 @@ thread_tests='^(core\.InParallel|machine\.LoopbackPort|strand\.|deposition\.|twi
 sanitize_rooms="core geometry kinematics machine toolpath control vision calibration fuzz"
 # Thousands of draws through code that other tests reach too; more than a minute each.
 sanitize_left_out='ErrorsAreWhatTheCovarianceSays|WithoutSpoiledPosesItLosesLessThanFivePercentOfEfficiency|RandomFramesKeepEveryRule|FarRowsAreSolvedWhereHomeAloneIsNoSeed'
-# How times grow is asked of the release: a sanitizer's allocator grows faster than the data.
-sanitize_left_out+='|ReadingTime'
+# Measured: under AddressSanitizer a manifest of 16 times the lines takes 51 to 55 times as long, where the test allows 40. In the
+# release it stays within them, and all other readers do in both.
+sanitize_left_out+='|ReadingTime.*Manifest'
 sanitize_left_out+='|HexapodLimits.(ReachableFractionOfTheCubeIsThatOfTheReference|HomeTiltsInEveryAzimuth)'
 
 # How many sources clang-tidy looks at without --all, some 16 s each.
