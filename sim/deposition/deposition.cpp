@@ -62,6 +62,11 @@ Bead shape_of(const Element& element) {
   return bead;
 }
 
+/// What comes out at rest, or nearly, with nothing below: it falls, and is in nobody's way.
+bool is_drop(const LaidBead& bead) {
+  return bead.adhesion == Adhesion::unsupported && !bead.follows && bead.length < bead.width;
+}
+
 }  // namespace
 
 struct DepositionObserver::State {
@@ -116,9 +121,9 @@ struct DepositionObserver::State {
   void keep(const Element& element) {
     const LaidBead& bead = element.bead;
     totals.laid_volume += bead.volume;
-    if (bead.length == 0) totals.standstill_volume += bead.volume;
-    // Nothing is below what comes out at rest: it falls, and is in nobody's way.
-    const bool falls = bead.length == 0 && bead.adhesion == Adhesion::unsupported;
+    const bool falls = is_drop(bead);
+    if (bead.length == 0 || falls) totals.standstill_volume += bead.volume;
+    if (falls && workpiece->beads().size() == 0) started = false;  // the print has not begun
     if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
       totals.deposited_volume += bead.volume;
     if (bead.adhesion == Adhesion::sticks) usual_height = bead.height;

@@ -77,13 +77,15 @@ struct DepositionSummary {
   int gap_min_line = 0;
   double gap_min_time = 0;  ///< [s]
   LowestGap lowest;
-  double start_gap = 0;          ///< [m], true gap where extrusion began first
-  double fused_length = 0;       ///< [m], counted in no gap figure
-  double extruded_volume = 0;    ///< [m^3], net: what a retraction took back is not counted twice
-  double laid_volume = 0;        ///< [m^3], of all elements, sticking or not
-  double deposited_volume = 0;   ///< [m^3], of those that stick
-  double standstill_volume = 0;  ///< [m^3], of those without length: fed at a standstill and left behind
-  double column_volume = 0;      ///< [m^3], not laid: what still presses to come out
+  double start_gap = 0;         ///< [m], true gap where extrusion began first
+  double fused_length = 0;      ///< [m], counted in no gap figure
+  double extruded_volume = 0;   ///< [m^3], net: what a retraction took back is not counted twice
+  double laid_volume = 0;       ///< [m^3], of all elements, sticking or not
+  double deposited_volume = 0;  ///< [m^3], of those that stick
+  /// [m^3], fed at a standstill and left behind: elements without length, and drops that fall, which come out
+  /// by themselves with nothing below and are shorter than wide.
+  double standstill_volume = 0;
+  double column_volume = 0;  ///< [m^3], not laid: what still presses to come out
   std::size_t beads = 0;
 };
 

@@ -134,7 +134,8 @@ TEST(DepositionProperties, WhatWasFedLiesInBeadsOrIsStillInTheNozzle) {
       RC_ASSERT(bead.volume >= 0);
       total += bead.volume;
       if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused) sticking += bead.volume;
-      if (bead.length == 0) standing += bead.volume;
+      const bool drop = bead.adhesion == Adhesion::unsupported && !bead.follows && bead.length < bead.width;
+      if (bead.length == 0 || drop) standing += bead.volume;
       RC_ASSERT(bead.width >= 0 && bead.height >= 0 && std::isfinite(bead.width + bead.height));
       RC_ASSERT(bead.time >= bead.start_time && bead.line >= bead.start_line);
     }
