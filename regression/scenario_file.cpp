@@ -175,7 +175,7 @@ void read_tolerances(YamlMap& map, Scenario& scenario) {
 }
 
 /// How lines of the program are read.
-void read_dialect(YamlMap& map, DialectRequest& dialect) {
+void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect) {
   if (map.has("place_mm")) {
     const auto place = map.numbers("place_mm", 3, {}, "where the program's origin stands in W");
     std::copy(place.begin(), place.end(), dialect.place_mm.begin());
@@ -186,6 +186,9 @@ void read_dialect(YamlMap& map, DialectRequest& dialect) {
     std::istringstream words(map.text("ignored", "commands to pass over with their lines, joined by commas"));
     for (std::string word; std::getline(words, word, ',');) dialect.ignored.push_back(word);
   }
+  if (map.has("macros"))
+    dialect.macros =
+        existing_file(map, "macros", folder, "path of a Klipper configuration with macros").string();
   if (map.has("temperature_c"))
     dialect.temperature_c = map.number("temperature_c", {100, 450}, "of the nozzle from the start on");
   const auto sign = [&map](const char* key, const char* about) {
@@ -239,7 +242,7 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
     scenario.material =
         name_or_path(map, "material", folder, ".yaml", "a name or a path; else the machine's");
   read_tolerances(map, scenario);
-  read_dialect(map, scenario.dialect);
+  read_dialect(map, folder, scenario.dialect);
   read_surface(map, folder, scenario.surface);
   read_registration(map, folder, scenario.registration);
   scenario.faults = read_faults(map);

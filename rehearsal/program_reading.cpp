@@ -1,6 +1,7 @@
 #include "rehearsal/program_reading.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -36,6 +37,8 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   gcode.b_sign = dialect.b_sign;
   gcode.c_sign = dialect.c_sign;
   gcode.ignored = dialect.ignored;
+  if (!dialect.macros.empty())
+    gcode.macros = std::make_shared<toolpath::GcodeMacros>(toolpath::GcodeMacros::read(dialect.macros));
   if (dialect.coordinates.empty()) return gcode;
   if (!gcode.rotary)
     throw InputError("coordinates '" + dialect.coordinates + "': " + machine.name + " has no rotary words");

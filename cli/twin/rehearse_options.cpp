@@ -50,6 +50,10 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
       ->transform(upper)
       ->group("Programs of other machines");
   command
+      .add_option("--macros", dialect.macros,
+                  "Klipper's configuration, whose macros stand for commands that are unknown here")
+      ->group("Programs of other machines");
+  command
       .add_option("--temperature", dialect.temperature_c,
                   "C: the nozzle's from the start on, where a macro of the printer sets it")
       ->check(CLI::Range(100., 450.))

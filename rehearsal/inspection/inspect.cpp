@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <set>
 
 #include <fmt/format.h>
@@ -73,13 +74,16 @@ bool is_command(const std::string& word) {
 
 class Inspector {
  public:
-  Inspector(const std::string& program, const std::string& machine)
+  Inspector(const std::string& program, const std::string& machine, const std::string& macros)
       : file_(program), text_(read_file(program)), machine_(machine::load_machine(machine)) {
     result_.request.program = program;
     result_.request.machine = machine;
     result_.lines = static_cast<int>(std::count(text_.begin(), text_.end(), '\n'));
     take(machine_);
     options_.unknown = &result_.unknown;
+    if (macros.empty()) return;
+    result_.request.dialect.macros = macros;
+    options_.macros = std::make_shared<toolpath::GcodeMacros>(toolpath::GcodeMacros::read(macros));
   }
 
   Inspection run() {
@@ -195,8 +199,8 @@ class Inspector {
 
 }  // namespace
 
-Inspection inspect(const std::string& program, const std::string& machine) {
-  return Inspector(program, machine).run();
+Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros) {
+  return Inspector(program, machine, macros).run();
 }
 
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder) {
@@ -208,6 +212,7 @@ std::string rehearse_command(const RehearsalRequest& request, const std::string&
   if (dialect.b_sign < 0) command += " --b-sign -1";
   if (dialect.c_sign < 0) command += " --c-sign -1";
   if (!dialect.ignored.empty()) command += fmt::format(" --ignore {}", fmt::join(dialect.ignored, ","));
+  if (!dialect.macros.empty()) command += " --macros " + dialect.macros;
   if (dialect.temperature_c) command += fmt::format(" --temperature {}", *dialect.temperature_c);
   return command + " --out " + folder;
 }

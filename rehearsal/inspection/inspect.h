@@ -33,9 +33,9 @@ struct Inspection {
   RehearsalRequest request;
 };
 
-/// Reads `program` as for `machine`; unknown words are counted, not refused. Readings are ranked as
-/// rank_readings() does. Throws InputError as read_gcode() does.
-Inspection inspect(const std::string& program, const std::string& machine);
+/// Reads `program` as for `machine`, with `macros` (a path; empty: none); unknown words are counted, not
+/// refused. Readings are ranked as rank_readings() does. Throws InputError as read_gcode() does.
+Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros = {});
 
 /// "understudy rehearse ..." with the options that differ from their defaults.
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder);

@@ -91,6 +91,7 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   inputs.values("dialect", dialect.place_mm, dialect.extruder_letter, dialect.b_sign, dialect.c_sign,
                 dialect.coordinates);
   for (const std::string& word : dialect.ignored) inputs.word("ignored", word);
+  inputs.bytes_of("macros", dialect.macros);
   inputs.values("temperature", number(dialect.temperature_c));
   const SurfaceRequest& surface = request.surface;
   inputs.bytes_of("intended", surface.intended.empty() ? "" : machine::find_fixture(surface.intended));

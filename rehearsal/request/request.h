@@ -19,6 +19,7 @@ struct DialectRequest {
   std::string extruder_letter;              ///< E, A...; empty: the machine's
   int b_sign = 1, c_sign = 1;               ///< -1: the program counts that axis the other way round
   std::vector<std::string> ignored;         ///< commands passed over with their lines, upper case
+  std::string macros;                       ///< path of a Klipper configuration; empty: none
   std::optional<double> temperature_c;      ///< of the nozzle from the start on
   std::string coordinates;  ///< of rotary programs: tip, machine, crossing; empty: the machine's
 };

@@ -149,6 +149,12 @@ class Grammar {
   }
 
   void add_set_position() {
+    if (!relative_ && pick(4) == 0) {
+      line_ = pick(2) ? "G10 L20 P0" : "G10 L2 P1";
+      word('X', 10);
+      offset_ = true;
+      return;
+    }
     word('G', "92");
     if (pick(2)) {
       word(extruder_, 100);
@@ -173,7 +179,7 @@ class Grammar {
       // Of G94 that was in force the feed would go on; here it changes, so it does not.
       if (inverse_time_) feed_ = false;
     }
-    const bool switches = rotary_ && !fixed_coordinates_ && !shifted_ && turns_known_;
+    const bool switches = rotary_ && !fixed_coordinates_ && !shifted_ && !offset_ && turns_known_;
     if (switches && pick(8) == 0) {
       tip_ = !tip_;
       word('G', tip_ ? "43.4" : "49");
@@ -181,6 +187,7 @@ class Grammar {
   }
 
   void add_move() {
+    if (pick(8) == 0) word('G', pick(2) ? "53" : "54");
     const bool linear = pick(3) > 0;
     word('G', linear ? "1" : "0");
     const bool extrudes = pick(2) > 0;
@@ -234,7 +241,7 @@ class Grammar {
   char extruder_;
   bool rotary_, fixed_coordinates_, tip_;
   bool turns_known_ = rotary_;
-  bool shifted_ = false, relative_ = false, inverse_time_ = false, feed_ = false;
+  bool shifted_ = false, offset_ = false, relative_ = false, inverse_time_ = false, feed_ = false;
 };
 
 }  // namespace

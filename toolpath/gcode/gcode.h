@@ -1,19 +1,21 @@
 // G-code as printers use it, with tool orientation per point (docs/gcode.md).
 //
-// Words: G0 to G4, G10 G11 G17 to G21 G28 G90 to G94, M2 M6 M30 M82 M83 M104 M106 M107 M109 M207 M220 M221
-// and T, modal, with ; and ( ) comments, E for filament length; what slicers write beside it and the twin has
-// no use for is a list (gcode_words.cpp). Orientation: W I J K, a unit quaternion w + xi + yj + zk, or I J K
-// alone, the tool axis; or the letters of turning axes of a machine that has them, with G43.4 and G49.
-// Lengths mm (or inch under G20), angles degrees, feeds mm/min.
+// Words: G0 to G5, G10 G11 G17 to G21 G28 G53 to G59.3 G90 to G94, M2 M6 M30 M82 M83 M104 M106 M107 M109 M207
+// M220 M221 and T, modal, with ; and ( ) comments, E for filament length; what slicers write beside it and
+// the twin has no use for is a list (gcode_words.cpp). Orientation: W I J K, a unit quaternion w + xi + yj +
+// zk, or I J K alone, the tool axis; or the letters of turning axes of a machine that has them, with G43.4
+// and G49. Lengths mm (or inch under G20), angles degrees, feeds mm/min.
 #pragma once
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/units.h"
+#include "toolpath/gcode/gcode_macros.h"
 #include "toolpath/program.h"
 
 namespace understudy::toolpath {
@@ -63,6 +65,8 @@ struct GcodeOptions {
   int b_sign = 1, c_sign = 1;  ///< -1: the program counts that axis the other way round
   /// Commands to pass over with their lines, upper case: "M428", "START_PRINT".
   std::vector<std::string> ignored = {};
+  /// What commands that are unknown here stand for; null: nothing.
+  std::shared_ptr<const GcodeMacros> macros = nullptr;
   /// Where unknown words are counted, whose lines are then passed over; null: they are errors. Not owned.
   std::vector<UnknownWordCount>* unknown = nullptr;
 };

@@ -10,7 +10,7 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr const char* kParameters = "XYZBCEFWIJKRPST";
+constexpr const char* kParameters = "XYZBCEFWIJKLPQRST";
 
 }  // namespace
 

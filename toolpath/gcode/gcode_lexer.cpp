@@ -10,6 +10,8 @@
 namespace understudy::toolpath {
 namespace {
 
+constexpr std::size_t kShown = 40;  // characters of a line in a message
+
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -29,6 +31,8 @@ class LineLexer {
         skip_comment();
       else if (is_letter(c))
         words.push_back(word());
+      else if (c == '#' || c == '[')
+        fail_language("variables and expressions");
       else
         fail(at_, fmt::format("{} starts no word", shown(c)));
     }
@@ -48,6 +52,7 @@ class LineLexer {
   Word word() {
     Word word;
     const std::size_t start = at_;
+    if (upper(line_[at_]) == 'O') fail_language("O words (subroutines, loops, branches)");
     word.letter = upper(line_[at_++]);
     word.column = static_cast<int>(start) + 1;
     const bool apart = at_ >= line_.size() || is_blank(line_[at_]) || line_[at_] == ';' || line_[at_] == '(';
@@ -60,7 +65,7 @@ class LineLexer {
     else if (word.bare)
       at_ = after_letter;
     else
-      word.value = number(start);
+      word.value = begins_expression() ? fail_language("variables and expressions") : number(start);
     word.text = line_.substr(start, at_ - start);
     return word;
   }
@@ -69,6 +74,8 @@ class LineLexer {
     return at_ < line_.size() &&
            (is_digit(line_[at_]) || line_[at_] == '.' || line_[at_] == '-' || line_[at_] == '+');
   }
+  bool begins_expression() const { return at_ < line_.size() && (line_[at_] == '#' || line_[at_] == '['); }
+
   void skip_quoted() {
     const std::size_t close = line_.find('"', at_ + 1);
     if (close == std::string_view::npos) fail(at_, "the text '\"' is not closed on its line");
@@ -115,11 +122,19 @@ class LineLexer {
     return first != std::string_view::npos && digits[first] != '.';
   }
 
+  /// What controllers compute while a program runs.
+  [[noreturn]] double fail_language(const char* what) const {
+    std::string text;
+    for (const char c : line_.substr(0, line_.find_first_of(";(", at_)).substr(0, kShown)) text += plain(c);
+    fail(at_,
+         fmt::format("'{}': {} are not read: let the CAM system write the program without them", text, what));
+  }
+
   [[noreturn]] void fail_number(std::size_t word_start) {
     std::size_t end = at_;
     while (end < line_.size() && !is_blank(line_[end]) && line_[end] != ';' && line_[end] != '(') ++end;
     std::string text;
-    for (const char c : line_.substr(word_start, std::min<std::size_t>(end - word_start, 40)))
+    for (const char c : line_.substr(word_start, std::min<std::size_t>(end - word_start, kShown)))
       text += plain(c);
     fail(word_start, fmt::format("'{}': {} needs a finite decimal number", text, upper(line_[word_start])));
   }

@@ -21,9 +21,6 @@ constexpr double kLargestTurn = 3.6e7 * kDegree;                 // [rad]
 // What is left of a tip that does not move when slides and table move around it: rounding, not a path.
 constexpr double kNoPath = 1e-12;  // [m]
 
-constexpr double kArcTolerance = 2e-6;  // [m], a fiftieth of what a printer places
-constexpr int kMostArcTurns = 100;
-
 constexpr const char* kOrientationWords = "WIJK";
 constexpr const char* kRotaryWords = "BC";
 constexpr const char* kNoSlides = "the machine's file does not say, under gcode.words, which axes X Y Z are";
@@ -74,7 +71,9 @@ void GcodePosition::set_coordinates(const Block& block) {
   if (next == coordinates_) return;
   // A shift of the slides is none of the tip, once the table has turned.
   if (origin_ != shift())
-    block.fail(*word, fmt::format("'{}' while X Y Z are shifted by G92: G28 ends the shift", word->text));
+    block.fail(*word, fmt::format("'{}' while X Y Z are shifted by G92 or a work offset: G28 ends the shift "
+                                  "of G92, G10 L2 P0 X0 Y0 Z0 that of the work offset",
+                                  word->text));
   if (next == Coordinates::machine) {
     require_turns(*word, block, false);
     if (!options_.rotary->slides) block.fail(*word, fmt::format("'{}': {}", word->text, kNoSlides));
@@ -86,6 +85,8 @@ void GcodePosition::set_coordinates(const Block& block) {
 Vec3 GcodePosition::shift() const {
   return coordinates_ == Coordinates::crossing ? Vec3::Zero() : options_.offset_W;
 }
+
+Vec3 GcodePosition::origin() const { return shift() + work_.active(); }
 
 Vec3 GcodePosition::programmed_at(const Pose& X_WT) const {
   const Vec3 p_WT = X_WT.translation();
@@ -114,11 +115,12 @@ void GcodePosition::go_home() {
   X_WT_ = options_.X_WT_home;
   if (options_.rotary) turns_ = {options_.rotary->b_home, options_.rotary->c_home};
   programmed_ = programmed_at(X_WT_);
-  origin_ = shift();
+  origin_ = origin();
   turns_origin_ = {};
 }
 
 bool GcodePosition::go_home(Block& block) {
+  spline_end_.reset();
   const std::string_view axes =
       std::string_view("XYZBC").substr(0, 3 + (options_.rotary ? options_.rotary->letters.size() : 0));
   const auto named = [&](char letter) { return block.take(letter) != nullptr; };
@@ -141,7 +143,7 @@ void GcodePosition::home_some(const Block& block) {
   for (int i = 0; i < 3; ++i) {
     if (block.find("XYZ"[i]) == nullptr) continue;
     p[i] = home[i];
-    origin_[i] = shift()[i];
+    origin_[i] = origin()[i];
   }
   if (block.find('B') != nullptr) turns_->b = options_.rotary->b_home, turns_origin_.b = 0;
   if (block.find('C') != nullptr) turns_->c = options_.rotary->c_home, turns_origin_.c = 0;
@@ -170,7 +172,21 @@ void GcodePosition::rename(Block& block, double unit) {
   rename_turn('C', &RotaryTurns::c, turn_unit(1));
 }
 
+void GcodePosition::select_work_offset(const Block& block) {
+  const Vec3 before = work_.active();
+  work_.select(block);
+  origin_ += work_.active() - before;
+}
+
+void GcodePosition::set_work_offset(Block& block, double unit, bool relative) {
+  const Vec3 before = work_.active();
+  // What the axes would read if no work offset counted: a shift by G92 goes on.
+  work_.set(block, unit, relative, programmed_ - origin_ + before);
+  origin_ += work_.active() - before;
+}
+
 void GcodePosition::move(Block& block, double unit, bool relative) {
+  spline_end_.reset();
   if (block.find_any("XYZWIJKBC") == nullptr) return;
   refuse_two_orientations(block);
   read_lengths(block, unit, relative);
@@ -189,58 +205,6 @@ void GcodePosition::move(Block& block, double unit, bool relative) {
   }
 }
 
-std::vector<Vec3> GcodePosition::move_along_arc(Block& block, double unit, bool relative, int normal,
-                                                bool clockwise) {
-  const Word* other = block.find_any("WBC");
-  if (other != nullptr)
-    block.fail(*other, fmt::format("'{}': an arc keeps the tool's orientation", other->text));
-  if (coordinates_ != Coordinates::tip)
-    block.fail("an arc needs X Y Z of the tip (G43.4): here they are slides");
-  Arc arc;
-  arc.from = programmed_;
-  arc.normal = normal;
-  arc.clockwise = clockwise;
-  read_lengths(block, unit, relative);
-  arc.to = programmed_;
-  if (const auto turns = block.extract('P')) {
-    if (!(turns->value >= 1 && turns->value <= kMostArcTurns && turns->value == std::floor(turns->value)))
-      block.fail(*turns,
-                 fmt::format("'{}': a whole number of turns from 1 to {}", turns->text, kMostArcTurns));
-    arc.turns = turns->value;
-  }
-  read_centre(block, unit, arc);
-  X_WT_ = make_pose(Mat3(X_WT_.linear()), programmed_);
-  return arc_points(arc, kArcTolerance);
-}
-
-/// I J K count from the start; those across the plane's normal only.
-void GcodePosition::read_centre(Block& block, double unit, Arc& arc) const {
-  const auto radius = block.extract('R');
-  bool offsets = false;
-  arc.centre = arc.from;
-  for (int i = 0; i < 3; ++i) {
-    const auto word = block.extract("IJK"[i]);
-    if (!word) continue;
-    if (i == arc.normal || radius)
-      block.fail(*word,
-                 fmt::format("'{}': an arc has R or the centre's two offsets in its plane", word->text));
-    arc.centre[i] += length_of(block, *word, unit);
-    offsets = true;
-  }
-  if (radius) {
-    const auto centre = arc_centre(arc, length_of(block, *radius, unit));
-    if (!centre)
-      block.fail(*radius, fmt::format("'{}': no arc of this radius joins points {:.6g} mm apart",
-                                      radius->text, to_mm((arc.to - arc.from).norm())));
-    arc.centre = *centre;
-  } else if (!offsets) {
-    block.fail("an arc without a centre: give its offsets I J K from the start, or R");
-  } else if (const auto mismatch = arc_mismatch(arc)) {
-    block.fail(fmt::format("no arc: its ends differ by {:.6g} mm in their distance from the centre",
-                           to_mm(*mismatch)));
-  }
-}
-
 void GcodePosition::refuse_two_orientations(const Block& block) const {
   const Word* rotary = block.find_any(kRotaryWords);
   const Word* vector = block.find_any(kOrientationWords);
@@ -253,11 +217,12 @@ void GcodePosition::refuse_two_orientations(const Block& block) const {
 }
 
 void GcodePosition::read_lengths(Block& block, double unit, bool relative) {
+  const bool in_machine = block.find(Command::machine_position) != nullptr;
   for (int i = 0; i < 3; ++i) {
     const Word* word = block.take("XYZ"[i]);
     if (word == nullptr) continue;
     double& p = programmed_[i];
-    p = (relative ? p : origin_[i]) + length_of(block, *word, unit);
+    p = (in_machine ? shift()[i] : relative ? p : origin_[i]) + length_of(block, *word, unit);
     if (std::abs(p) > kLargestCoordinate)
       block.fail(*word, fmt::format("'{}' leads to {:.6g} mm, beyond {:.6g} mm", word->text, to_mm(p),
                                     to_mm(kLargestCoordinate)));
@@ -269,12 +234,14 @@ bool GcodePosition::read_turns(Block& block, bool relative) {
   const Word* b = block.take('B');
   const Word* c = block.take('C');
   if (b == nullptr && c == nullptr) return false;
+  const bool in_machine = block.find(Command::machine_position) != nullptr;
+  relative = relative && !in_machine;
   require_turns(b != nullptr ? *b : *c, block,
                 !relative && b != nullptr && (c != nullptr || options_.rotary->letters.size() == 1));
   RotaryTurns turns = turns_.value_or(RotaryTurns{});
   const auto read = [&](const Word* word, double RotaryTurns::*axis, double unit_of_turn) {
     if (word == nullptr) return;
-    const double before = relative ? turns.*axis : turns_origin_.*axis;
+    const double before = in_machine ? 0 : relative ? turns.*axis : turns_origin_.*axis;
     turns.*axis = before + unit_of_turn * word->value;
     if (!(std::abs(turns.*axis) <= kLargestTurn))
       block.fail(*word, fmt::format("'{}' leads to {:.10g} deg, beyond {:.10g} deg", word->text,

@@ -9,6 +9,7 @@
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/gcode_arc.h"
 #include "toolpath/gcode/gcode_block.h"
+#include "toolpath/gcode/gcode_work_offsets.h"
 
 namespace understudy::toolpath {
 
@@ -33,24 +34,32 @@ class GcodePosition {
   bool go_home(Block& block);
   /// G92: the present position is called so from now on.
   void rename(Block& block, double unit);
-  /// Position and orientation of a G0 or G1.
+  /// G54 to G59.3: which work offset counts from here on; the tool stays where it is.
+  void select_work_offset(const Block& block);
+  /// G10 L2 and L20.
+  void set_work_offset(Block& block, double unit, bool relative);
+  /// Position and orientation of a G0 or G1; with G53 in machine coordinates.
   void move(Block& block, double unit, bool relative);
   /// Position of a G2 or G3 in the plane across axis `normal`: where its chords end, in W; the orientation
   /// stays.
   std::vector<Vec3> move_along_arc(Block& block, double unit, bool relative, int normal, bool clockwise);
+  /// Position of a G5, likewise, in the plane XY.
+  std::vector<Vec3> move_along_spline(Block& block, double unit, bool relative);
 
  private:
   using Coordinates = RotaryWords::Coordinates;
 
   void go_home();
   void home_some(const Block& block);
-  Vec3 shift() const;  // origin_ without G92
+  Vec3 shift() const;   // of the whole program in W
+  Vec3 origin() const;  // origin_ without G92
   Vec3 programmed_at(const Pose& X_WT) const;
   Pose pose_at_programmed() const;
   Pose crossing() const;
   double turn_unit(int word) const;
   void refuse_two_orientations(const Block& block) const;
   void read_lengths(Block& block, double unit, bool relative);
+  void refuse_turns_on_curve(const Block& block) const;
   void read_centre(Block& block, double unit, Arc& arc) const;
   bool read_turns(Block& block, bool relative);
   std::optional<Quat> read_orientation(Block& block) const;
@@ -59,9 +68,11 @@ class GcodePosition {
   GcodeOptions options_;
   Pose X_WT_;  // where the tool is
   Coordinates coordinates_;
-  Vec3 programmed_;                   // [m], what X Y Z are a reading of: p_WT, or slides
-  Vec3 origin_ = Vec3::Zero();        // [m], reading + origin = programmed (G92)
+  Vec3 programmed_;             // [m], what X Y Z are a reading of: p_WT, or slides
+  Vec3 origin_ = Vec3::Zero();  // [m], reading + origin = programmed (G54 to G59.3, G92)
+  WorkOffsets work_;
   std::optional<RotaryTurns> turns_;  // of the axes; nothing after W I J K or I J K
+  std::optional<Vec2> spline_end_;    // [m], from the end of the G5 just before, along its tangent
   RotaryTurns turns_origin_;          // reading + origin = turns (G92)
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <optional>
 #include <string_view>
 
@@ -18,6 +19,8 @@ namespace understudy::toolpath {
 namespace {
 
 constexpr std::size_t kLineMax = 65'536;  // [bytes]; docs/limits.md
+constexpr std::size_t kDeepestCall = 20;
+constexpr int kMostMacroLines = 100'000;  // docs/limits.md
 
 /// Up to a line feed, a carriage return, or both; a comment ends there, too.
 std::string_view take_line(std::string_view& rest) {
@@ -109,40 +112,103 @@ Block block_of(const std::string& command, std::string_view text, const Place& p
   return {*switching, Word{command[0], 0, text, place.column}, file, place.line, letters};
 }
 
+/// A command of this reader's keeps its meaning, whatever a macro makes of it.
+bool has_meaning(const std::string& command) {
+  if (command.size() < 2 || std::isdigit(static_cast<unsigned char>(command[1])) == 0) return false;
+  const double number = std::strtod(command.c_str() + 1, nullptr);
+  return meaning_of(command[0], number) != nullptr || without_effect(command[0], number) != nullptr;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, const GcodeOptions& options, std::vector<Step>& steps)
+      : file_(file), options_(options), letters_(letters_of(options)), state_(options), steps_(steps) {}
+
+  void read(std::string_view words, int line) {
+    try {
+      run(words, line);
+    } catch (const InputError&) {
+      if (!options_.unknown) unknown_.fail_if_any();  // this may come of a line that was not read
+      throw;
+    }
+  }
+
+  void finish() {
+    if (options_.unknown)
+      *options_.unknown = unknown_.counts();
+    else
+      unknown_.fail_if_any();
+  }
+
+ private:
+  void run(std::string_view words, int line) {
+    if (words.size() > kLineMax)
+      throw InputError(Place{file_, line},
+                       fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
+    if (is_passed_over(words, options_)) return;
+    try {
+      if (options_.macros != nullptr && call_macro(words, line)) return;
+      const std::string word = command_in_words(words);
+      Block block = word.empty() ? Block(lex_line(words, file_, line), file_, line, letters_)
+                                 : block_of(word, words, {file_, line, column_of(words)}, file_, letters_);
+      state_.run(block, steps_);
+    } catch (const UnknownWord& error) {
+      unknown_.add(error);
+    }
+  }
+
+  /// Runs the lines of the macro that this line calls, as if they stood here. False: it calls none.
+  bool call_macro(std::string_view words, int line) {
+    const std::string command = first_command(words);
+    if (!options_.macros->has(command) || has_meaning(command) || letters_.switching(command)) return false;
+    const std::string& macros_file = options_.macros->file();
+    if (std::ranges::count(calls_, command) > 0)
+      throw InputError(Place{file_, line}, fmt::format("macro {} calls itself ({})", command, macros_file));
+    if (calls_.size() == kDeepestCall)
+      throw InputError(Place{file_, line}, fmt::format("macros are called {} deep", kDeepestCall + 1));
+    calls_.push_back(command);
+    std::string where = macros_file;
+    try {
+      for (const MacroLine& macro_line : options_.macros->expand(command, words)) {
+        where = to_string(Place{macros_file, macro_line.number});
+        if (++macro_lines_ > kMostMacroLines)
+          throw InputError(Place{file_, line},
+                           fmt::format("macros make more than {} lines", kMostMacroLines));
+        run(macro_line.text, line);
+      }
+    } catch (const InputError& error) {
+      const bool here = error.place().file == file_;
+      const std::string message = here ? std::string(error.what()).substr(to_string(error.place()).size() + 2)
+                                       : std::string(error.what());
+      throw InputError(Place{file_, line},
+                       here ? fmt::format("in {} ({}): {}", command, where, message) : message);
+    }
+    calls_.pop_back();
+    return true;
+  }
+
+  const std::string& file_;
+  const GcodeOptions& options_;
+  const Letters letters_;
+  GcodeState state_;
+  std::vector<Step>& steps_;
+  UnknownWords unknown_;
+  std::vector<std::string> calls_;  // of macros, the outermost first
+  int macro_lines_ = 0;
+};
+
 }  // namespace
 
 Program parse_gcode(const std::string& text, const std::string& file, const GcodeOptions& options) {
   Program program;
   program.file = file;
   program.sha256 = sha256_hex(text);
-  GcodeState state(options);
-  const Letters letters = letters_of(options);
   program.steps.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
-  UnknownWords unknown;
+  Reader reader(file, options, program.steps);
   std::string_view rest = text;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // byte order mark of some editors
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::string_view words = take_line(rest);
-    if (words.size() > kLineMax)
-      throw InputError(Place{file, line},
-                       fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
-    if (is_passed_over(words, options)) continue;
-    try {
-      const std::string word = command_in_words(words);
-      Block block = word.empty() ? Block(lex_line(words, file, line), file, line, letters)
-                                 : block_of(word, words, {file, line, column_of(words)}, file, letters);
-      state.run(block, program.steps);
-    } catch (const UnknownWord& error) {
-      unknown.add(error);
-    } catch (const InputError&) {
-      if (!options.unknown) unknown.fail_if_any();  // this may come of a line that was not read
-      throw;
-    }
-  }
-  if (options.unknown)
-    *options.unknown = unknown.counts();
-  else
-    unknown.fail_if_any();
+  for (int line = 1; !rest.empty(); ++line) reader.read(take_line(rest), line);
+  reader.finish();
   for (const Step& step : program.steps)
     if (moves(step)) return program;
   throw InputError(Place{file},

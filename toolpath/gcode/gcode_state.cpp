@@ -47,6 +47,7 @@ void GcodeState::set_modes(const Block& block) {
   if (block.find(Command::linear) != nullptr) motion_ = Motion::linear;
   if (block.find(Command::clockwise_arc) != nullptr) motion_ = Motion::clockwise_arc;
   if (block.find(Command::counterclockwise_arc) != nullptr) motion_ = Motion::counterclockwise_arc;
+  if (block.find(Command::spline) != nullptr) motion_ = Motion::spline;
   if (block.find(Command::plane_xy) != nullptr) plane_normal_ = 2;
   if (block.find(Command::plane_zx) != nullptr) plane_normal_ = 1;
   if (block.find(Command::plane_yz) != nullptr) plane_normal_ = 0;
@@ -55,6 +56,7 @@ void GcodeState::set_modes(const Block& block) {
   if (block.find(Command::inverse_time) != nullptr) feed_.reset();
   if (block.find(Command::per_minute) != nullptr) inverse_time_ = false;
   position_.set_coordinates(block);
+  position_.select_work_offset(block);
 }
 
 void GcodeState::set_feed(Block& block) {
@@ -72,7 +74,7 @@ void GcodeState::set_feed(Block& block) {
     feed_ = feed;
     return;
   }
-  const bool moves = ((motion_ == Motion::linear || is_arc()) && block.find_any(kMotionWords) != nullptr) ||
+  const bool moves = ((motion_ == Motion::linear || is_curve()) && block.find_any(kMotionWords) != nullptr) ||
                      (motion_ == Motion::rapid && block.find('E') != nullptr);
   if (!moves)
     block.fail(*word, fmt::format("'{}': under G93 an F belongs to the G1 move of its line", word->text));
@@ -172,8 +174,13 @@ void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
   if (block.find(Command::retract) != nullptr || block.find(Command::unretract) != nullptr)
     return retract(block, steps);
   const Word* word = block.find_any(kMotionWords);
+  const Word* in_machine = block.find(Command::machine_position);
+  if (in_machine != nullptr && block.find_any("XYZBC") == nullptr)
+    block.fail(*in_machine, fmt::format("'{}' needs X Y Z {}of a G0 or G1 on its line", in_machine->text,
+                                        position_.rotary_letters()));
   if (word != nullptr && motion_ == Motion::none)
     block.fail(*word, fmt::format("'{}' before any G0 or G1", word->text));
+  if (word != nullptr && motion_ == Motion::spline) return move_along_spline(block, steps);
   if (word != nullptr) return is_arc() ? move_along_arc(block, steps) : move(block, steps);
   const Word* code = block.find(motion_ == Motion::rapid ? Command::rapid : Command::linear);
   // A lone "G1 F1500" is how slicers set the feed; a lone "G1" is a line that lost its words.
@@ -199,8 +206,9 @@ void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
 void GcodeState::retract(Block& block, std::vector<Step>& steps) {
   const bool back = block.find(Command::unretract) != nullptr;
   const Word& code = *block.find(back ? Command::unretract : Command::retract);
+  if (!back && block.find('L') != nullptr) return position_.set_work_offset(block, unit_, relative_);
   if (!block.alone(code))
-    block.fail(code, fmt::format("'{}' with other words sets offsets or tables: not read", code.text));
+    block.fail(code, fmt::format("'{}' is alone on its line, or G10 L2 sets a work offset", code.text));
   if (!retraction_)
     block.fail(code, fmt::format("'{}' retracts by a length that the program does not say: "
                                  "add M207 with S (mm) and F (mm/min) before it",
@@ -242,30 +250,13 @@ void GcodeState::move(Block& block, std::vector<Step>& steps) {
   steps.push_back(next);
 }
 
-/// Equal chords: of filament and time each takes its share.
-void GcodeState::move_along_arc(Block& block, std::vector<Step>& steps) {
-  const std::vector<Vec3> ends =
-      position_.move_along_arc(block, unit_, relative_, plane_normal_, motion_ == Motion::clockwise_arc);
-  Step chord = step(StepKind::move, block.line());
-  chord.filament = fed_filament(block);
-  if (chord.filament > 0) chord.kind = StepKind::print;
-  set_pace(block, chord);
-  const auto count = static_cast<double>(ends.size());
-  chord.filament /= count;
-  chord.duration /= count;
-  for (const Vec3& end_W : ends) {
-    chord.X_WT.translation() = end_W;
-    steps.push_back(chord);
-  }
-}
-
 void GcodeState::set_pace(const Block& block, Step& step) const {
   if (inverse_time_ && !duration_) block.fail("G93 needs F, one over the move's minutes, on every G1 line");
   if (!inverse_time_ && !feed_)
     block.fail(fmt::format("{} without a feed: no F on this line or before it", motion_ == Motion::rapid
                                                                                     ? "G0 with E"
-                                                                                : is_arc() ? "an arc"
-                                                                                           : "G1"));
+                                                                                : is_curve() ? "an arc"
+                                                                                             : "G1"));
   step.duration = duration_.value_or(0) / speed_;
   step.feed = inverse_time_ ? 0 : speed_ * *feed_;
 }

@@ -20,7 +20,7 @@ class GcodeState {
   void run(Block& block, std::vector<Step>& steps);
 
  private:
-  enum class Motion { none, rapid, linear, clockwise_arc, counterclockwise_arc };
+  enum class Motion { none, rapid, linear, clockwise_arc, counterclockwise_arc, spline };
 
   void set_modes(const Block& block);
   void set_feed(Block& block);
@@ -37,7 +37,10 @@ class GcodeState {
   void set_position(Block& block);
   void move(Block& block, std::vector<Step>& steps);
   void move_along_arc(Block& block, std::vector<Step>& steps);
+  void move_along_spline(Block& block, std::vector<Step>& steps);
+  Step chord(Block& block);
   bool is_arc() const { return motion_ == Motion::clockwise_arc || motion_ == Motion::counterclockwise_arc; }
+  bool is_curve() const { return is_arc() || motion_ == Motion::spline; }
   void set_pace(const Block& block, Step& step) const;
 
   double fed_filament(Block& block);

@@ -13,6 +13,7 @@ constexpr Meaning kMeanings[] = {
     {'G', 2, Command::clockwise_arc, Group::motion},
     {'G', 3, Command::counterclockwise_arc, Group::motion},
     {'G', 4, Command::dwell, Group::motion},
+    {'G', 5, Command::spline, Group::motion},
     {'G', 10, Command::retract, Group::motion},
     {'G', 11, Command::unretract, Group::motion},
     {'G', 17, Command::plane_xy, Group::plane},
@@ -23,6 +24,16 @@ constexpr Meaning kMeanings[] = {
     {'G', 28, Command::home, Group::motion},
     {'G', 43.4, Command::tip_coordinates, Group::coordinates},
     {'G', 49, Command::machine_coordinates, Group::coordinates},
+    {'G', 53, Command::machine_position, Group::machine_position},
+    {'G', 54, Command::work_offset, Group::work_offset},
+    {'G', 55, Command::work_offset, Group::work_offset},
+    {'G', 56, Command::work_offset, Group::work_offset},
+    {'G', 57, Command::work_offset, Group::work_offset},
+    {'G', 58, Command::work_offset, Group::work_offset},
+    {'G', 59, Command::work_offset, Group::work_offset},
+    {'G', 59.1, Command::work_offset, Group::work_offset},
+    {'G', 59.2, Command::work_offset, Group::work_offset},
+    {'G', 59.3, Command::work_offset, Group::work_offset},
     {'G', 90, Command::absolute, Group::distance},
     {'G', 91, Command::relative, Group::distance},
     {'G', 92, Command::set_position, Group::motion},
@@ -45,7 +56,6 @@ constexpr Meaning kMeanings[] = {
 constexpr WithoutEffect kWithoutEffect[] = {
     {'G', 29, "ABCEFHIJKLNOPQRSTUVWXYZ"},  // levelling of the bed
     {'G', 40, ""},                         // cutter compensation off
-    {'G', 54, ""},                         // the first origin, which is the only one
     {'G', 61, ""},                         // exact path
     {'G', 64, "PQ"},                       // blended path
     {'G', 80, "ABCEFHIJKLNOPQRSTUVWXYZ"},  // canned cycles off; Prusa's levelling
@@ -116,6 +126,24 @@ std::string_view without_number(std::string_view line) {
   return trimmed(line.substr(static_cast<std::size_t>(end - line.begin())));
 }
 
+/// O1000, alone: the name of a program on some controllers.
+bool is_program_number(std::string_view line) {
+  if (line.size() < 2 || upper(line[0]) != 'O' || !is_digit(line[1])) return false;
+  const auto end = std::find_if_not(line.begin() + 1, line.end(), is_digit);
+  line = trimmed(line.substr(static_cast<std::size_t>(end - line.begin())));
+  return line.empty() || line[0] == ';' || (line[0] == '(' && line.find(')') == line.size() - 1);
+}
+
+/// Z=0.0 MOVE=0: nothing but zeros.
+bool sets_no_offset(std::string_view parameters) {
+  const auto zero_or_name = [](char c) {
+    return is_letter(c) || std::string_view("_= \t.0").find(c) != std::string_view::npos;
+  };
+  parameters = parameters.substr(0, parameters.find_first_of(";#"));
+  return parameters.find('0') != std::string_view::npos &&
+         std::all_of(parameters.begin(), parameters.end(), zero_or_name);
+}
+
 bool begins_with_command(std::string_view line, std::string_view number) {
   return line.size() > number.size() && upper(line[0]) == 'M' && line.substr(1).starts_with(number) &&
          (line.size() == number.size() + 1 ||
@@ -145,10 +173,11 @@ const WithoutEffect* without_effect(char letter, double number) {
 
 bool is_line_without_effect(std::string_view line) {
   line = without_number(line);
-  if (line == "%") return true;
+  if (line == "%" || is_program_number(line)) return true;
   for (const std::string_view text : {"117", "118", "486"})
     if (begins_with_command(line, text)) return true;
   const std::string word = command_in_words(line);
+  if (word == "SET_GCODE_OFFSET") return sets_no_offset(line.substr(word.size()));
   return !word.empty() && std::any_of(std::begin(kWordsWithoutEffect), std::end(kWordsWithoutEffect),
                                       [&](std::string_view known) { return word.starts_with(known); });
 }

@@ -13,6 +13,7 @@ enum class Command {
   clockwise_arc,         // G2
   counterclockwise_arc,  // G3
   dwell,                 // G4
+  spline,                // G5
   retract,               // G10
   unretract,             // G11
   plane_xy,              // G17
@@ -23,6 +24,8 @@ enum class Command {
   home,                  // G28
   tip_coordinates,       // G43.4
   machine_coordinates,   // G49
+  machine_position,      // G53
+  work_offset,           // G54 to G59.3
   absolute,              // G90
   relative,              // G91
   set_position,          // G92
@@ -42,7 +45,19 @@ enum class Command {
 };
 
 /// Commands of one group exclude each other on a line (the modal groups of RS-274, and the S word's users).
-enum class Group { motion, plane, units, coordinates, distance, feed_mode, extrusion, process, end };
+enum class Group {
+  motion,
+  plane,
+  units,
+  coordinates,
+  machine_position,
+  work_offset,
+  distance,
+  feed_mode,
+  extrusion,
+  process,
+  end
+};
 
 struct Meaning {
   char letter;
@@ -64,9 +79,9 @@ struct WithoutEffect {
 /// Null: it has an effect, or is not known.
 const WithoutEffect* without_effect(char letter, double number);
 
-/// Whether the line is one of those that are no row of letters and numbers and have no effect: a `%`, a text
-/// for a display (M117, M118) or a name for a part (M486), a firmware's command in words such as
-/// EXCLUDE_OBJECT_START.
+/// Whether the line is one of those that are no row of letters and numbers and have no effect: a `%`, the
+/// number of a program (O1000), a text for a display (M117, M118) or a name for a part (M486), a firmware's
+/// command in words such as EXCLUDE_OBJECT_START.
 bool is_line_without_effect(std::string_view line);
 
 /// The first word of a line that is a firmware's command in words (two letters or more), upper case; empty

@@ -45,6 +45,17 @@ TEST_F(Inspect, AProgramOfAnotherTablesCornerIsPutOnThisOne) {
           " --machine hexapod --place -110,-105,0 --ignore START_PRINT,M428 --temperature 215 --out out");
 }
 
+TEST_F(Inspect, MacrosAreReadAndStayInTheCommand) {
+  const std::string program = file("M83\nSTART_PRINT T=215\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n");
+  const std::string macros = (folder / "printer.cfg").string();
+  write_file(macros, "[gcode_macro START_PRINT]\ngcode: M109 S{params.T}\n");
+  const Inspection found = inspect(program, "hexapod", macros);
+  EXPECT_TRUE(found.unknown.empty());
+  EXPECT_NEAR(found.summary.temperatures.at(0), 215 + kCelsiusZero, 1e-9);
+  EXPECT_EQ(rehearse_command(found.request, "out"),
+            "understudy rehearse " + program + " --machine hexapod --macros " + macros + " --out out");
+}
+
 TEST_F(Inspect, WhatNeedsNothingIsRehearsedAsItIs) {
   const std::string program = file("M104 S200\nM83\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n");
   EXPECT_EQ(rehearse_command(inspect(program, "arm").request, "p"),

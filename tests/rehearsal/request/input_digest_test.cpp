@@ -65,6 +65,7 @@ TEST_F(InputDigest, EveryInputCounts) {
       [](auto& r) { r.dialect.c_sign = -1; },
       [](auto& r) { r.dialect.coordinates = "machine"; },
       [](auto& r) { r.dialect.ignored = {"G29"}; },
+      [](auto& r) { r.dialect.macros = r.program; },
       [](auto& r) { r.dialect.temperature_c = 200; },
       [](auto& r) { r.surface.intended = "bottle"; },
       [](auto& r) { r.surface.profile_mm[3] = 2; },

@@ -61,7 +61,7 @@ TEST(GcodeBlock, TwoCommandsOfOneGroupExcludeEachOther) {
 
 TEST(GcodeBlock, ALetterGivenTwiceOrUnknownIsRefusedWithItsPlace) {
   EXPECT_THAT(complaint("G1 X1 X2"), HasSubstr("p.gcode:4:7"));
-  EXPECT_THAT(complaint("G5 X1"), HasSubstr("p.gcode:4:1"));
+  EXPECT_THAT(complaint("G6 X1"), HasSubstr("p.gcode:4:1"));
   EXPECT_THAT(complaint("G1 H1"), HasSubstr("p.gcode:4:4"));
 }
 

@@ -65,7 +65,9 @@ TEST(GcodeLexer, ALetterAloneIsBareAndATextIsQuoted) {
 }
 
 TEST(GcodeLexer, WhatIsNoWordIsRefusedWithItsPlace) {
-  EXPECT_THAT(complaint("G1 #2"), HasSubstr("p.gcode:7:4: '#' starts no word"));
+  EXPECT_THAT(complaint("G1 #2"), HasSubstr("p.gcode:7:4: 'G1 #2': variables and expressions are not read"));
+  EXPECT_THAT(complaint("G1 X[1+2] ; no"), HasSubstr("p.gcode:7:5: 'G1 X[1+2] ': variables and expr"));
+  EXPECT_THAT(complaint("o<prime> call"), HasSubstr("p.gcode:7:1: 'o<prime> call': O words (subroutines"));
   EXPECT_THAT(complaint("G1 X1.2.3"), HasSubstr("p.gcode:7:4: 'X1.2.3': X needs a finite decimal number"));
   EXPECT_THAT(complaint("G1 Xa"), HasSubstr("X needs a finite decimal number"));
   EXPECT_THAT(complaint("G1 X" + std::string(400, '9')), HasSubstr("X needs a finite decimal number"));

@@ -172,7 +172,7 @@ TEST_P(BadGcode, IsOneLineWithPlaceWordAndLimit) {
 INSTANTIATE_TEST_SUITE_P(
     Words, BadGcode,
     ::testing::Values(
-        Bad{"G0 X1\n G5 X1", ":2:2", "unknown word 'G5'"}, Bad{"G0 X1 Q5", ":1:7", "unknown word 'Q5'"},
+        Bad{"G0 X1\n G6 X1", ":2:2", "unknown word 'G6'"}, Bad{"G0 X1 H5", ":1:7", "unknown word 'H5'"},
         Bad{"G92.1", ":1:1", "unknown word 'G92.1'"},
         Bad{"G0 X1\nhello there", ":2:1", "unknown word 'HELLO'"},
         Bad{"T2", ":1:1", "'T2': the machine has one extruder"}, Bad{"G0 X1 N5", ":1:7", "unknown word 'N5'"},
