@@ -182,6 +182,7 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
   if (options.machine) result.estimated = unknowns.estimated;
   const Index machine = options.machine ? likelihood.prior().size() : 0;
   result.covariance = after.covariance.topLeftCorner(machine, machine);
+  result.changes = after.moved.head(machine);
   double by_prior = 0;  // unknowns that the prior tells
   for (Index k = 0; k < machine; ++k) {
     const double share = after.covariance(k, k) / std::pow(likelihood.prior()[k], 2);

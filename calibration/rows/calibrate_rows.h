@@ -29,6 +29,7 @@ struct FoundNumber {
 /// Of the base class: `estimated` are the machine's parameters alone and `covariance` is theirs; `residuals`
 /// are empty.
 struct RowCalibration : ChainCalibration {
+  Eigen::VectorXd changes;  ///< of `estimated`, from the drawing [m] or [rad]
   Surroundings around;
   Surroundings around_nominal;  ///< as the nominal machine has them
   std::vector<FoundNumber> found;

@@ -118,6 +118,7 @@ RowFit RowLikelihood::fit(const RowState& start, const AddedNoise& noise, bool m
                                .solve(MatrixXd::Identity(unknowns, unknowns));
   found.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
   found.covariance = 0.5 * (found.covariance + found.covariance.transpose()).eval();
+  found.moved = by;
   found.chi_square = at.e.squaredNorm();
   found.error = at.error;
   // Of whitened rows, times what they were divided by: the model's own variance in SI.

@@ -20,6 +20,7 @@ struct RowFit {
   double chi_square = 0;       ///< by the told and added noise
   Eigen::VectorXd error;       ///< of every equation, in SI
   Eigen::VectorXd fitted;      ///< variance of the model's value in every equation
+  Eigen::VectorXd moved;       ///< of the unknowns, from the start
   Eigen::MatrixXd covariance;  ///< of the unknowns: machine first, then surroundings
 };
 

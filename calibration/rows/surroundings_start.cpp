@@ -29,18 +29,25 @@ class Starter {
   }
 
   std::vector<Surroundings> run() {
-    turns_by_orientations();
+    const Surroundings known = at_;
     std::vector<Surroundings> found;
-    for (const bool linear : {true, false}) {
-      const Surroundings before = at_;
-      turns_by_positions(linear);
-      positions();
-      points();
-      anchors();
-      planes();
-      found.push_back(at_);
-      at_ = before;
-    }
+    // A tool that hardly turns leaves the frame open in its orientations, and positions tell it.
+    for (const bool orientations_first : {true, false})
+      for (const bool linear : {true, false}) {
+        at_ = known;
+        frame_turned_.clear();
+        target_turned_.clear();
+        for (const Slot& slot : layout_.frames) frame_turned_.push_back(slot.known);
+        for (const Slot& slot : layout_.targets) target_turned_.push_back(slot.known);
+        if (orientations_first) turns_by_orientations();
+        turns_by_positions(linear);
+        if (!orientations_first) turns_by_orientations();
+        positions();
+        points();
+        anchors();
+        planes();
+        found.push_back(at_);
+      }
     return found;
   }
 
@@ -68,8 +75,6 @@ class Starter {
 
 /// Frame by frame and target by target, those that have the most rows in common with what is known first.
 void Starter::turns_by_orientations() {
-  for (const Slot& slot : layout_.frames) frame_turned_.push_back(slot.known);
-  for (const Slot& slot : layout_.targets) target_turned_.push_back(slot.known);
   for (bool more = true; more;) {
     more = false;
     std::size_t best = problem_.rows.size();
@@ -104,14 +109,17 @@ void Starter::turns_by_orientations() {
   }
 }
 
-/// Frames that only positions tell: with Q = R_SM, p_S + R t = Q p_M + c is linear in Q, c and the targets'
+/// Frames by positions: with Q = R_SM, p_S + R t = Q p_M + c is linear in Q, c and the targets'
 /// t, which need not make Q a rotation; or Q by the tips alone, as if the targets were there.
 void Starter::turns_by_positions(bool linear) {
   for (std::size_t f = 0; f < layout_.frames.size(); ++f) {
     if (frame_turned_[f]) continue;
     std::vector<std::size_t> rows;
     for (std::size_t j = 0; j < problem_.rows.size(); ++j)
-      if (row(j).kind == RowKind::position && frame(j) == f) rows.push_back(j);
+      if ((row(j).kind == RowKind::position || row(j).kind == RowKind::pose) && frame(j) == f)
+        rows.push_back(j);
+    if (rows.empty()) continue;
+    frame_turned_[f] = true;
     Vec3 middle_M = Vec3::Zero(), middle_S = Vec3::Zero();
     for (const std::size_t j : rows) {
       middle_M += row(j).X_MG.translation() / static_cast<double>(rows.size());
