@@ -1,10 +1,12 @@
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "calibration/machine/calibrate_machine.h"
+#include "calibration/machine/calibrate_measured_rows.h"
 #include "cli/calibrate_bundle.h"
 #include "cli/calibration_output.h"
 #include "cli/command.h"
@@ -19,12 +21,42 @@ namespace {
 struct CalibrateCall {
   calibration::CalibrationRequest request;
   std::vector<double> noise;
-  std::string output, report;
+  std::vector<std::string> measurements, compared;
+  std::string columns, output, report, urdf;
 };
 
+/// Tables with a map of their columns, or with positions or orientations alone; nothing for whole poses.
+std::optional<calibration::RowsRequest> rows_request(const CalibrateCall& call) {
+  calibration::RowsRequest request;
+  if (!call.columns.empty()) {
+    request.map = calibration::read_column_map(call.columns);
+  } else {
+    if (call.measurements.empty())
+      throw InputError("give a table of measurements, or --columns with a map that names its files");
+    const auto map = calibration::map_of_partial_poses(call.measurements.front(), call.request.machine);
+    if (!map && (call.measurements.size() > 1 || !call.compared.empty()))
+      throw InputError("several tables, and --compare, need --columns (docs/measurements.md)");
+    if (!map) return std::nullopt;
+    request.map = *map;
+  }
+  const std::string& estimator = call.request.estimator;
+  if (!call.request.plugin.empty() || (!estimator.empty() && estimator != "maximum_likelihood"))
+    throw InputError(
+        "--plugin, and --estimator other than maximum_likelihood, take whole poses in the columns of "
+        "docs/calibration-data.md");
+  request.measurements = call.measurements;
+  request.compared = call.compared;
+  request.machine = call.request.machine;
+  request.noise = noise_of(call.noise);
+  request.command = command_line();
+  return request;
+}
+
 int run_calibrate(const CalibrateCall& call) {
-  CalibrationOutput output(call.output, call.report);
+  CalibrationOutput output(call.output, call.report, call.urdf);
+  if (const auto rows = rows_request(call)) return output.write(calibration::calibrate_measured_rows(*rows));
   calibration::CalibrationRequest request = call.request;
+  request.measurements = call.measurements.front();
   request.noise = noise_of(call.noise);
   request.command = command_line();
   warn_of_box(!request.plugin.empty());
@@ -36,8 +68,13 @@ int run_calibrate(const CalibrateCall& call) {
 void add_calibrate(CLI::App& app, Action& action) {
   auto call = std::make_shared<CalibrateCall>();
   auto* command = app.add_subcommand("calibrate", "Find a machine's parameters from measured poses");
-  auto* measurements = command->add_option("measurements", call->request.measurements,
-                                           "CSV of measured poses, required (docs/calibration-data.md)");
+  auto* measurements = command->add_option(
+      "measurements", call->measurements,
+      "CSV of measured poses (docs/calibration-data.md); with --columns tables of any kind");
+  command->add_option("--columns", call->columns,
+                      "map of the columns of other tables, a .yaml (docs/measurements.md)");
+  command->add_option("--compare", call->compared,
+                      "tables that are not fitted, only compared with the result");
   add_machine_option(*command, call->request.machine);
   command->add_option(
       "--estimator", call->request.estimator,
@@ -56,6 +93,7 @@ void add_calibrate(CLI::App& app, Action& action) {
       ->expected(2);
   auto* output = command->add_option("-o,--output", call->output, "calibrated machine file, a .yaml");
   output->required();
+  command->add_option("--urdf-out", call->urdf, "also write the calibrated machine as a URDF (open chains)");
   command->add_option("--report", call->report, "folder for report.html and summary.json");
   auto* gap_sensor = add_calibrate_gap_sensor(*command, action);
   auto* bundle = add_calibrate_bundle(*command, action);
@@ -64,7 +102,8 @@ void add_calibrate(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     if (gap_sensor->parsed() || bundle->parsed()) return;
     // Not by required(): CLI11 would take the sub-command's name for the file.
-    if (measurements->count() == 0) throw CLI::RequiredError(measurements->get_name());
+    if (measurements->count() == 0 && call->columns.empty())
+      throw CLI::RequiredError(measurements->get_name());
     action = [=] { return run_calibrate(*call); };
   });
 }

@@ -5,17 +5,23 @@
 
 #include <fmt/format.h>
 
+#include "cli/urdf_of.h"
 #include "core/file/output_file.h"
 #include "core/interrupt.h"
+#include "machine/file/beside_machine.h"
 #include "machine/file/calibration_section.h"
 #include "report/calibration_summary.h"
 #include "report/page/calibration_page.h"
 
 namespace understudy::cli {
 
-CalibrationOutput::CalibrationOutput(std::string machine_file, std::string report_folder)
-    : machine_file_(std::move(machine_file)), report_folder_(std::move(report_folder)) {
+CalibrationOutput::CalibrationOutput(std::string machine_file, std::string report_folder,
+                                     std::string urdf_file)
+    : machine_file_(std::move(machine_file)),
+      report_folder_(std::move(report_folder)),
+      urdf_file_(std::move(urdf_file)) {
   machine::check_machine_output(machine_file_);
+  if (!urdf_file_.empty()) check_writable(urdf_file_);
   if (!report_folder_.empty()) report_.emplace(report_folder_);
 }
 
@@ -26,10 +32,15 @@ int CalibrationOutput::write(const calibration::MachineCalibration& result) {
   }
   StagedFile machine = machine::staged_with_section(
       result.machine.file, machine::calibration_section(result.machine, result.stored), machine_file_);
+  std::optional<StagedFile> named = machine::staged_urdf(result.machine.file, machine_file_), corrected;
+  if (!urdf_file_.empty()) corrected.emplace(urdf_file_, urdf_of(result.machine));
   stop_if_interrupted();
   if (report_) report_->commit();
+  if (named) named->commit();
+  if (corrected) corrected->commit();
   machine.commit();
   fmt::print("{}machine: {}\n", report::calibration_text(result), machine_file_);
+  if (!urdf_file_.empty()) fmt::print("urdf: {}\n", urdf_file_);
   if (report_) fmt::print("report: {}\n", (std::filesystem::path(report_folder_) / "report.html").string());
   return kGood;
 }

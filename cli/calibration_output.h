@@ -13,12 +13,13 @@ namespace understudy::cli {
 /// the work: what cannot be written is refused at once.
 class CalibrationOutput {
  public:
-  CalibrationOutput(std::string machine_file, std::string report_folder);
-  /// Both are written beside their places before either gets its name. Prints the result; the exit status.
+  /// A URDF of the calibrated machine goes to `urdf_file` unless its name is empty.
+  CalibrationOutput(std::string machine_file, std::string report_folder, std::string urdf_file = "");
+  /// All are written beside their places before one gets its name. Prints the result; the exit status.
   int write(const calibration::MachineCalibration& result);
 
  private:
-  std::string machine_file_, report_folder_;
+  std::string machine_file_, report_folder_, urdf_file_;
   std::optional<OutputFolder> report_;
 };
 

@@ -30,7 +30,8 @@ std::size_t used_poses(const MachineCalibration& result) {
 double turn_rms(const MachineCalibration& result, bool before) {
   double sum = 0;
   for (const PoseResidual& p : result.poses)
-    if (p.used) sum += (before ? p.before : p.after).tail<3>().squaredNorm();
+    if (const auto turn = (before ? p.before : p.after).tail<3>(); p.used && turn.allFinite())
+      sum += turn.squaredNorm();
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, used_poses(result))));
 }
 
@@ -60,12 +61,63 @@ ordered_json tip_value(const TipMap& tip) {
           {"poses", tip.poses}};
 }
 
+std::string part_lines(const std::vector<PartReport>& parts, const char* of) {
+  std::string out;
+  for (const PartReport& part : parts) {
+    const bool turn = part.name == "turn";
+    const double unit = turn ? 1e3 : 1e6;
+    out += fmt::format("  {}{:<10} {:5} values {:10.3f} {} RMS before, {:.3f} after", of, part.name,
+                       part.values, unit * part.before, turn ? "mrad" : "um", unit * part.after);
+    if (part.added > 0)
+      out += fmt::format(", noise {} {:.3f}", part.told ? "added" : "found", unit * part.added);
+    out += "\n";
+  }
+  return out;
+}
+
+/// Of rows of any kind.
+std::string rows_text(const MachineCalibration& result) {
+  std::string out = part_lines(result.parts, "") + part_lines(result.compared, "not fitted: ");
+  out += fmt::format("  chi-square {:.1f} for {} degrees of freedom\n", result.chi_square,
+                     result.degrees_of_freedom);
+  for (const FoundNumber& number : result.found)
+    out += fmt::format("  {:<28} {:12.4f} {} (1 sigma {:.4f})\n", number.name,
+                       number.angle ? to_deg(number.value) : to_mm(number.value), number.angle ? "deg" : "mm",
+                       number.angle ? to_deg(number.sigma) : to_mm(number.sigma));
+  if (result.tip.poses > 0)
+    out += fmt::format("  tip uncertainty left, 1 sigma   {:9.1f} um median, {:.1f} um worst ({} poses)\n",
+                       to_um(result.tip.median), to_um(result.tip.worst), result.tip.poses);
+  out += fmt::format("  {} redundant parameters were left as they are\n", result.redundant.size());
+  for (const std::string& name : result.untold)
+    out += fmt::format("  hardly told by these rows, and left near its drawing: {}\n", name);
+  for (const std::string& note : result.notes) out += "  " + note + "\n";
+  for (const std::string& warning : result.warnings) out += "  warning: " + warning + "\n";
+  return out;
+}
+
+ordered_json part_values(const std::vector<PartReport>& parts) {
+  ordered_json list = ordered_json::array();
+  for (const PartReport& part : parts) {
+    const bool turn = part.name == "turn";
+    const std::string unit = turn ? "_mrad" : "_um";
+    const double factor = turn ? 1e3 : 1e6;
+    list.push_back({{"part", part.name},
+                    {"values", part.values},
+                    {"rms_before" + unit, number(factor * part.before)},
+                    {"rms_after" + unit, number(factor * part.after)},
+                    {"noise_told", part.told},
+                    {"noise_added" + unit, number(factor * part.added)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string calibration_text(const MachineCalibration& result) {
   std::string out =
       fmt::format("{}: {} of {} poses, {} parameters by {}\n", result.machine.name, used_poses(result),
                   result.poses.size(), result.parameters.size(), result.estimator);
+  if (!result.parts.empty()) return out + rows_text(result);
   out += fmt::format("  residual of the measured tips   {:9.1f} um RMS before, {:.1f} um after\n",
                      to_um(residual_rms(result, true)), to_um(residual_rms(result, false)));
   out += fmt::format("  residual of the orientations    {:9.2f} mrad RMS before, {:.2f} mrad after\n",
@@ -130,6 +182,19 @@ std::string calibration_json(const MachineCalibration& result) {
                                    {"after", number(p.after)},
                                    {"sigma", number(p.sigma)}});
   if (!result.redundant.empty()) value["redundant"] = result.redundant;
+  if (!result.parts.empty()) {
+    value["untold"] = result.untold;
+    value["parts"] = part_values(result.parts);
+    if (!result.compared.empty()) value["not_fitted"] = part_values(result.compared);
+    value["found"] = ordered_json::array();
+    for (const FoundNumber& f : result.found) {
+      const std::string unit = f.angle ? "_deg" : "_mm";
+      const double factor = 1 / (f.angle ? kDegree : kMillimetre);
+      value["found"].push_back({{"name", f.name},
+                                {"value" + unit, number(factor * f.value)},
+                                {"sigma" + unit, number(factor * f.sigma)}});
+    }
+  }
   value["samples"] = ordered_json::array();
   for (const PoseResidual& p : result.poses) value["samples"].push_back(pose_value(p));
   value["warnings"] = result.warnings;

@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "calibration/calibrated.h"
+#include "calibration/estimators/independent_columns.h"
 #include "kinematics/rigid_pose.h"
 
 namespace understudy::calibration {
 namespace {
 
-// Relative to the whole column: what is left of a redundant one is rounding, of a poor one 1e-3 and more.
-constexpr double kRedundant = 1e-6;
 constexpr double kStepDone = 1e-14;  // of step^T H step: 1e-7 standard deviations
 
 Fault input_fault(const ChainParameters& nominal, const std::vector<ChainSample>& samples) {
@@ -27,22 +26,6 @@ Fault input_fault(const ChainParameters& nominal, const std::vector<ChainSample>
       return fault_of_pose(j, "the covariance is not positive definite");
   }
   return {};
-}
-
-/// Columns kept, from the first on: one that the kept ones before it explain is redundant.
-std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& J) {
-  Eigen::MatrixXd columns(J.rows(), J.cols());
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index k = 0; k < J.cols(); ++k) {
-    const auto basis = columns.leftCols(static_cast<Eigen::Index>(kept.size()));
-    const double whole = J.col(k).norm();
-    Eigen::VectorXd rest = J.col(k);
-    for (int twice = 0; twice < 2; ++twice) rest -= basis * (basis.transpose() * rest);
-    if (!(rest.norm() > kRedundant * whole)) continue;
-    columns.col(basis.cols()) = rest.normalized();
-    kept.push_back(k);
-  }
-  return kept;
 }
 
 }  // namespace

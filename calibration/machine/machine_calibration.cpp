@@ -9,7 +9,9 @@ double residual_rms(const MachineCalibration& result, bool before) {
   int count = 0;
   for (const PoseResidual& pose : result.poses) {
     if (!pose.used) continue;
-    sum += (before ? pose.before : pose.after).head<3>().squaredNorm();
+    const Vec3 tip = (before ? pose.before : pose.after).head<3>();
+    if (!tip.allFinite()) continue;
+    sum += tip.squaredNorm();
     ++count;
   }
   return count > 0 ? std::sqrt(sum / count) : 0;

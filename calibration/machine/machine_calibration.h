@@ -7,6 +7,7 @@
 
 #include "calibration/machine/measuring_frame.h"
 #include "calibration/machine/tip_map.h"
+#include "calibration/rows/calibrate_rows.h"
 #include "calibration/synthetic.h"
 #include "machine/calibrated_parameters.h"
 #include "machine/description.h"
@@ -17,8 +18,10 @@ namespace understudy::calibration {
 /// is right and nothing was fitted.
 struct PoseResidual {
   int line = 0;
-  bool used = true;                 ///< false: rejected as an outlier
-  Twist before, after;              ///< measured less model, (tip [m], rotation vector [rad]) in B
+  bool used = true;  ///< false: rejected as an outlier
+  /// Measured less model, (tip [m], rotation vector [rad]) in B; of rows that measure less, NaN elsewhere, in
+  /// the measuring frame, and of a distance or plane the first number only.
+  Twist before, after;
   Twist whitened;                   ///< of `after`
   std::vector<double> strut;        ///< [m] length of each strut by the measured pose, less by its drive
   std::vector<double> strut_sigma;  ///< [m] what the pose's noise alone makes of it
@@ -46,6 +49,12 @@ struct MachineCalibration {
   int iterations = 0;
   TipMap tip;
   std::vector<std::string> warnings;
+  // Of rows of any kind (calibration/rows); empty where whole poses in W were measured.
+  std::vector<PartReport> parts;         ///< of the fitted rows
+  std::vector<PartReport> compared;      ///< of rows that were not fitted
+  std::vector<FoundNumber> found;        ///< frames, targets, places
+  std::vector<std::string> untold;       ///< parameters that stay near their drawing
+  std::vector<std::string> notes;        ///< units that were recognised
   machine::CalibratedParameters stored;  ///< what the calibrated file keeps besides `machine`
 };
 

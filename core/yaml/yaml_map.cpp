@@ -373,6 +373,25 @@ std::uint64_t YamlMap::seed(const std::string& key, const char* about) {
 
 std::string YamlMap::text(const std::string& key, const char* about) { return word(key, {}, about); }
 
+std::vector<std::string> YamlMap::texts(const std::string& key, const char* about) {
+  if (recording_) {
+    recording_->ask(schema_of(key, KeySchema::Type::text, about));
+    return {};
+  }
+  std::vector<std::string> words;
+  const YAML::Node* node = find(key);
+  if (!node) return words;
+  if (node->IsScalar()) return {node->Scalar()};
+  if (!node->IsSequence() || node->size() == 0)
+    fail(key, fmt::format("{} is {}, where a list of words is expected", path(key), kind_of(*node)));
+  for (const auto& item : *node) {
+    if (!item.IsScalar())
+      fail(key, fmt::format("{} holds {}, where a word is expected", path(key), kind_of(item)));
+    words.push_back(item.Scalar());
+  }
+  return words;
+}
+
 std::string YamlMap::word(const std::string& key, const std::vector<std::string>& allowed,
                           const char* about) {
   if (recording_) {

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
+#include "machine/file/beside_machine.h"
 #include "machine/model_files.h"
 
 namespace understudy::machine {
@@ -56,7 +57,9 @@ StagedFile staged_with_section(const std::filesystem::path& original, const std:
   check_machine_output(path);
   const std::string text = with_section(read_file(original), section);
   try {
-    check_machine_text(text, std::filesystem::absolute(path));
+    // A URDF is read where it lies: beside `path` it may be still to come (beside_machine.h).
+    const bool urdf = !urdf_named_in(text, original).empty();
+    check_machine_text(text, std::filesystem::absolute(urdf ? original : path));
   } catch (const InputError& error) {
     throw InputError(
         fmt::format("{}: the calibrated machine would be refused: {}", path.string(), error.what()));

@@ -37,7 +37,8 @@ std::string heat(double share) {
 std::vector<double> ordered_residuals(const MachineCalibration& result) {
   std::vector<double> values;
   for (const PoseResidual& p : result.poses)
-    for (Eigen::Index i = 0; p.used && i < 6; ++i) values.push_back(p.whitened[i]);
+    for (Eigen::Index i = 0; p.used && i < 6; ++i)
+      if (std::isfinite(p.whitened[i])) values.push_back(p.whitened[i]);
   // A fit takes up the share of its parameters: without that, residuals would look too small.
   const double left = std::max(1, result.degrees_of_freedom);
   for (double& v : values) v *= std::sqrt(static_cast<double>(values.size()) / left);
@@ -48,7 +49,8 @@ std::vector<double> ordered_residuals(const MachineCalibration& result) {
 std::string pose_chart(const MachineCalibration& result) {
   std::vector<double> all;
   for (const PoseResidual& p : result.poses)
-    for (Eigen::Index i = 0; p.used && i < 3; ++i) all.push_back(to_um(p.after[i]));
+    for (Eigen::Index i = 0; p.used && i < 3; ++i)
+      if (std::isfinite(p.after[i])) all.push_back(to_um(p.after[i]));
   const double top = span_of(all, 1);
   SvgChart plot({}, Scale::linear(0, static_cast<double>(result.poses.size() + 1)), Scale::linear(-top, top));
   plot.y_axis("tip residual, µm");
@@ -58,6 +60,7 @@ std::string pose_chart(const MachineCalibration& result) {
   for (std::size_t j = 0; j < result.poses.size(); ++j)
     for (Eigen::Index i = 0; i < 3; ++i) {
       const PoseResidual& p = result.poses[j];
+      if (!std::isfinite(p.after[i])) continue;
       // A rejected pose may be far outside: it stands at the edge, in grey.
       const double v = std::clamp(to_um(p.after[i]), -top, top);
       plot.dot({static_cast<double>(j + 1) + 0.18 * static_cast<double>(i - 1), v},
@@ -75,7 +78,8 @@ std::string spread_chart(const MachineCalibration& result) {
   };
   std::vector<double> all;
   for (const PoseResidual& p : result.poses)
-    for (std::size_t i = 0; p.used && i < 6; ++i) all.push_back(value(p, i));
+    for (std::size_t i = 0; p.used && i < 6; ++i)
+      if (std::isfinite(value(p, i))) all.push_back(value(p, i));
   const double top = span_of(all, 3);
   SvgChart plot({}, Scale::linear(0.4, 6.6), Scale::linear(-top, top));
   plot.y_axis("residual / stated sigma");
@@ -86,10 +90,11 @@ std::string spread_chart(const MachineCalibration& result) {
   const double count = static_cast<double>(std::max<std::size_t>(1, result.poses.size()));
   for (std::size_t j = 0; j < result.poses.size(); ++j)
     for (std::size_t i = 0; result.poses[j].used && i < 6; ++i)
-      plot.dot({static_cast<double>(i + 1) + 0.6 * (static_cast<double>(j) / count - 0.5),
-                value(result.poses[j], i)},
-               series_colour(0),
-               fmt::format("line {}: {:.2f}", result.poses[j].line, value(result.poses[j], i)));
+      if (std::isfinite(value(result.poses[j], i)))
+        plot.dot({static_cast<double>(i + 1) + 0.6 * (static_cast<double>(j) / count - 0.5),
+                  value(result.poses[j], i)},
+                 series_colour(0),
+                 fmt::format("line {}: {:.2f}", result.poses[j].line, value(result.poses[j], i)));
   return plot.finish();
 }
 

@@ -75,6 +75,59 @@ TEST(Calibrate, AnArmHasTheRobustEstimatorToo) {
   EXPECT_FALSE(fs::exists(folder.path() / "w.yaml"));
 }
 
+// What the URDF says is what the calibrated machine does: forward kinematics at the same axes.
+TEST(Calibrate, ACorrectedUrdfGivesTheSamePosesInAnotherFolder) {
+  const Folder folder;
+  const std::string machine = "offset-wrist-arm", out = folder / "m.yaml", urdf = folder / "corrected.urdf";
+  ASSERT_EQ(understudy("sample-poses --machine " + machine + " --count 24 --as-built manufactured -o " +
+                       (folder / "s.csv"))
+                .status,
+            0);
+  const Outcome outcome = understudy("calibrate " + (folder / "s.csv") + " --machine " + machine + " -o " +
+                                     out + " --urdf-out " + urdf);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder.path() / "arm.urdf")) << "the machine's own goes with it";
+  std::string around = std::regex_replace(read_file(kSource + "/models/offset-wrist-arm/machine.yaml"),
+                                          std::regex("urdf: arm.urdf"), "urdf: corrected.urdf");
+  around = std::regex_replace(around, std::regex("base_link: base"), "base_link: work");
+  folder.write("corrected.yaml", around);
+  folder.write("axes.csv",
+               "j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\n0,-70,100,-120,-90,0\n20,-60,80,-100,-70,30\n"
+               "-15,-80,110,-130,-100,-40\n");
+  const std::string in = " < " + (folder / "axes.csv");
+  const Outcome by_file = understudy("poses --machine " + out + in);
+  const Outcome by_urdf = understudy("poses --machine " + (folder / "corrected.yaml") + in);
+  ASSERT_EQ(by_urdf.status, 0) << by_urdf.err;
+  EXPECT_EQ(by_urdf.out, by_file.out);
+}
+
+TEST(Calibrate, TablesOfAnyKindNeedAMapAndSayWhatIsWrong) {
+  const Folder folder;
+  folder.write("few.csv", "x,y,z,j1,j2,j3,j4,j5,j6\n400,0,100,0,20,-40,30,60,0\n");
+  folder.write("far.csv", "x,y,z,j1,j2,j3,j4,j5,j6\n400,0,100,0,-70,-40,30,60,0\n");
+  folder.write("map.yaml",
+               "kind: position\njoints: {columns: [j1, j2, j3, j4, j5, j6], unit: deg}\n"
+               "position: {columns: [x, y, z], unit: mm}\n");
+  folder.write("typo.yaml",
+               "kind: position\njoints: {columns: [j1, j2, j3, j4, j5, q6], unit: deg}\n"
+               "position: {columns: [x, y, z], unit: mm}\n");
+  const std::string out = " -o " + (folder / "m.yaml"), few = folder / "few.csv";
+  const std::vector<std::pair<std::string, std::string>> calls{
+      {few + " --columns " + (folder / "map.yaml") + " --machine arm", "1 rows give 3 equations"},
+      {(folder / "far.csv") + " --columns " + (folder / "map.yaml") + " --machine arm", "axis j2 is -70 deg"},
+      {few + " --columns " + (folder / "typo.yaml") + " --machine arm", "did you mean 'j6'"},
+      {few + " --columns " + (folder / "map.yaml") + " --machine hexapod", "whole poses only"},
+      {few + " " + few + " --machine arm", "--columns"},
+      {few + " --columns " + (folder / "map.yaml") + " --machine arm --estimator robust", "whole poses"}};
+  for (const auto& [words, part] : calls) {
+    const Outcome outcome = understudy("calibrate " + words + out);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << words << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(part)) << words;
+    EXPECT_FALSE(fs::exists(folder.path() / "m.yaml")) << words;
+  }
+}
+
 TEST(Calibrate, RefusesInOneLineAndWritesNothing) {
   const Folder folder;
   const std::string out = " -o " + (folder / "m.yaml") + " --report " + (folder / "report");

@@ -42,6 +42,15 @@ TEST(YamlMap, NumbersAreAsTheFileHasThem) {
                      });
 }
 
+TEST(YamlMap, ListsOfWordsAreAsWrittenAndOneWordIsAList) {
+  YamlMap::read_text("a: [x y, 2, \"3\"]\nb: one\n", "f.yaml", [](YamlMap& map) {
+    EXPECT_EQ(map.texts("a", ""), (std::vector<std::string>{"x y", "2", "3"}));
+    EXPECT_EQ(map.texts("b", ""), std::vector<std::string>{"one"});
+  });
+  for (const char* text : {"a: []\n", "a: {b: 1}\n", "a: [[1]]\n"})
+    EXPECT_THAT(refusal(text, [](YamlMap& map) { map.texts("a", ""); }), HasSubstr("f.yaml:1:1: a ")) << text;
+}
+
 TEST(YamlMap, WhatIsNoFiniteNumberWithinItsBoundsIsRefused) {
   EXPECT_EQ(refusal("lead_mm: 0\n", read_lead), "f.yaml:1:10: lead_mm is 0 mm, outside 0.1 to 100 mm");
   EXPECT_EQ(refusal("t_s: -1\n", [](YamlMap& map) { map.number("t_s", {0}, ""); }),

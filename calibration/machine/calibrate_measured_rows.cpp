@@ -1,0 +1,185 @@
+#include "calibration/machine/calibrate_measured_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "calibration/absorb_zeros.h"
+#include "calibration/machine/estimation_report.h"
+#include "calibration/machine/measurement_columns.h"
+#include "calibration/machine/stored_parameters.h"
+#include "calibration/table/measured_rows.h"
+#include "core/error.h"
+#include "core/file/read_file.h"
+#include "core/units.h"
+#include "machine/file/calibration_section.h"
+
+namespace understudy::calibration {
+namespace {
+
+// Rows that a calibrated machine still misses by so much (RMS) are not this machine's.
+constexpr double kUnexplained = 20e-3;     // [m]
+constexpr double kUnexplainedTurn = 0.15;  // [rad]
+
+void assume_noise(const std::optional<MeasurementNoise>& noise, RowProblem& problem) {
+  if (!noise) return;
+  for (MeasurementRow& row : problem.rows) {
+    if (row.noise_told) continue;
+    row.covariance = noise->covariance();
+    row.noise_told = true;
+  }
+}
+
+/// The row's numbers where a whole pose has them.
+Twist as_pose(RowKind kind, const Eigen::VectorXd& numbers) {
+  Twist pose = Twist::Constant(std::numeric_limits<double>::quiet_NaN());
+  pose.segment(kind == RowKind::orientation ? 3 : 0, numbers.size()) = numbers;
+  return pose;
+}
+
+std::vector<ParameterLine> parameter_lines(const RowCalibration& found, const ChainParameters& drawn) {
+  std::vector<ParameterLine> lines;
+  for (std::size_t k = 0; k < found.estimated.size(); ++k) {
+    const bool angle = is_angle(found.estimated[k], drawn.chain);
+    const double unit = angle ? kDegree : kMillimetre;
+    lines.push_back({found.estimated[k], angle ? "deg" : "mm", 0,
+                     found.changes[static_cast<Eigen::Index>(k)] / unit,
+                     sigma_of(found.covariance, k) / unit});
+  }
+  return lines;
+}
+
+void check_explained(const RowCalibration& found, const std::string& file, const std::string& machine) {
+  for (const PartReport& part : found.parts) {
+    const bool turn = part.name == "turn";
+    if (part.after <= (turn ? kUnexplainedTurn : kUnexplained)) continue;
+    throw InputError(
+        {file, 0, 0},
+        fmt::format("no calibration of {} explains these rows: {} residuals stay at {:.1f} {} RMS; "
+                    "another machine, or rows of measurements and joints that do not belong together?",
+                    machine, part.name, turn ? to_deg(part.after) : to_mm(part.after), turn ? "deg" : "mm"));
+  }
+}
+
+void check_answer(const RowCalibration& found, const MeasuredRows& rows) {
+  if (found.ok()) return;
+  Place place{rows.files.front(), 0, 0};
+  if (found.pose) {
+    const MeasurementRow& row = rows.problem.rows[*found.pose];
+    place = {rows.files[static_cast<std::size_t>(row.table)], row.line, 0};
+  }
+  throw InputError(place, found.message);
+}
+
+void take_rows(const MeasuredRows& rows, const RowCalibration& found, MachineCalibration& result) {
+  for (std::size_t j = 0; j < rows.problem.rows.size(); ++j) {
+    const MeasurementRow& row = rows.problem.rows[j];
+    PoseResidual residual;
+    residual.line = row.line;
+    residual.before = as_pose(row.kind, found.before[j]);
+    residual.after = as_pose(row.kind, found.after[j]);
+    residual.whitened = as_pose(row.kind, found.whitened[j]);
+    result.poses.push_back(residual);
+  }
+  result.noise_given = std::all_of(rows.problem.rows.begin(), rows.problem.rows.end(),
+                                   [](const MeasurementRow& row) { return row.noise_told; });
+  result.parts = found.parts;
+  result.found = found.found;
+  result.untold = found.untold;
+  result.redundant = found.redundant;
+  result.notes = rows.notes;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) {
+    std::erase_if(cell, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+}  // namespace
+
+MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
+  MachineCalibration result;
+  const machine::MachineDescription nominal = machine::load_machine(request.machine);
+  if (!nominal.is_chain())
+    throw InputError(
+        nominal.name +
+        ": a hexapod is calibrated by whole poses only: columns x_mm to qz of docs/calibration-data.md");
+  machine::require_calibratable(nominal);
+  MeasuredRows rows = read_measured_rows(request.map, request.measurements, nominal);
+  assume_noise(request.noise, rows.problem);
+  const RowCalibration found = calibrate_rows(rows.problem);
+  check_answer(found, rows);
+  check_explained(found, rows.files.front(), nominal.name);
+
+  result.machine = nominal;
+  result.file = rows.files.front();
+  result.command = request.command;
+  result.estimator = "rows";
+  take_rows(rows, found, result);
+  kinematics::ChainDescription& known = result.machine.chain().kinematics;
+  if (known.design.axes.empty()) known.design = known.chain;
+  known.chain = absorb_zeros(found.parameters);
+  result.stored = stored_parameters(found, Measurements{}, result.machine);
+  result.machine.X_BT_home = kinematics::forward(known.chain, known.home);
+  result.parameters = parameter_lines(found, rows.problem.nominal);
+  report_estimation(found, found.covariance, result);
+  result.tip = tip_map(nominal, result.machine, chain_tip(result.machine, found));
+  if (!request.compared.empty()) {
+    MeasuredRows others = read_measured_rows(request.map, request.compared, nominal);
+    assume_noise(request.noise, others.problem);
+    result.compared = compared_rows(others.problem, rows.problem, found);
+  }
+  result.machine.calibration = {"rows", std::filesystem::path(rows.files.front()).filename().string(),
+                                rows.sha256, static_cast<int>(rows.problem.rows.size()), result.tip.rms};
+  return result;
+}
+
+std::optional<ColumnMap> map_of_partial_poses(const std::string& file, const std::string& machine_name) {
+  std::istringstream in(read_file(file));
+  std::string line;
+  while (std::getline(in, line) && (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#')) {
+  }
+  const std::vector<std::string> header = cells_of(line);
+  const auto has = [&](const std::string& name) {
+    return std::find(header.begin(), header.end(), name) != header.end();
+  };
+  const bool position = has("x_mm") && has("y_mm") && has("z_mm");
+  const bool orientation = has("qw") && has("qx") && has("qy") && has("qz");
+  const auto any = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), has);
+  };
+  if (position == orientation || (position ? any({"qw", "qx", "qy", "qz"}) : any({"x_mm", "y_mm", "z_mm"})))
+    return std::nullopt;
+  const machine::MachineDescription machine = machine::load_machine(machine_name);
+  if (!machine.is_chain()) return std::nullopt;
+  std::vector<std::string> known{"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "sigma_um", "sigma_mrad"};
+  TableMap table;
+  table.kind = position ? RowKind::position : RowKind::orientation;
+  table.format = {',', '.', 1, "#", 0};
+  table.joints = {axis_columns(machine), kDegree, {}, 1};
+  table.joint_unit_told = true;
+  known.insert(known.end(), table.joints.columns.begin(), table.joints.columns.end());
+  for (const std::string& name : header)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      return std::nullopt;  // read_measurements() says why
+  if (position) table.position = {{"x_mm", "y_mm", "z_mm"}, kMillimetre, {}, kMicrometre};
+  if (orientation) table.orientation = {{"qw", "qx", "qy", "qz"}, 1, {}, 1e-3};
+  if (position && has("sigma_um")) table.position->sigma = {"sigma_um"};
+  if (orientation && has("sigma_mrad")) table.orientation->sigma = {"sigma_mrad"};
+  ColumnMap map;
+  map.file = file;
+  map.tables.push_back(table);
+  return map;
+}
+
+}  // namespace understudy::calibration

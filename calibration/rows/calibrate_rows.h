@@ -1,0 +1,60 @@
+// Calibration of an open chain from rows of any kind, with the frames, targets and places that are unknown.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/rows/row_fit.h"
+
+namespace understudy::calibration {
+
+/// What one part of the rows (positions, turns, ...) shows.
+struct PartReport {
+  std::string name;  ///< "position", "turn", "distance", "point", "plane"
+  int equations = 0;
+  int values = 0;                ///< vectors of three, or single numbers
+  double before = 0, after = 0;  ///< RMS of the values' lengths [m] or [rad]
+  double added = 0;              ///< noise on each axis that the residuals show beyond the told one
+  bool told = false;             ///< all rows told their noise
+};
+
+/// What was found besides the machine, with its 1 sigma.
+struct FoundNumber {
+  std::string name;
+  double value = 0, sigma = 0;  ///< [m] or [rad]; turns: of the rotation vector
+  bool angle = false;
+};
+
+/// Of the base class: `estimated` are the machine's parameters alone and `covariance` is theirs; `residuals`
+/// are empty.
+struct RowCalibration : ChainCalibration {
+  Eigen::VectorXd changes;  ///< of `estimated`, from the drawing [m] or [rad]
+  Surroundings around;
+  Surroundings around_nominal;  ///< as the nominal machine has them
+  std::vector<FoundNumber> found;
+  std::vector<PartReport> parts;
+  /// Parameters of which the rows tell less than the prior of row_fit.h: they stay near their drawing.
+  std::vector<std::string> untold;
+  /// Of each row, in SI, as row_equations.h orders them; `before`: with the nominal machine.
+  std::vector<Eigen::VectorXd> before, after;
+  std::vector<Eigen::VectorXd> whitened;  ///< of `after`
+  AddedNoise added{};
+};
+
+struct RowOptions {
+  int max_iterations = 100;
+  /// False: the machine stays, and only what stands around it is found.
+  bool machine = true;
+  AddedNoise start{1e-3, 2e-3, 1e-3, 1e-3, 1e-3};  ///< where the search for the noise begins
+};
+
+/// Never throws for data: `status` and `message` say what is missing, `pose` which row.
+RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& options = {});
+
+/// What rows that were not fitted say: `problem` against the machine and the surroundings that `fitted` found
+/// from `from`, each with its own. What stands around the new rows only is found from them.
+std::vector<PartReport> compared_rows(const RowProblem& problem, const RowProblem& from,
+                                      const RowCalibration& fitted);
+
+}  // namespace understudy::calibration

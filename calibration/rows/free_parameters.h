@@ -1,0 +1,16 @@
+// Which parameters of a chain mean anything, where the base is seen from nowhere or the tool by nothing.
+#pragma once
+
+#include <vector>
+
+#include "calibration/estimators/chain_calibration.h"
+
+namespace understudy::calibration {
+
+/// Columns of chain_rows() that whole poses all over the axes' ranges tell apart, in increasing order. With
+/// `base_free` the frame of these poses is unknown; what the first axis could do in its place is left at the
+/// drawing, so that the base stays where it was. With `tool_free` what was measured sits on the tool at a
+/// place of its own, unknown as well, and the tool's mount is left at the drawing.
+std::vector<Eigen::Index> free_parameters(const ChainParameters& nominal, bool base_free, bool tool_free);
+
+}  // namespace understudy::calibration

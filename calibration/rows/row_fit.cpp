@@ -1,0 +1,160 @@
+#include "calibration/rows/row_fit.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "calibration/rows/surroundings_start.h"
+
+namespace understudy::calibration {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kStepDone = 1e-10;     // of step^T H step: 1e-5 standard deviations
+constexpr double kDampingMax = 1e12;    // no step that can be told from none lowers the cost
+constexpr double kNoiseSettled = 1e-3;  // relative change of the found noise
+constexpr int kNoiseRounds = 30;
+
+double cost_of(const VectorXd& e, const VectorXd& by, const VectorXd& prior) {
+  return e.squaredNorm() + by.head(prior.size()).cwiseQuotient(prior).squaredNorm();
+}
+
+}  // namespace
+
+bool is_angle(const std::string& name, const kinematics::Chain& chain) {
+  if (name.find("turn") != std::string::npos || name.find("tilt") != std::string::npos) return true;
+  for (const auto& axis : chain.axes)
+    if (name == axis.name + " zero") return axis.angle;
+  return false;
+}
+
+RowLikelihood::RowLikelihood(const RowProblem& problem, const SurroundingsLayout& layout,
+                             std::vector<Index> unknowns)
+    : problem_(problem), layout_(layout), unknowns_(std::move(unknowns)) {
+  const auto names = chain_parameter_names(problem.nominal.chain);
+  prior_.resize(static_cast<Index>(unknowns_.size()));
+  for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+    const std::string& name = names[static_cast<std::size_t>(unknowns_[k])];
+    prior_[static_cast<Index>(k)] = is_angle(name, problem.nominal.chain) ? kPriorAngle : kPriorLength;
+  }
+}
+
+RowLikelihood::Linear RowLikelihood::linear(const RowState& at, const AddedNoise& noise,
+                                            bool machine_too) const {
+  RowEquations equations = row_equations(problem_, layout_, at, machine_too);
+  Linear out;
+  out.error = equations.error;
+  whiten(problem_, noise, equations);
+  const Index machine = machine_too ? prior_.size() : 0;
+  out.J.resize(equations.error.size(), machine + layout_.columns());
+  if (machine_too) out.J.leftCols(machine) = equations.machine(Eigen::all, unknowns_);
+  out.J.rightCols(layout_.columns()) = equations.around;
+  out.e = std::move(equations.error);
+  return out;
+}
+
+RowState RowLikelihood::step_from(const RowState& at, const VectorXd& step, Index machine) const {
+  RowState to{at.machine, moved(at.around, layout_, step.tail(layout_.columns()))};
+  if (machine == 0) return to;
+  VectorXd by = VectorXd::Zero(static_cast<Index>(chain_parameter_names(at.machine.chain).size()));
+  for (Index k = 0; k < machine; ++k) by[unknowns_[static_cast<std::size_t>(k)]] = step[k];
+  to.machine = calibration::moved(at.machine, by);
+  return to;
+}
+
+RowFit RowLikelihood::fit(const RowState& start, const AddedNoise& noise, bool machine_too,
+                          int max_iterations) const {
+  RowFit found;
+  found.state = start;
+  const Index machine = machine_too ? prior_.size() : 0, unknowns = machine + layout_.columns();
+  const VectorXd prior = prior_.head(machine);
+  VectorXd by = VectorXd::Zero(unknowns);
+  Linear at = linear(found.state, noise, machine_too);
+  double cost = cost_of(at.e, by, prior), damping = 1e-6;
+  VectorXd weight = VectorXd::Zero(unknowns);
+  weight.head(machine) = prior.cwiseAbs2().cwiseInverse();
+  MatrixXd H;
+  for (; found.iterations < max_iterations && !found.settled; ++found.iterations) {
+    H = at.J.transpose() * at.J;
+    H.diagonal() += weight;
+    const VectorXd g = at.J.transpose() * at.e - weight.cwiseProduct(by);
+    const VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
+    bool better = false;
+    while (!better && damping < kDampingMax) {
+      MatrixXd damped = scaled;
+      damped.diagonal().array() += damping;
+      const VectorXd step = scale.cwiseProduct(damped.ldlt().solve(scale.cwiseProduct(g)));
+      const double curvature = step.dot(H * step);
+      if (!std::isfinite(curvature)) {
+        damping = std::max(1e-12, 10 * damping);
+        continue;
+      }
+      const RowState next = step_from(found.state, step, machine);
+      Linear after = linear(next, noise, machine_too);
+      const double lower = cost_of(after.e, by + step, prior);
+      // Rounding of the cost itself is no reason against a step that hardly moves.
+      better = lower < cost || curvature < kStepDone;
+      if (!better) {
+        damping *= 10;
+        continue;
+      }
+      found.settled = curvature < kStepDone;
+      found.state = next;
+      by += step;
+      at = std::move(after);
+      cost = lower;
+      damping = std::max(1e-14, damping / 10);
+    }
+    if (!better) break;
+  }
+  H = at.J.transpose() * at.J;
+  H.diagonal() += weight;
+  const VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const MatrixXd inverse = MatrixXd(scale.asDiagonal() * H * scale.asDiagonal())
+                               .ldlt()
+                               .solve(MatrixXd::Identity(unknowns, unknowns));
+  found.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
+  found.covariance = 0.5 * (found.covariance + found.covariance.transpose()).eval();
+  found.moved = by;
+  found.chi_square = at.e.squaredNorm();
+  found.error = at.error;
+  // Of whitened rows, times what they were divided by: the model's own variance in SI.
+  RowEquations equations = row_equations(problem_, layout_, found.state, machine_too);
+  MatrixXd raw(equations.error.size(), unknowns);
+  if (machine > 0) raw.leftCols(machine) = equations.machine(Eigen::all, unknowns_);
+  raw.rightCols(layout_.columns()) = equations.around;
+  found.fitted = (raw * found.covariance).cwiseProduct(raw).rowwise().sum();
+  return found;
+}
+
+RowFit RowLikelihood::fit_with_noise(const RowState& start, AddedNoise& noise, bool machine_too,
+                                     int max_iterations) const {
+  RowFit found = fit(start, noise, machine_too, max_iterations);
+  for (int round = 0; round < kNoiseRounds; ++round) {
+    const AddedNoise next = explaining_noise(problem_, found.error, found.fitted, noise);
+    bool same = true;
+    for (std::size_t part = 0; part < kNoiseParts; ++part)
+      same = same && std::abs(next[part] - noise[part]) <= kNoiseSettled * noise[part];
+    noise = next;
+    // Always from the nominal machine, where the prior has its middle; what stands around is near already.
+    found = fit({start.machine, found.state.around}, noise, machine_too, max_iterations);
+    if (same) break;
+  }
+  return found;
+}
+
+std::optional<RowFit> fitted_surroundings(const RowLikelihood& likelihood, const RowProblem& problem,
+                                          const SurroundingsLayout& layout, const AddedNoise& noise,
+                                          int max_iterations) {
+  std::optional<RowFit> best;
+  for (const Surroundings& start : starts(problem, layout)) {
+    const RowFit fit = likelihood.fit({problem.nominal, start}, noise, false, max_iterations);
+    if (std::isfinite(fit.chi_square) && (!best || fit.chi_square < best->chi_square)) best = fit;
+  }
+  return best;
+}
+
+}  // namespace understudy::calibration

@@ -1,0 +1,66 @@
+// The most likely machine and surroundings for rows of measurements: Levenberg-Marquardt on the likelihood,
+// with a wide normal prior on the machine's parameters that matters only where rows tell nothing.
+#pragma once
+
+#include <optional>
+
+#include "calibration/rows/row_noise.h"
+
+namespace understudy::calibration {
+
+// 1 sigma of how far a parameter may be from its drawing before any row is looked at. Machine files refuse
+// calibrations 25 mm or 10 deg away (machine/file/calibration_section.h): 2.5 and 3 of these.
+constexpr double kPriorLength = 10e-3;  // [m]
+constexpr double kPriorAngle = 0.058;   // [rad]
+
+struct RowFit {
+  RowState state;
+  bool settled = false;  ///< the last step was below 1e-5 standard deviations
+  int iterations = 0;
+  double chi_square = 0;       ///< by the told and added noise
+  Eigen::VectorXd error;       ///< of every equation, in SI
+  Eigen::VectorXd fitted;      ///< variance of the model's value in every equation
+  Eigen::VectorXd moved;       ///< of the unknowns, from the start
+  Eigen::MatrixXd covariance;  ///< of the unknowns: machine first, then surroundings
+};
+
+class RowLikelihood {
+ public:
+  /// `unknowns` are columns of chain_rows(); keeps a reference to `problem`.
+  RowLikelihood(const RowProblem& problem, const SurroundingsLayout& layout,
+                std::vector<Eigen::Index> unknowns);
+
+  /// From `start`, whose machine is the nominal one. With `machine_too` false only the surroundings move.
+  RowFit fit(const RowState& start, const AddedNoise& noise, bool machine_too, int max_iterations) const;
+  /// The same, the noise found from the residuals in turns with the fit. `noise` in: where that begins.
+  RowFit fit_with_noise(const RowState& start, AddedNoise& noise, bool machine_too, int max_iterations) const;
+
+  const std::vector<Eigen::Index>& unknowns() const { return unknowns_; }
+  /// 1 sigma of the prior of each of them.
+  const Eigen::VectorXd& prior() const { return prior_; }
+
+ private:
+  struct Linear {
+    Eigen::MatrixXd J;  // whitened: machine's unknowns, then the surroundings
+    Eigen::VectorXd e;
+    Eigen::VectorXd error;  // not whitened
+  };
+  Linear linear(const RowState& at, const AddedNoise& noise, bool machine_too) const;
+  RowState step_from(const RowState& at, const Eigen::VectorXd& step, Eigen::Index machine) const;
+
+  const RowProblem& problem_;
+  const SurroundingsLayout& layout_;
+  std::vector<Eigen::Index> unknowns_;
+  Eigen::VectorXd prior_;
+};
+
+/// The surroundings about the nominal machine, from the best of their starts; nothing where none leads to
+/// finite numbers.
+std::optional<RowFit> fitted_surroundings(const RowLikelihood& likelihood, const RowProblem& problem,
+                                          const SurroundingsLayout& layout, const AddedNoise& noise,
+                                          int max_iterations);
+
+/// Whether a parameter of that name is an angle.
+bool is_angle(const std::string& name, const kinematics::Chain& chain);
+
+}  // namespace understudy::calibration

@@ -1,0 +1,55 @@
+// How the columns of somebody's tables are to be read: the YAML of docs/measurements.md.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/rows/measurement_row.h"
+#include "calibration/table/delimited_text.h"
+#include "calibration/table/measured_orientation.h"
+
+namespace understudy::calibration {
+
+struct NumberColumns {
+  std::vector<std::string> columns;
+  double unit = 1;                 ///< [m] or [rad] of one
+  std::vector<std::string> sigma;  ///< columns of 1 sigma: one, or one each; empty: none
+  double sigma_unit = 1;           ///< [m] or [rad] of one of these
+};
+
+/// One table, or several that look alike.
+struct TableMap {
+  std::string file;  ///< as the map names it, relative to the map's folder; empty: told elsewhere
+  RowKind kind = RowKind::pose;
+  TextFormat format;
+  NumberColumns joints;
+  bool joint_unit_told = false;  ///< of angles; else it is recognised
+  double slide_unit = 1e-3;      ///< [m] of one, of sliding axes
+  std::string joint_file;        ///< where the joints stand in a file of their own, by row number
+  TextFormat joint_format;
+  std::optional<NumberColumns> position, distance, orientation;
+  OrientationReading reading;
+  std::string frame;   ///< empty: the machine's own, W
+  std::string target;  ///< empty: the machine's tool
+  std::string target_column, id, id_column;
+  double sigma_position = 0, sigma_turn = 0;  ///< [m], [rad], of every row; 0: not told
+  bool zero_unknown = false;                  ///< of distances
+};
+
+struct KnownPlace {
+  std::string name;
+  Vec3 position{0, 0, 0};  ///< [m], in W; of a target in T
+};
+
+struct ColumnMap {
+  std::string file;
+  std::vector<TableMap> tables;
+  std::vector<KnownPlace> targets, points, anchors;
+  std::vector<KnownDistance> distances;
+};
+
+/// Throws InputError with file, line and key.
+ColumnMap read_column_map(const std::string& file);
+
+}  // namespace understudy::calibration

@@ -1,0 +1,20 @@
+// The URDF that a machine file names, where the file is written to another folder.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/file/staged_file.h"
+
+namespace understudy::machine {
+
+/// `geometry.urdf` of the machine file's text; empty where it names none.
+std::string urdf_named_in(const std::string& text, const std::filesystem::path& file);
+
+/// The URDF of the machine file `original`, still to be given its place beside the machine file `path`;
+/// nothing where none is named or it lies there already. Throws InputError where another file has that place.
+std::optional<StagedFile> staged_urdf(const std::filesystem::path& original,
+                                      const std::filesystem::path& path);
+
+}  // namespace understudy::machine
