@@ -14,6 +14,7 @@
 #include "cli/noise_option.h"
 #include "cli/plugin_box.h"
 #include "core/error.h"
+#include "core/file/read_file.h"
 
 namespace understudy::cli {
 namespace {
@@ -26,14 +27,17 @@ struct CalibrateCall {
 };
 
 /// Tables with a map of their columns, or with positions or orientations alone; nothing for whole poses.
-std::optional<calibration::RowsRequest> rows_request(const CalibrateCall& call) {
+/// Leaves the text of a table of whole poses in `call`: a pipe can be read once.
+std::optional<calibration::RowsRequest> rows_request(CalibrateCall& call) {
   calibration::RowsRequest request;
   if (!call.columns.empty()) {
     request.map = calibration::read_column_map(call.columns);
   } else {
     if (call.measurements.empty())
       throw InputError("give a table of measurements, or --columns with a map that names its files");
-    const auto map = calibration::map_of_partial_poses(call.measurements.front(), call.request.machine);
+    const std::string& file = call.measurements.front();
+    call.request.text = read_file(file);
+    const auto map = calibration::map_of_partial_poses(*call.request.text, file, call.request.machine);
     if (!map && (call.measurements.size() > 1 || !call.compared.empty()))
       throw InputError("several tables, and --compare, need --columns (docs/measurements.md)");
     if (!map) return std::nullopt;
@@ -52,7 +56,7 @@ std::optional<calibration::RowsRequest> rows_request(const CalibrateCall& call) 
   return request;
 }
 
-int run_calibrate(const CalibrateCall& call) {
+int run_calibrate(CalibrateCall call) {
   CalibrationOutput output(call.output, call.report, call.urdf);
   if (const auto rows = rows_request(call)) return output.write(calibration::calibrate_measured_rows(*rows));
   calibration::CalibrationRequest request = call.request;

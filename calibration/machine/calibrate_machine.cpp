@@ -50,7 +50,9 @@ MachineCalibration calibrate_machine(const CalibrationRequest& request) {
   if (request.plugin.empty()) make_estimator(result.estimator);  // a wrong name before anything else
   result.noise = request.noise.value_or(kReferenceNoise);
   const machine::MachineDescription nominal = machine::load_machine(request.machine);
-  const Measurements measurements = read_measurements(request.measurements, nominal, result.noise);
+  const Measurements measurements =
+      request.text ? parse_measurements(*request.text, request.measurements, nominal, result.noise)
+                   : read_measurements(request.measurements, nominal, result.noise);
   result.noise_given = measurements.noise_given;
   result.frame = measurements.frame;
   result.machine = nominal;

@@ -12,6 +12,7 @@ namespace understudy::calibration {
 
 struct CalibrationRequest {
   std::string measurements;                        ///< path of a CSV
+  std::optional<std::string> text = {};            ///< of that file, where it was read already
   std::string machine = machine::kDefaultMachine;  ///< name or path
   std::string estimator;  ///< empty: maximum_likelihood, or the plug-in where there is one
   std::string plugin;     ///< command in place of an estimator of ours

@@ -15,7 +15,6 @@
 #include "calibration/machine/stored_parameters.h"
 #include "calibration/table/measured_rows.h"
 #include "core/error.h"
-#include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/file/calibration_section.h"
 
@@ -144,8 +143,9 @@ MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
   return result;
 }
 
-std::optional<ColumnMap> map_of_partial_poses(const std::string& file, const std::string& machine_name) {
-  std::istringstream in(read_file(file));
+std::optional<ColumnMap> map_of_partial_poses(const std::string& text, const std::string& file,
+                                              const std::string& machine_name) {
+  std::istringstream in(text);
   std::string line;
   while (std::getline(in, line) && (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#')) {
   }
@@ -164,6 +164,7 @@ std::optional<ColumnMap> map_of_partial_poses(const std::string& file, const std
   if (!machine.is_chain()) return std::nullopt;
   std::vector<std::string> known{"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "sigma_um", "sigma_mrad"};
   TableMap table;
+  table.read = {file, text};
   table.kind = position ? RowKind::position : RowKind::orientation;
   table.format = {',', '.', 1, "#", 0};
   table.joints = {axis_columns(machine), kDegree, {}, 1};

@@ -26,7 +26,9 @@ struct RowsRequest {
 MachineCalibration calibrate_measured_rows(const RowsRequest& request);
 
 /// The map of a table with our own column names (docs/calibration-data.md) that has positions without
-/// orientations, or orientations without positions, in W; nothing for any other table.
-std::optional<ColumnMap> map_of_partial_poses(const std::string& file, const std::string& machine);
+/// orientations, or orientations without positions, in W; nothing for any other table. `text` is that of the
+/// file, which is not read again.
+std::optional<ColumnMap> map_of_partial_poses(const std::string& text, const std::string& file,
+                                              const std::string& machine);
 
 }  // namespace understudy::calibration

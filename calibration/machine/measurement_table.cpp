@@ -154,7 +154,11 @@ Mat6 told_in(const Mat3& R_WB, const Mat6& covariance_B) {
 
 Measurements read_measurements(const std::string& file, const machine::MachineDescription& machine,
                                const MeasurementNoise& assumed) {
-  const std::string text = read_file(file);
+  return parse_measurements(read_file(file), file, machine, assumed);
+}
+
+Measurements parse_measurements(const std::string& text, const std::string& file,
+                                const machine::MachineDescription& machine, const MeasurementNoise& assumed) {
   const Header header = header_of(text, file);
   const TableColumns columns = check_columns(header.words, machine, file, header.line);
   std::istringstream in(text);

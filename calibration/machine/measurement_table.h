@@ -38,6 +38,9 @@ struct Measurements {
 /// file has none.
 Measurements read_measurements(const std::string& file, const machine::MachineDescription& machine,
                                const MeasurementNoise& assumed);
+/// The same, of a file whose text was read already: a pipe can be read once.
+Measurements parse_measurements(const std::string& text, const std::string& file,
+                                const machine::MachineDescription& machine, const MeasurementNoise& assumed);
 
 /// The same file back, with `comment` in its first line. The noise is written as six standard deviations
 /// where covariances are diagonal, else whole; not at all where `noise_given` is false.

@@ -18,9 +18,14 @@ struct NumberColumns {
   double sigma_unit = 1;           ///< [m] or [rad] of one of these
 };
 
+struct TextOfFile {
+  std::string file, text;
+};
+
 /// One table, or several that look alike.
 struct TableMap {
   std::string file;  ///< as the map names it, relative to the map's folder; empty: told elsewhere
+  std::optional<TextOfFile> read = {};  ///< a table that was read already: a pipe can be read once
   RowKind kind = RowKind::pose;
   TextFormat format;
   NumberColumns joints;

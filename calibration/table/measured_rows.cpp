@@ -55,7 +55,7 @@ RawTable read_raw(const TableMap& map, const std::string& file, const fs::path& 
   RawTable raw;
   raw.map = map;
   raw.file = file;
-  const std::string content = read_file(file);
+  const std::string content = map.read && map.read->file == file ? map.read->text : read_file(file);
   bytes += content;
   const DelimitedText text(content, file, map.format);
   for (std::size_t j = 0; j < text.rows(); ++j) raw.lines.push_back(text.line(j));

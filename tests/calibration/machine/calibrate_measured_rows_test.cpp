@@ -338,14 +338,29 @@ class PartialPoses : public ::testing::Test {
     write_file(folder_ / "rows.csv", text);
     return folder_ / "rows.csv";
   }
+  static std::optional<ColumnMap> map_of(const std::string& file) {
+    return map_of_partial_poses(read_file(file), file, "arm");
+  }
   TemporaryFolder folder_;
 };
+
+TEST_F(PartialPoses, AFileThatWasReadIsNotReadAgainButOthersAre) {
+  RowsRequest request;
+  request.machine = "arm";
+  request.measurements = {table(true)};
+  request.map = map_of(request.measurements.front()).value();
+  std::filesystem::rename(folder_ / "rows.csv", folder_ / "others.csv");  // as a pipe that has been emptied
+  request.compared = {folder_ / "others.csv"};
+  EXPECT_EQ(calibrate_measured_rows(request).compared.size(), 1u);
+  request.compared = {folder_ / "none.csv"};
+  EXPECT_THROW(calibrate_measured_rows(request), InputError);
+}
 
 TEST_F(PartialPoses, PositionsWithoutOrientationCalibrate) {
   RowsRequest request;
   request.machine = "arm";
   request.measurements = {table(true)};
-  const auto map = map_of_partial_poses(request.measurements.front(), "arm");
+  const auto map = map_of(request.measurements.front());
   ASSERT_TRUE(map);
   request.map = *map;
   const MachineCalibration found = calibrate_measured_rows(request);
@@ -359,14 +374,14 @@ TEST_F(PartialPoses, OrientationsAloneSayThatLengthsAreUntold) {
   RowsRequest request;
   request.machine = "arm";
   request.measurements = {table(false)};
-  request.map = map_of_partial_poses(request.measurements.front(), "arm").value();
+  request.map = map_of(request.measurements.front()).value();
   const MachineCalibration found = calibrate_measured_rows(request);
   EXPECT_THAT(found.untold, ::testing::Contains(HasSubstr("shift")));
 }
 
 TEST_F(PartialPoses, WholePosesAreLeftToOtherEstimators) {
   write_file(folder_ / "p.csv", "# x\nx_mm,y_mm,z_mm,qw,qx,qy,qz,j1_deg\n");
-  EXPECT_FALSE(map_of_partial_poses(folder_ / "p.csv", "arm"));
+  EXPECT_FALSE(map_of(folder_ / "p.csv"));
 }
 
 }  // namespace
