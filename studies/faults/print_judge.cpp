@@ -59,7 +59,11 @@ unsigned bit(Flaw flaw, bool is) { return is ? 1U << static_cast<unsigned>(flaw)
 PrintTolerances tolerances_of(const std::string& machine_word) {
   const machine::MachineDescription machine = machine::load_machine(machine_word);
   const machine::AcceptedErrors accepted = machine::load_accepted_errors(machine_word);
-  return {accepted.tip, accepted.orientation, machine.gap.accepted_min, machine.gap.accepted_max,
+  return {accepted.tip,
+          accepted.orientation,
+          machine.gap.accepted_min,
+          machine.gap.accepted_max,
+          machine.gap.accepted_max - machine.gap.aim,
           machine.tool.nozzle_diameter};
 }
 
@@ -95,15 +99,21 @@ void IntendedPrint::add_segment(const toolpath::Step& step, const Pose& X_WT_bef
 void IntendedPrint::add_place(const Pose& X_WT, double length, const geometry::Mesh* part) {
   const Vec3 tip = X_WT.translation(), axis = tool_axis(X_WT);
   const double gap = ground_gap(X_WT, part), half_a_bore = tolerances_.bore / 2;
-  Place place{length, gap >= tolerances_.gap_min - kRounding && gap <= tolerances_.gap_max + kRounding,
-              false};
+  const bool on_ground = gap >= tolerances_.gap_min - kRounding && gap <= tolerances_.gap_max + kRounding;
   // A bead fills the way from its nozzle down to what lies below: the one before it ends at its nozzle.
-  const auto lies_on = [&](const Vec3& below) {
-    const double height = (tip - below).dot(axis);
-    return height >= tolerances_.gap_min / 2 && height <= tolerances_.gap_max + kRounding &&
-           (tip - below - height * axis).norm() <= half_a_bore;
-  };
-  place.lies = place.on_ground || std::any_of(tips_W_.begin(), tips_W_.end(), lies_on);
+  double layer = gap;
+  if (!on_ground) {
+    layer = std::numeric_limits<double>::infinity();
+    for (const Vec3& below : tips_W_) {
+      const double height = (tip - below).dot(axis);
+      if (height >= tolerances_.gap_min / 2 && height <= tolerances_.gap_max + kRounding &&
+          (tip - below - height * axis).norm() <= half_a_bore)
+        layer = std::min(layer, height);
+    }
+  }
+  const bool lies = std::isfinite(layer);
+  const Place place{length, on_ground, lies,
+                    lies ? std::max(tolerances_.gap_max, layer + tolerances_.gap_above) : 0};
   places_.push_back(place);
   tips_W_.push_back(tip);
 }
@@ -216,7 +226,7 @@ class Judge {
     cover(point);
     const double way = last_ ? (point.X_WT.translation() - last_->X_WT.translation()).norm() : 0;
     low_.add(place.on_ground && point.gap < allowed_.gap_min - kRounding, way);
-    high_.add(place.lies && !(point.gap <= allowed_.gap_max + kRounding), way);
+    high_.add(place.lies && !(point.gap <= place.highest + kRounding), way);
     // No deeper than that is a nozzle that crosses the bead that it has laid, which is as high as its tip.
     if (place.on_ground && point.gap < -allowed_.gap_min / 2) touched_ = true;
     if (place.lies) {

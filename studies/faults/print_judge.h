@@ -19,6 +19,7 @@ struct PrintTolerances {
   double tip = 0;                   ///< [m]
   double orientation = 0;           ///< [rad]
   double gap_min = 0, gap_max = 0;  ///< [m]
+  double gap_above = 0;             ///< [m], of gap_max over the gap that the machine aims at
   /// [m], of the nozzle. What is too low, missing or loose for less than that of the path is covered by what
   /// is laid before and after it; where what lies below is too far, a bead reaches by as much from either
   /// end.
@@ -38,6 +39,8 @@ class IntendedPrint {
     double length = 0;       ///< [m]
     bool on_ground = false;  ///< over part or table, not over beads: the nozzle may not come too near
     bool lies = false;       ///< on part, table or a bead before it: the bead may not hang
+    /// [m], above which a bead hangs: gap_max, or as much over the programmed layer as that over the aim.
+    double highest = 0;
   };
   const std::vector<Place>& places() const { return places_; }
   const PrintTolerances& tolerances() const { return tolerances_; }

@@ -13,15 +13,15 @@ namespace {
 using rehearsal::Record;
 using rehearsal::TracePoint;
 
-constexpr PrintTolerances kAllowed{0.2e-3, 2 * kDegree, 0.1e-3, 0.2e-3, 0.4e-3};
+constexpr PrintTolerances kAllowed{0.2e-3, 2 * kDegree, 0.1e-3, 0.2e-3, 0.07e-3, 0.4e-3};
 constexpr double kLength = 10e-3, kGap = 0.13e-3, kFilament = 0.5e-3;  // [m], of one bead
 constexpr int kPoints = 1000;                                          // of a bead's trace
 
 /// Down to the table, 10 mm along x on line 3, and the same again a layer higher on line 6.
-toolpath::Program program(int layers) {
+toolpath::Program program(int layers, double height = kGap) {
   toolpath::Program program;
   for (int layer = 0; layer < layers; ++layer) {
-    const double z = kGap * (layer + 1);
+    const double z = height * (layer + 1);
     toolpath::Step step;
     step.line = 3 * layer + 2;
     step.kind = toolpath::StepKind::move;
@@ -37,7 +37,8 @@ toolpath::Program program(int layers) {
 }
 
 /// The print as programmed, without a finding; `change` alters each point by how far along its bead it is.
-Record record(int layers, const std::function<void(double along, TracePoint&)>& change = {}) {
+Record record(int layers, const std::function<void(double along, TracePoint&)>& change = {},
+              double height = kGap) {
   Record record;
   record.go = true;
   for (int layer = 0; layer < layers; ++layer)
@@ -47,8 +48,8 @@ Record record(int layers, const std::function<void(double along, TracePoint&)>& 
       point.time = layer + along;
       point.line = 3 * layer + 3;
       point.extruding = i > 0;
-      point.X_WT = make_pose(Quat::Identity(), Vec3(kLength * along, 0, kGap * (layer + 1)));
-      point.gap = kGap;
+      point.X_WT = make_pose(Quat::Identity(), Vec3(kLength * along, 0, height * (layer + 1)));
+      point.gap = height;
       if (change) change(along, point);
       record.trace.push_back(point);
     }
@@ -116,6 +117,23 @@ TEST(PrintJudge, ABeadMayBeOutsideOfTheBandForAShortWay) {
   EXPECT_EQ(off(0.09e-3, 0.43e-3), "too low");
   EXPECT_EQ(off(0.21e-3, 0.78e-3), "") << "a bore from either end";
   EXPECT_EQ(off(0.21e-3, 0.83e-3), "too high");
+}
+
+// A program's layers need not be as high as the gap that the machine aims at.
+TEST(PrintJudge, ABeadMayBeAsFarAboveItsLayerAsAboveTheAim) {
+  const auto raised = [](double layer, double gap) {
+    const Record run = record(
+        2,
+        [gap](double along, TracePoint& p) {
+          if (last_tenth(along)) p.gap = gap;
+        },
+        layer);
+    return flaw_words(judge_print(IntendedPrint(program(2, layer), nullptr, kAllowed), run).flaws);
+  };
+  EXPECT_EQ(raised(0.2e-3, 0.26e-3), "");
+  EXPECT_EQ(raised(0.2e-3, 0.28e-3), "too high");
+  EXPECT_EQ(raised(0.11e-3, 0.19e-3), "") << "within what the file states";
+  EXPECT_EQ(raised(0.11e-3, 0.21e-3), "too high");
 }
 
 TEST(PrintJudge, OnBeadsANozzleMayComeNearButABeadMayNotHang) {
@@ -186,6 +204,7 @@ TEST(PrintJudge, TolerancesAreThoseOfTheMachineFile) {
   EXPECT_DOUBLE_EQ(hexapod.orientation, 2 * kDegree);
   EXPECT_DOUBLE_EQ(hexapod.gap_min, 0.1e-3);
   EXPECT_DOUBLE_EQ(hexapod.gap_max, 0.2e-3);
+  EXPECT_DOUBLE_EQ(hexapod.gap_above, 0.07e-3);
 }
 
 }  // namespace
