@@ -153,7 +153,8 @@ std::vector<RotaryReading> rank_readings(const ProgramText& program, const Gcode
           // A pivot in the middle of a dome leaves nothing of its path.
           if (reading.quality.filament_share <= kMostFilament) readings.push_back(reading);
         } catch (const InputError& error) {
-          refusal = error.what();  // a program with G43.4 cannot be read as crossing
+          // The first: a program with G43.4 cannot be read as crossing in any case.
+          if (refusal.empty()) refusal = error.what();
         }
       }
   }

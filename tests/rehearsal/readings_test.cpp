@@ -64,6 +64,17 @@ TEST(Readings, TheKindOfMachineAndItsPivotAreFoundFromThePath) {
   }
 }
 
+// Read as axes that cross, the first line that fails is G43.4, which says nothing about the program.
+TEST(Readings, WhereNoneIsPossibleTheFirstReadingSaysWhy) {
+  const std::string text = "M104 S200\nM83\nG43.4\nG1 X1 B2 C3 E1 F600\nG1 X2 X3 E1\n";
+  try {
+    rank_readings({"p.gcode", text}, five_axis());
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("p.gcode:5:7: 'X3': the line has a second X"));
+  }
+}
+
 TEST(Readings, AHeadsSlidesAreTurnedIntoTheTip) {
   toolpath::GcodeOptions options = five_axis();
   options = read_as({"head:60", 1, 1, {}}, options);

@@ -43,8 +43,14 @@ class LineLexer {
   void skip_blanks() {
     while (at_ < line_.size() && is_blank(line_[at_])) ++at_;
   }
+  /// Up to the parenthesis that belongs to the first; where none does, up to the next.
   void skip_comment() {
-    const std::size_t close = line_.find(')', at_);
+    std::size_t close = at_, depth = 0;
+    for (; close < line_.size(); ++close) {
+      if (line_[close] == '(') ++depth;
+      if (line_[close] == ')' && --depth == 0) break;
+    }
+    if (close == line_.size()) close = line_.find(')', at_);
     if (close == std::string_view::npos) fail(at_, "the comment '(' is not closed on its line");
     at_ = close + 1;
   }

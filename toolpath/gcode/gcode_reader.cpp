@@ -149,11 +149,24 @@ class Reader {
     try {
       if (options_.macros != nullptr && call_macro(words, line)) return;
       const std::string word = command_in_words(words);
-      Block block = word.empty() ? Block(lex_line(words, file_, line), file_, line, letters_)
+      Block block = word.empty() ? Block(words_of(words, line), file_, line, letters_)
                                  : block_of(word, words, {file_, line, column_of(words)}, file_, letters_);
       state_.run(block, steps_);
     } catch (const UnknownWord& error) {
       unknown_.add(error);
+    }
+  }
+
+  /// What an unknown command makes of the rest of its line is not known either.
+  std::vector<Word> words_of(std::string_view words, int line) const {
+    try {
+      return lex_line(words, file_, line);
+    } catch (const InputError&) {
+      const std::string command = first_command(words);
+      const bool coded = command.size() > 1 && (command[0] == 'G' || command[0] == 'M') &&
+                         std::isdigit(static_cast<unsigned char>(command[1])) != 0;
+      if (!coded || has_meaning(command) || letters_.switching(command)) throw;
+      throw UnknownWord({file_, line, column_of(words)}, command);
     }
   }
 

@@ -86,8 +86,10 @@ void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
   set_nozzle(block, steps);
   set_fan(block, steps);
   set_retraction(block);
-  if (const Word* flow = block.find(Command::flow)) flow_ = percent(block, *flow, "flow") / 100;
-  if (const Word* speed = block.find(Command::speed)) speed_ = percent(block, *speed, "speed") / 100;
+  if (block.find(Command::flow) != nullptr)
+    if (const auto flow = percent(block, "flow")) flow_ = *flow / 100;
+  if (block.find(Command::speed) != nullptr)
+    if (const auto speed = percent(block, "speed")) speed_ = *speed / 100;
 }
 
 void GcodeState::set_nozzle(Block& block, std::vector<Step>& steps) {
@@ -103,7 +105,7 @@ void GcodeState::set_nozzle(Block& block, std::vector<Step>& steps) {
   steps.back().wait = wait != nullptr;
 }
 
-/// P names a fan; all but the first cool something else.
+/// P names a fan; all but the first cool something else. Without S the fan runs at full speed.
 void GcodeState::set_fan(Block& block, std::vector<Step>& steps) {
   const Word* on = block.find(Command::fan_on);
   const Word* off = block.find(Command::fan_off);
@@ -115,17 +117,20 @@ void GcodeState::set_fan(Block& block, std::vector<Step>& steps) {
     return;
   }
   const Word* s = block.take('S');
-  if (s == nullptr) block.fail(*on, fmt::format("'{}' needs S, the fan's speed from 0 to 255", on->text));
-  if (s->value < 0 || s->value > 255)
+  if (s != nullptr && (s->value < 0 || s->value > 255))
     block.fail(*s, fmt::format("'{}': the fan's speed is outside 0 to 255", s->text));
   if (other) return;
   steps.push_back(step(StepKind::fan, block.line()));
-  steps.back().fan = s->value / 255;
+  steps.back().fan = s == nullptr ? 1 : s->value / 255;
 }
 
-double GcodeState::percent(Block& block, const Word& command, const char* what) const {
+/// Without S the firmware tells the value, or (M221 X0 Y0 Z0) switches its soft limits.
+std::optional<double> GcodeState::percent(Block& block, const char* what) const {
   const Word* s = block.take('S');
-  if (s == nullptr) block.fail(command, fmt::format("'{}' needs S, the {} in percent", command.text, what));
+  if (s == nullptr) {
+    for (const char letter : {'X', 'Y', 'Z'}) block.extract(letter);
+    return std::nullopt;
+  }
   if (s->value < kLeastPercent || s->value > kLargestPercent)
     block.fail(
         *s, fmt::format("'{}': the {} is outside {} to {} %", s->text, what, kLeastPercent, kLargestPercent));
@@ -192,10 +197,13 @@ void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
   const Word& code = *block.find(Command::dwell);
   const Word* milliseconds = block.take('P');
   const Word* seconds = block.take('S');
-  if ((milliseconds == nullptr) == (seconds == nullptr))
-    block.fail(code, "G4 needs either P (milliseconds) or S (seconds)");
-  const Word& word = seconds != nullptr ? *seconds : *milliseconds;
-  const double duration = seconds != nullptr ? seconds->value : milliseconds->value * 1e-3;
+  if (milliseconds != nullptr && seconds != nullptr)
+    block.fail(code, "G4 needs either P (milliseconds) or S (seconds), not both");
+  const Word& word = seconds != nullptr ? *seconds : milliseconds != nullptr ? *milliseconds : code;
+  // Alone it waits until the moves before it have ended.
+  const double duration = seconds != nullptr        ? seconds->value
+                          : milliseconds != nullptr ? milliseconds->value * 1e-3
+                                                    : 0;
   if (duration < 0 || duration > kLongestDwell)
     block.fail(word, fmt::format("'{}': the dwell is outside 0 to {} s", word.text, kLongestDwell));
   steps.push_back(step(StepKind::dwell, block.line()));

@@ -30,7 +30,7 @@ class GcodeState {
   void home(Block& block, std::vector<Step>& steps);
   void set_nozzle(Block& block, std::vector<Step>& steps);
   void set_fan(Block& block, std::vector<Step>& steps);
-  double percent(Block& block, const Word& command, const char* what) const;
+  std::optional<double> percent(Block& block, const char* what) const;
   void select_tool(Block& block);
   void set_retraction(Block& block);
   void retract(Block& block, std::vector<Step>& steps);

@@ -80,8 +80,8 @@ struct WithoutEffect {
 const WithoutEffect* without_effect(char letter, double number);
 
 /// Whether the line is one of those that are no row of letters and numbers and have no effect: a `%`, the
-/// number of a program (O1000), a text for a display (M117, M118) or a name for a part (M486), a firmware's
-/// command in words such as EXCLUDE_OBJECT_START.
+/// number of a program (O1000), a text for a display (M117, M118, M1002) or a name for a part (M486), a
+/// firmware's command in words such as EXCLUDE_OBJECT_START.
 bool is_line_without_effect(std::string_view line);
 
 /// The first word of a line that is a firmware's command in words (two letters or more), upper case; empty

@@ -78,7 +78,7 @@ TEST(GcodeWords, TheSpeedIsInPercentOfTheFeed) {
   EXPECT_NEAR(steps[1].feed, 0.005, 1e-12);
   EXPECT_NEAR(steps[2].duration, 15, 1e-9);
   EXPECT_THAT(rejection("M220 S0\nG0 X1"), HasSubstr("'S0': the speed is outside 1 to 1000 %"));
-  EXPECT_THAT(rejection("M220\nG0 X1"), HasSubstr("needs S, the speed in percent"));
+  EXPECT_NEAR(steps_of("M220 S50\nM220\nG1 X1 F120\n")[0].feed, 1e-3, 1e-15) << "a question";
 }
 
 TEST(GcodeWords, AFirmwaresRetractionDrawsBackAndPushesTheSame) {
