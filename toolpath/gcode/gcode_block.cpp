@@ -30,6 +30,7 @@ Block::Block(std::vector<Word> words, const std::string& file, int line, const L
   without_effect_ = read_without_effect(words);
   if (without_effect_) return;
   for (const Word& word : words) add(word, &word == words.data());
+  drop_homing_options();
   check_numbers();
   check_groups();
 }
@@ -43,6 +44,11 @@ bool Block::read_without_effect(const std::vector<Word>& words) {
   const WithoutEffect* command =
       understudy::toolpath::without_effect(words[first].letter, words[first].value);
   if (command == nullptr) return false;
+  const auto is_code = [](const Word& word) {
+    return (word.letter == 'G' || word.letter == 'M') && !word.bare;
+  };
+  const auto next = words.begin() + static_cast<std::ptrdiff_t>(first) + 1;
+  if (command->combines() && std::any_of(next, words.end(), is_code)) return false;
   for (std::size_t i = first; i < words.size(); ++i) {
     const Word& word = words[i];
     const bool known = i == first || std::strchr(command->parameters, word.letter) != nullptr;
@@ -57,9 +63,20 @@ void Block::check_numbers() const {
   for (const Entry& entry : words_) {
     const Word& word = entry.word;
     const bool axis_to_home = find(Command::home) != nullptr && std::strchr("XYZBC", word.letter) != nullptr;
-    if (word.quoted || (word.bare && !axis_to_home))
+    const bool asked = find(Command::flow) != nullptr && word.letter == 'S';  // Bambu's M221 S
+    if (word.quoted || (word.bare && !axis_to_home && !asked))
       fail(word, fmt::format("'{}': {} needs a finite decimal number", word.text, word.letter));
   }
+}
+
+/// How a firmware homes: W without levelling, R lifts, S P T speeds and precision of some.
+void Block::drop_homing_options() {
+  if (find(Command::home) == nullptr) return;
+  std::erase_if(words_, [](const Entry& entry) {
+    const Word& word = entry.word;
+    return !entry.is_command && !word.quoted &&
+           (std::strchr("RSPT", word.letter) != nullptr || (word.letter == 'W' && word.bare));
+  });
 }
 
 void Block::add(const Word& word, bool first) {
@@ -73,6 +90,9 @@ void Block::add(const Word& word, bool first) {
       }
       meaning = nullptr;
     }
+    const WithoutEffect* nothing =
+        meaning == nullptr ? understudy::toolpath::without_effect(word.letter, word.value) : nullptr;
+    if (nothing != nullptr && nothing->combines()) return;  // G90 G40 G80
     if (meaning == nullptr) throw UnknownWord({file_, line_, word.column}, std::string(word.text));
     words_.push_back({word, true, meaning->command, false});
     return;
@@ -113,6 +133,8 @@ void Block::check_groups() const {
         fail(words_[i].word,
              fmt::format("'{}' cannot share a line with '{}'", words_[i].word.text, words_[j].word.text));
 }
+
+std::ptrdiff_t Block::commands() const { return std::ranges::count(words_, true, &Entry::is_command); }
 
 const Word* Block::find(Command command) const {
   for (const Entry& entry : words_)

@@ -47,6 +47,8 @@ class Block {
   bool without_effect() const { return without_effect_; }
   /// The only word of its line.
   bool alone(const Word& word) const { return words_.size() == 1 && &words_.front().word == &word; }
+  /// G and M words on the line.
+  std::ptrdiff_t commands() const;
   int line() const { return line_; }
   /// The word of the command, or null; commands need not be taken.
   const Word* find(Command command) const;
@@ -73,6 +75,7 @@ class Block {
   void add(const Word& word, bool first);
   void check_letter(const Word& word) const;
   void check_groups() const;
+  void drop_homing_options();
   void check_numbers() const;
   bool read_without_effect(const std::vector<Word>& words);
 

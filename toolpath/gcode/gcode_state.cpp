@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kMotionWords = "XYZBCEWIJKR";
 constexpr double kLongestDwell = 86400;                   // [s]
 constexpr double kLongestRetraction = 1;                  // [m]
+constexpr double kNoTool = 255;                           // and above: Bambu's words for none
 constexpr int kLeastPercent = 1, kLargestPercent = 1000;  // of M220 and M221
 
 bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
@@ -127,7 +128,7 @@ void GcodeState::set_fan(Block& block, std::vector<Step>& steps) {
 /// Without S the firmware tells the value, or (M221 X0 Y0 Z0) switches its soft limits.
 std::optional<double> GcodeState::percent(Block& block, const char* what) const {
   const Word* s = block.take('S');
-  if (s == nullptr) {
+  if (s == nullptr || s->bare) {
     for (const char letter : {'X', 'Y', 'Z'}) block.extract(letter);
     return std::nullopt;
   }
@@ -165,6 +166,7 @@ void GcodeState::select_tool(Block& block) {
                           block.find(Command::flow) != nullptr || block.find(Command::tool_change) != nullptr;
   if (!of_command && !block.alone(*tool)) return;
   block.take('T');
+  if (tool->value >= kNoTool) return;
   if (tool->value != 0 && tool->value != 1)
     block.fail(*tool, fmt::format("'{}': the machine has one extruder, T0 or T1", tool->text));
   if (tool_ && *tool_ != tool->value)
@@ -188,8 +190,9 @@ void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
   if (word != nullptr && motion_ == Motion::spline) return move_along_spline(block, steps);
   if (word != nullptr) return is_arc() ? move_along_arc(block, steps) : move(block, steps);
   const Word* code = block.find(motion_ == Motion::rapid ? Command::rapid : Command::linear);
-  // A lone "G1 F1500" is how slicers set the feed; a lone "G1" is a line that lost its words.
-  if (code != nullptr && block.find('F') == nullptr)
+  // A lone "G1 F1500" is how slicers set the feed, "G0 G17 G90" how others choose modes; a lone "G1" is a
+  // line that lost its words.
+  if (code != nullptr && block.find('F') == nullptr && block.commands() == 1)
     block.fail(*code, fmt::format("'{}' has neither motion nor extrusion nor feed", code->text));
 }
 

@@ -100,7 +100,7 @@ constexpr WithoutEffect kWithoutEffect[] = {
     {'M', 862.4, "PQ"},         //
     {'M', 862.5, "PQ"},         //
     {'M', 862.6, "PQ"},         //
-    {'M', 900, "KLTM"},         // pressure advance
+    {'M', 900, "KLTMSCR"},      // pressure advance
 };
 
 /// Of Klipper and its macros, for all that begin so.

@@ -71,6 +71,22 @@ TEST(GcodeDialect, ACommentEndsAtItsOwnParenthesis) {
   EXPECT_NEAR(tip_mm(parse("G0 X1 (a (b) Y2\n")[0]).y(), 2, 1e-12);
 }
 
+// The first is in PrusaSlicer's profile of the MK3, the second in Bambu Studio's.
+TEST(GcodeDialect, HowAFirmwareHomesIsItsOwnAffair) {
+  EXPECT_EQ(parse("G0 X5\nG28 W ; without mesh\n").at(1).kind, StepKind::home);
+  EXPECT_EQ(tip_mm(parse("G0 X5 Y6\nG28 Z P0 T300\n").at(1)), Vec3(5, 6, 0));
+  EXPECT_THAT(rejection("G0 X5\nG28 I0\n"), HasSubstr("'I0' belongs to no command"));
+}
+
+// LinuxCNC's demonstrations, Fusion and other CAM systems begin so.
+TEST(GcodeDialect, ModesShareALineWithWordsWithoutEffectAndChooseTheMotion) {
+  const auto steps = parse("G00 G17 G40 G90 G94\nX5\nG40 G49 G80 M5\nG1 G64 X6 F60\n", five_axis());
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[0].kind, StepKind::travel);
+  EXPECT_EQ(steps[1].kind, StepKind::move);
+  EXPECT_THAT(rejection("G90\nG0\n"), HasSubstr("'G0' has neither motion"));
+}
+
 TEST(GcodeDialect, WhatAnUnknownCommandMakesOfItsLineIsNotKnownEither) {
   EXPECT_THAT(rejection("G0 X1\nM1999 some_text : 5\nM1999 : 2\nM98 P\"start.g\" Q=\nG0 X2\n"),
               HasSubstr("'M1999' (2 lines from line 2), 'M98' (1 line from line 4)"));
@@ -143,7 +159,7 @@ TEST(GcodeDialect, FlowScalesFilamentFromThereOn) {
   EXPECT_NEAR(steps[0].filament, 1e-3, kRounding);
   EXPECT_NEAR(steps[1].filament, 0.95e-3, kRounding);
   EXPECT_NEAR(steps[2].filament, 1e-3, kRounding);
-  const auto kept = parse("M83\nM221 S50\nM221\nM221 X0 Y0 Z0\nG1 X1 E2 F60\n");
+  const auto kept = parse("M83\nM221 S50\nM221\nM221 S; push\nM221 X0 Y0 Z0\nT1000\nG1 X1 E2 F60\n");
   EXPECT_NEAR(kept.at(0).filament, 1e-3, kRounding) << "nothing but S sets it";
   EXPECT_THAT(rejection("M221 S0"), HasSubstr("outside 1 to 1000 %"));
 }
