@@ -76,7 +76,9 @@ struct WithoutEffect {
   double number;
   const char* parameters;  ///< that it may have
   /// Whether it may share its line with other commands: those that need no parameters.
-  constexpr bool combines() const { return *parameters == 0 || (letter == 'G' && number == 80); }
+  constexpr bool combines() const {
+    return *parameters == 0 || (letter == 'G' && (number == 64 || number == 80));
+  }
 };
 /// Null: it has an effect, or is not known.
 const WithoutEffect* without_effect(char letter, double number);
