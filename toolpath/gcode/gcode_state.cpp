@@ -59,6 +59,27 @@ void GcodeState::set_modes(const Block& block) {
   position_.select_work_offset(block);
 }
 
+void GcodeState::take_modes(Block& block) {
+  set_modes(block);
+  const Word* word = block.take('F');
+  if (word != nullptr && word->value > 0 && !inverse_time_) feed_ = word->value * unit_ / 60;
+}
+
+void GcodeState::take_end(Block& block) {
+  position_.move(block, unit_, relative_);
+  fed_filament(block);
+}
+
+void GcodeState::rejoin(const Pose& from, double filament, int line, std::vector<Step>& steps) const {
+  constexpr double kUsualFeed = 0.03;   // [m/s], of filament at rest, where the program has said none yet
+  constexpr double kNoFilament = 1e-9;  // [m]: rounding
+  if (!from.isApprox(position_.X_WT(), 0)) steps.push_back(step(StepKind::travel, line));
+  if (std::abs(filament) < kNoFilament) return;
+  steps.push_back(step(filament > 0 ? StepKind::print : StepKind::move, line));
+  steps.back().filament = filament;
+  steps.back().duration = std::abs(filament) / feed_.value_or(kUsualFeed);
+}
+
 void GcodeState::set_feed(Block& block) {
   duration_.reset();
   if (block.find(Command::retraction) != nullptr) return;  // its F is that of G10
@@ -216,7 +237,7 @@ void GcodeState::retract(Block& block, std::vector<Step>& steps) {
   if (back != retracted_) return;  // a second one does nothing
   retracted_ = !back;
   Step next = step(back ? StepKind::print : StepKind::move, block.line());
-  next.filament = (back ? 1 : -1) * *retraction_;
+  next.filament = count_fed((back ? 1 : -1) * *retraction_);
   next.duration = *retraction_ / retraction_feed_;
   if (next.filament != 0) steps.push_back(next);
 }
@@ -270,7 +291,13 @@ double GcodeState::fed_filament(Block& block) {
   if (std::abs(extruder_) > kLargestExtruder)
     block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
                                   to_mm(extruder_), to_mm(kLargestExtruder)));
-  return flow_ * (relative_extrusion_ ? value : value - before);
+  return count_fed(flow_ * (relative_extrusion_ ? value : value - before));
+}
+
+double GcodeState::count_fed(double filament) {
+  fed_ += filament;
+  most_fed_ = std::max(most_fed_, fed_);
+  return filament;
 }
 
 Step GcodeState::step(StepKind kind, int line) const {
