@@ -191,6 +191,14 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
         existing_file(map, "macros", folder, "path of a Klipper configuration with macros").string();
   if (map.has("temperature_c"))
     dialect.temperature_c = map.number("temperature_c", {100, 450}, "of the nozzle from the start on");
+  if (map.has("nozzle_mm"))
+    dialect.nozzle_mm =
+        map.number("nozzle_mm", {0.05, 10}, "bore that is mounted, if not the machine file's");
+  if (map.has("layer_mm"))
+    dialect.layer_mm = map.number("layer_mm", {0.01, 10}, "of layers, where the path does not tell");
+  if (map.has("strict"))
+    dialect.strict = map.word("strict", {"true", "false"},
+                              "whether lines that cannot be read or made are refused") == "true";
   const auto sign = [&map](const char* key, const char* about) {
     return map.number(key, {}, about) < 0 ? -1 : 1;
   };

@@ -5,12 +5,14 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "rehearsal/readings.h"
 #include "rehearsal/rotary_words.h"
+#include "toolpath/inspection/program_summary.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -46,23 +48,51 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   return gcode;
 }
 
-toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
-  const toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
-  toolpath::Program program = [&] {
-    try {
-      return toolpath::read_gcode(request.program, options);
-    } catch (const InputError& error) {
-      offer_inspection(error, request);
-    }
-  }();
-  if (!request.dialect.temperature_c) return program;
+ReadProgram read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
+  toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
+  ReadProgram read;
+  options.passed_over = &read.passed_over;
+  toolpath::Program& program = read.program;
+  const std::string text = understudy::read_file(request.program);
+  read.facts = toolpath::slicer_facts(text);
+  try {
+    program = toolpath::parse_gcode(text, request.program, options);
+  } catch (const InputError& error) {
+    offer_inspection(error, request);
+  }
+  if (request.dialect.strict && !read.passed_over.empty())
+    toolpath::refuse_passed_over(program.file, read.passed_over);
+  if (!request.dialect.temperature_c) return read;
   toolpath::Step heat;
   heat.kind = toolpath::StepKind::temperature;
   heat.X_WT = options.X_WT_home;
   heat.temperature = *request.dialect.temperature_c + kCelsiusZero;
   heat.wait = true;
   program.steps.insert(program.steps.begin(), heat);
-  return program;
+  return read;
+}
+
+std::vector<Finding> findings_of(const std::vector<toolpath::PassedOver>& lines) {
+  std::vector<Finding> findings;
+  for (const toolpath::PassedOver& passed : lines) {
+    Finding f;
+    f.kind = "program";
+    f.gcode_line = passed.line;
+    f.last_line = passed.last_line;
+    f.value = to_mm(passed.filament);
+    f.unit = "mm";
+    f.about = fmt::format("{} {}", kPassedOver, passed.line);  // each is told on its own
+    f.message = fmt::format("line {} cannot be read: {}; passed over", passed.line, passed.why);
+    if (passed.last_line > passed.line)
+      f.message +=
+          fmt::format(", with the moves up to line {}, because {} of line {} {} not known", passed.last_line,
+                      fmt::join(passed.unknown, " "), passed.line, passed.unknown.size() == 1 ? "is" : "are");
+    if (passed.filament > 0 || !passed.filament_known)
+      f.message += fmt::format(", without {:.3f} mm of filament{}", f.value,
+                               passed.filament_known ? "" : " and what cannot be read");
+    findings.push_back(std::move(f));
+  }
+  return findings;
 }
 
 std::optional<Finding> misread_words(const RehearsalRequest& request, const toolpath::Program& program,
@@ -72,8 +102,10 @@ std::optional<Finding> misread_words(const RehearsalRequest& request, const tool
            (s.rotary->b != program.steps.front().rotary->b || s.rotary->c != program.steps.front().rotary->c);
   };
   if (std::ranges::none_of(program.steps, turned)) return std::nullopt;
-  return misread_words(program, {request.program, read_file(request.program)},
-                       gcode_options(request.dialect, machine), request.machine);
+  toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
+  std::vector<toolpath::PassedOver> told_already;
+  options.passed_over = &told_already;
+  return misread_words(program, {request.program, read_file(request.program)}, options, request.machine);
 }
 
 }  // namespace understudy::rehearsal

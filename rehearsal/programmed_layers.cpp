@@ -96,9 +96,13 @@ struct ProgrammedLayers::Stretch {
 
 ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
                                    const machine::MachineDescription& machine,
-                                   const std::shared_ptr<const geometry::Mesh>& part)
-    : limits_(machine.gap) {
+                                   const std::shared_ptr<const geometry::Mesh>& part, double told)
+    : limits_(machine.gap), told_(told) {
   const std::vector<float> areas = programmed_areas(program, machine);
+  std::vector<std::pair<double, double>> printed;
+  for (const float area : areas)
+    if (area > 0) printed.emplace_back(area, 1);
+  told_area_ = quantile_by_length(std::move(printed), 0.5);
   Stack stack(machine, part);
   std::vector<Sample> samples;
   std::vector<Stretch> stretches;
@@ -163,15 +167,19 @@ ProgrammedLayers::Layer ProgrammedLayers::typical(const std::vector<Stretch>& st
           static_cast<float>(quantile_by_length(std::move(areas), 0.5))};
 }
 
+sim::GapBand ProgrammedLayers::told_band() const {
+  return told_ > 0 ? sim::gap_band(limits_, told_, told_area_) : sim::gap_band(limits_);
+}
+
 sim::GapBand ProgrammedLayers::band(int line) const {
   const auto at = static_cast<std::size_t>(std::max(0, line));
   const Layer layer = at < layers_.size() ? layers_[at] : Layer{};
-  if (layer.layer <= 0) return sim::gap_band(limits_);
+  if (layer.layer <= 0) return told_band();
   return sim::gap_band(limits_, static_cast<double>(layer.layer), static_cast<double>(layer.area));
 }
 
 sim::GapBand ProgrammedLayers::typical_band() const {
-  if (typical_.layer <= 0) return sim::gap_band(limits_);
+  if (typical_.layer <= 0) return told_band();
   return sim::gap_band(limits_, static_cast<double>(typical_.layer), static_cast<double>(typical_.area));
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "control/gap/gap_controller.h"
@@ -168,6 +169,8 @@ struct Record {
   std::string machine_word;                 ///< as `--machine` took it
   std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
   bool measures_gap = false;                ///< the machine has laser and microscope
+  /// First and last line of what was passed over, in order: the run is one without it.
+  std::vector<std::pair<int, int>> passed_over;
 
   std::optional<PrintFigures> print;
   std::optional<AccuracyFigures> accuracy;

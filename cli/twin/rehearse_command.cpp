@@ -2,6 +2,8 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -70,8 +72,20 @@ void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
   }
 }
 
+/// Ahead of all figures: they are not those of the whole program.
+void print_passed_over(const std::vector<std::pair<int, int>>& lines) {
+  if (lines.empty()) return;
+  std::string text;
+  for (const auto& [first, last] : lines)
+    text += (text.empty() ? "" : ", ") +
+            (last > first ? fmt::format("{} to {}", first, last) : fmt::format("{}", first));
+  fmt::print("  passed over, so that all of the following is about the program without it: {} {}\n",
+             text.find_first_of(", ") == std::string::npos ? "line" : "lines", text);
+}
+
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
+  print_passed_over(record.passed_over);
   print_findings(rehearsal::group_findings(record));
   if (record.registration) print_registration(*record.registration);
   if (record.gap) {

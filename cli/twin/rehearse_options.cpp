@@ -53,10 +53,12 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
       .add_option("--macros", dialect.macros,
                   "Klipper's configuration, whose macros stand for commands that are unknown here")
       ->group("Programs of other machines");
+  add_process_options(command, dialect);
   command
-      .add_option("--temperature", dialect.temperature_c,
-                  "C: the nozzle's from the start on, where a macro of the printer sets it")
-      ->check(CLI::Range(100., 450.))
+      .add_flag(
+          "--strict", dialect.strict,
+          "refuse a program with lines that cannot be read or made, instead of a no-go that tells of them "
+          "and of the rest")
       ->group("Programs of other machines");
   command.add_option("--b-sign", dialect.b_sign, "-1: the program counts B the other way round")
       ->check(CLI::IsMember({-1, 1}))
@@ -74,6 +76,22 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
           "of a machine whose turning axes cross at the program's origin); without it the machine file's")
       ->group("Programs of other machines");
 }
+
+}  // namespace
+
+void add_process_options(CLI::App& command, rehearsal::DialectRequest& dialect) {
+  const auto add = [&](const char* name, std::optional<double>& value, const char* about, double low,
+                       double high) {
+    command.add_option(name, value, about)->check(CLI::Range(low, high))->group("Programs of other machines");
+  };
+  add("--temperature", dialect.temperature_c,
+      "C: the nozzle's from the start on, where a macro of the printer sets it", 100, 450);
+  add("--nozzle", dialect.nozzle_mm, "mm: bore of the nozzle that is mounted, if not the machine file's",
+      0.05, 10);
+  add("--layer", dialect.layer_mm, "mm: height of the layers, where the path does not tell", 0.01, 10);
+}
+
+namespace {
 
 void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
   command

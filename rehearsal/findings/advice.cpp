@@ -131,6 +131,20 @@ std::string about_flow(const Finding& finding, const Record&) {
   return "lower the feed F where the bead begins and ends, or let the extruder start earlier";
 }
 
+std::string about_program(const Finding& finding, const Record&) {
+  if (finding.about == kOtherNozzle)
+    return fmt::format("if that nozzle will be mounted: `--nozzle {:g}`; else slice for the one of {:g} mm",
+                       finding.value, finding.limit);
+  if (finding.about == kOtherLayer)
+    return "look whether `--place X,Y,Z` (mm) has the program at its height, and at the slicer's layers";
+  if (finding.about.starts_with(kPassedOver))
+    return "mend this line and rehearse again: what the machine does there is not known, and everything else "
+           "here is about the program without it";
+  return "mend this line and rehearse again: the machine would jam or lay what no nozzle lays, and "
+         "everything "
+         "else here is about the program without that filament";
+}
+
 using About = std::function<std::string(const Finding&, const Record&)>;
 
 About always(const char* text) {
@@ -152,6 +166,7 @@ const std::map<std::string, About>& advice_by_kind() {
       {"gap", about_gap},
       {"registration", about_registration},
       {"flow", about_flow},
+      {"program", about_program},
       {"adhesion", about_adhesion},
       {"sag", always("draw the strand slower and with more fan (`M106 S255`), or hold it at both ends")}};
   return kinds;

@@ -18,6 +18,7 @@ constexpr double kFarAbove = 2e-3;  ///< [m] above the table, where no first lay
 struct Inspection {
   int lines = 0;
   std::vector<toolpath::UnknownWordCount> unknown;  ///< their lines are passed over here
+  std::vector<toolpath::PassedOver> passed_over;    ///< lines that cannot be read
   std::map<std::string, std::string> slicer_facts;  ///< from comments
   toolpath::ProgramSummary summary;                 ///< under the first of `readings`, if there are any
   std::vector<RotaryReading> readings;              ///< the most likely first; none without rotary words
@@ -35,7 +36,9 @@ struct Inspection {
 
 /// Reads `program` as for `machine`, with `macros` (a path; empty: none); unknown words are counted, not
 /// refused. Readings are ranked as rank_readings() does. Throws InputError as read_gcode() does.
-Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros = {});
+/// Of `told`, nozzle, layer and temperature count, ahead of what comments say.
+Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros = {},
+                   const DialectRequest& told = {});
 
 /// "understudy rehearse ..." with the options that differ from their defaults.
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder);

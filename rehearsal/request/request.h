@@ -21,6 +21,9 @@ struct DialectRequest {
   std::vector<std::string> ignored;         ///< commands passed over with their lines, upper case
   std::string macros;                       ///< path of a Klipper configuration; empty: none
   std::optional<double> temperature_c;      ///< of the nozzle from the start on
+  std::optional<double> nozzle_mm;          ///< bore that is mounted in place of the machine file's
+  std::optional<double> layer_mm;           ///< height of layers where the program's path does not tell
+  bool strict = false;      ///< lines that cannot be read or carried out are refused, not passed over
   std::string coordinates;  ///< of rotary programs: tip, machine, crossing; empty: the machine's
 };
 

@@ -67,6 +67,7 @@ TEST_F(InputDigest, EveryInputCounts) {
       [](auto& r) { r.dialect.ignored = {"G29"}; },
       [](auto& r) { r.dialect.macros = r.program; },
       [](auto& r) { r.dialect.temperature_c = 200; },
+      [](auto& r) { r.dialect.strict = true; },
       [](auto& r) { r.surface.intended = "bottle"; },
       [](auto& r) { r.surface.profile_mm[3] = 2; },
       [](auto& r) {
