@@ -25,6 +25,28 @@ namespace {
                                request.program, request.machine));
 }
 
+Finding finding_of(const toolpath::PassedOver& passed) {
+  const double filament_mm = to_mm(passed.filament);
+  std::string message = fmt::format("line {} cannot be read: {}; passed over", passed.line, passed.why);
+  if (passed.last_line > passed.line)
+    message +=
+        fmt::format(", with the moves up to line {}, because {} of line {} {} not known", passed.last_line,
+                    fmt::join(passed.unknown, " "), passed.line, passed.unknown.size() == 1 ? "is" : "are");
+  if (passed.filament > 0 || !passed.filament_known)
+    message += fmt::format(", without {:.3f} mm of filament{}", filament_mm,
+                           passed.filament_known ? "" : " and what cannot be read");
+  return {"program",
+          Severity::error,
+          passed.line,
+          0,
+          filament_mm,
+          0,
+          "mm",
+          std::move(message),
+          passed.last_line,
+          fmt::format("{} {}", kPassedOver, passed.line)};  // each is told on its own
+}
+
 }  // namespace
 
 toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
@@ -74,24 +96,8 @@ ReadProgram read_program(const RehearsalRequest& request, const machine::Machine
 
 std::vector<Finding> findings_of(const std::vector<toolpath::PassedOver>& lines) {
   std::vector<Finding> findings;
-  for (const toolpath::PassedOver& passed : lines) {
-    Finding f;
-    f.kind = "program";
-    f.gcode_line = passed.line;
-    f.last_line = passed.last_line;
-    f.value = to_mm(passed.filament);
-    f.unit = "mm";
-    f.about = fmt::format("{} {}", kPassedOver, passed.line);  // each is told on its own
-    f.message = fmt::format("line {} cannot be read: {}; passed over", passed.line, passed.why);
-    if (passed.last_line > passed.line)
-      f.message +=
-          fmt::format(", with the moves up to line {}, because {} of line {} {} not known", passed.last_line,
-                      fmt::join(passed.unknown, " "), passed.line, passed.unknown.size() == 1 ? "is" : "are");
-    if (passed.filament > 0 || !passed.filament_known)
-      f.message += fmt::format(", without {:.3f} mm of filament{}", f.value,
-                               passed.filament_known ? "" : " and what cannot be read");
-    findings.push_back(std::move(f));
-  }
+  findings.reserve(lines.size());
+  for (const toolpath::PassedOver& line : lines) findings.push_back(finding_of(line));
   return findings;
 }
 

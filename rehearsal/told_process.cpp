@@ -15,15 +15,7 @@ constexpr double kSameLayer = 0.3;    // of its height, which lines side by side
 constexpr double kThickest = 10;      // [mm], of layers that comments tell
 
 Finding warning(double value, double limit, std::string message, const char* about) {
-  Finding f;
-  f.kind = "program";
-  f.severity = Severity::warning;
-  f.value = value;
-  f.limit = limit;
-  f.unit = "mm";
-  f.message = std::move(message);
-  f.about = about;
-  return f;
+  return {"program", Severity::warning, 0, 0, value, limit, "mm", std::move(message), 0, about};
 }
 
 }  // namespace

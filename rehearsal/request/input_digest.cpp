@@ -92,9 +92,10 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   inputs.values("dialect", dialect.place_mm, dialect.extruder_letter, dialect.b_sign, dialect.c_sign,
                 dialect.coordinates);
   for (const std::string& word : dialect.ignored) inputs.word("ignored", word);
-  if (!dialect.macros.empty())
-    for (const std::string& file : toolpath::GcodeMacros::read(dialect.macros).files())
-      inputs.bytes_of("macros", file);
+  if (!dialect.macros.empty()) {
+    const auto macros = toolpath::GcodeMacros::read(dialect.macros);
+    for (const std::string& file : macros.files()) inputs.bytes_of("macros", file);
+  }
   inputs.values("temperature", number(dialect.temperature_c));
   inputs.values("nozzle and layer", number(dialect.nozzle_mm), number(dialect.layer_mm));
   inputs.values("strict", dialect.strict);
