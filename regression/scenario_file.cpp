@@ -196,9 +196,11 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
         map.number("nozzle_mm", {0.05, 10}, "bore that is mounted, if not the machine file's");
   if (map.has("layer_mm"))
     dialect.layer_mm = map.number("layer_mm", {0.01, 10}, "of layers, where the path does not tell");
-  if (map.has("strict"))
-    dialect.strict = map.word("strict", {"true", "false"},
-                              "whether lines that cannot be read or made are refused") == "true";
+  if (map.has("strict")) {
+    const std::string word = map.word("strict", {"yes", "no", "true", "false"},
+                                      "whether lines that cannot be read or made are refused");
+    dialect.strict = word == "yes" || word == "true";
+  }
   const auto sign = [&map](const char* key, const char* about) {
     return map.number(key, {}, about) < 0 ? -1 : 1;
   };

@@ -129,7 +129,7 @@ TEST(Rehearse, BadLinesAreANoGoThatTellsTheRestAndStrictRefusesThem) {
   const std::string bead = "G1 X0 Y20 E0.7 F300\n";
   const std::string options =
       " --machine five-axis --as-built nominal --engine quasistatic --no-pictures --out ";
-  const auto whole_file = folder.write("whole.gcode", head + bead);
+  const auto whole_file = folder.write("whole.gcode", head + bead + "G1 X3\n");
   const auto bad_file =
       folder.write("bad.gcode", head + "M106 S300\n" + bead + "G1 X3 E90\nG1 X1.2.3 Y30 Z50 E91\nG0 Z60\n");
   EXPECT_EQ(understudy("rehearse " + whole_file + options + (folder / "whole")).status, 0);

@@ -38,7 +38,7 @@ const std::string kHead = "G21\nG90\nM82\nM109 S210\nG0 X0 Y0 Z10\nG1 X0 Y0 Z0.1
 const std::string kBead = "G1 X0 Y20 E0.7 F300\n";
 
 TEST_F(PassedOverRehearsal, TheRestIsRehearsedAsIfTheLinesWereNotThere) {
-  const Record whole = record(kHead + kBead + "G0 Z60\n");
+  const Record whole = record(kHead + kBead + "G1 X3\n");  // what is left of the bad one
   EXPECT_TRUE(whole.go);
   EXPECT_THAT(whole.passed_over, testing::IsEmpty());
   const std::string bad = kHead + "M106 S300\n" + kBead + "G1 X3 E90\nG1 X1.2.3 Y30 Z50 E91\nG0 Z60\n";
