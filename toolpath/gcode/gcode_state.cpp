@@ -15,6 +15,12 @@ constexpr double kLongestDwell = 86400;                   // [s]
 constexpr double kLongestRetraction = 1;                  // [m]
 constexpr int kLeastPercent = 1, kLargestPercent = 1000;  // of M220 and M221
 
+/// Of F, in units of `unit` [m] a minute, or one over minutes: what takes for ever is none.
+bool is_feed(double value, double unit) {
+  constexpr double kLongest = 1e6;  // [m], of paths and of filament
+  return value > 0 && std::isfinite(kLongest / (value * unit / 60)) && std::isfinite(60 / value);
+}
+
 bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
 
 }  // namespace
@@ -62,7 +68,7 @@ void GcodeState::set_modes(const Block& block) {
 void GcodeState::take_modes(Block& block) {
   set_modes(block);
   const Word* word = block.take('F');
-  if (word != nullptr && word->value > 0 && !inverse_time_) feed_ = word->value * unit_ / 60;
+  if (word != nullptr && is_feed(word->value, unit_) && !inverse_time_) feed_ = word->value * unit_ / 60;
 }
 
 void GcodeState::take_end(Block& block) {
@@ -88,7 +94,7 @@ void GcodeState::set_feed(Block& block) {
   const bool homing = block.find(Command::home) != nullptr;
   const double feed = word->value * unit_ / 60;
   const double duration = 60 / word->value;
-  if (!(word->value > 0 && feed > 0 && std::isfinite(duration)))
+  if (!is_feed(word->value, unit_))
     block.fail(*word, fmt::format("'{}': the feed must be above 0", word->text));
   if (homing) return;  // of this line alone, and home is reached as fast as the machine may
   if (!inverse_time_) {
