@@ -1,7 +1,10 @@
 #include "rehearsal/program_reading.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +14,7 @@
 #include "core/units.h"
 #include "rehearsal/readings.h"
 #include "rehearsal/rotary_words.h"
+#include "toolpath/bead.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -18,9 +22,41 @@ namespace {
 /// Called where `error` is caught. Of words that mean nothing to this machine: what says more.
 [[noreturn]] void offer_inspection(const InputError& error, const RehearsalRequest& request) {
   const std::string what = error.what();
-  if (what.find("unknown word") == std::string::npos && what.find("rotary axes") == std::string::npos) throw;
+  const char* kAnswered[] = {"unknown word", "rotary axes", "--signal", "--bead", "--tool-points"};
+  if (std::none_of(std::begin(kAnswered), std::end(kAnswered),
+                   [&](const char* part) { return what.find(part) != std::string::npos; }))
+    throw;
   throw InputError(fmt::format("{}; `understudy inspect {} --machine {}` shows what to do", what,
                                request.program, request.machine));
+}
+
+bool asks_for_robot(const RobotProgramRequest& robot) {
+  return !robot.signals.empty() || robot.bead_mm[0] > 0 || robot.flow_mm3_per_s || !robot.tool_points.empty();
+}
+
+toolpath::Program read_steps(const RehearsalRequest& request, const machine::MachineDescription& machine) {
+  const std::string text = read_file(request.program);
+  try {
+    if (toolpath::robot_language(request.program, text))
+      return toolpath::read_robot_program(request.program, text, robot_options(request.dialect, machine));
+    if (asks_for_robot(request.dialect.robot))
+      throw InputError(
+          request.program +
+          ": --signal, --bead, --flow and --tool-points are for KRL and RAPID, and this is G-code");
+    return toolpath::parse_gcode(text, request.program, gcode_options(request.dialect, machine));
+  } catch (const InputError& error) {
+    offer_inspection(error, request);
+  }
+}
+
+Finding about_reading(const std::string& about, int line, const std::string& message) {
+  Finding finding;
+  finding.kind = "reading";
+  finding.severity = Severity::warning;
+  finding.gcode_line = line;
+  finding.about = about;
+  finding.message = message;
+  return finding;
 }
 
 }  // namespace
@@ -46,19 +82,60 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   return gcode;
 }
 
+toolpath::RobotOptions robot_options(const DialectRequest& dialect,
+                                     const machine::MachineDescription& machine) {
+  if (!dialect.extruder_letter.empty() || !dialect.macros.empty() || !dialect.coordinates.empty() ||
+      dialect.b_sign < 0 || dialect.c_sign < 0)
+    throw InputError("--extruder-letter, --macros, --coordinates, --b-sign and --c-sign are for G-code");
+  const RobotProgramRequest& robot = dialect.robot;
+  if (robot.bead_mm[0] > 0 && robot.flow_mm3_per_s)
+    throw InputError("either --bead or --flow says what a signal feeds");
+  toolpath::RobotOptions options;
+  options.X_WT_home = machine.X_WB * machine.X_BT_home;
+  for (int i = 0; i < 3; ++i) options.offset_W[i] = from_mm(dialect.place_mm[static_cast<std::size_t>(i)]);
+  options.ignored = dialect.ignored;
+  options.tool_points = robot.tool_points;
+  options.extruder.outputs = robot.signals;
+  if (robot.bead_mm[0] > 0)
+    options.extruder.bead_area = toolpath::bead_area(from_mm(robot.bead_mm[0]), from_mm(robot.bead_mm[1]));
+  if (robot.flow_mm3_per_s)
+    options.extruder.flow_per_unit = *robot.flow_mm3_per_s * kMillimetre * kMillimetre * kMillimetre;
+  options.extruder.filament_diameter = machine.tool.filament_diameter;
+  return options;
+}
+
+std::vector<Finding> robot_program_findings(const RehearsalRequest& request,
+                                            const toolpath::Program& program) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(request.program, none) ||
+      !toolpath::robot_language(request.program, read_file(request.program)))
+    return {};
+  std::vector<Finding> findings;
+  const auto is = [](toolpath::StepKind kind) {
+    return [kind](const toolpath::Step& s) { return s.kind == kind; };
+  };
+  const auto home = std::ranges::find_if(program.steps, is(toolpath::StepKind::home));
+  if (home != program.steps.end())
+    findings.push_back(about_reading(
+        "axis moves", home->line,
+        fmt::format(
+            "{} moves by axis values go to the home of {}: what the program's own robot does on them is not "
+            "rehearsed",
+            std::ranges::count_if(program.steps, is(toolpath::StepKind::home)), request.machine)));
+  if (std::ranges::none_of(program.steps, is(toolpath::StepKind::print)))
+    findings.push_back(
+        about_reading("no filament", 0,
+                      "no output of the program feeds filament, so that all of it is motion: name one "
+                      "by --signal, or print every straight move by --signal always"));
+  return findings;
+}
+
 toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
-  const toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
-  toolpath::Program program = [&] {
-    try {
-      return toolpath::read_gcode(request.program, options);
-    } catch (const InputError& error) {
-      offer_inspection(error, request);
-    }
-  }();
+  toolpath::Program program = read_steps(request, machine);
   if (!request.dialect.temperature_c) return program;
   toolpath::Step heat;
   heat.kind = toolpath::StepKind::temperature;
-  heat.X_WT = options.X_WT_home;
+  heat.X_WT = machine.X_WB * machine.X_BT_home;
   heat.temperature = *request.dialect.temperature_c + kCelsiusZero;
   heat.wait = true;
   program.steps.insert(program.steps.begin(), heat);

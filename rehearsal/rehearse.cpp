@@ -266,6 +266,8 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   record.findings = findings_of(control::check_constraints(setup.program, setup.machine));
   if (const auto misread = misread_words(request, setup.program, setup.machine))
     record.findings.push_back(*misread);
+  for (const Finding& finding : robot_program_findings(request, setup.program))
+    record.findings.push_back(finding);
   const RunOptions options{mode, true, any_error(record.findings)};
   if (options.beyond_limits) tell_how_simulated(record.findings);
   std::shared_ptr<const sim::Workpiece> printed;

@@ -10,6 +10,7 @@
 #include "cli/machine_option.h"
 #include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
+#include "cli/twin/robot_options.h"
 #include "core/error.h"
 #include "rehearsal/request/fault_words.h"
 
@@ -98,7 +99,9 @@ void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
 }
 
 void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
-  command.add_option("program", request.program, "G-code, with the tool's orientation at each point")
+  command
+      .add_option("program", request.program,
+                  "G-code, with the tool's orientation at each point, or KRL or RAPID")
       ->required();
   add_machine_option(command, request.machine);
   command.add_option(
@@ -136,6 +139,7 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
   for (const char* option : {"--pattern", "--places"}) command.get_option(option)->needs(find);
   add_tolerances(command, request);
   add_dialect(command, request.dialect);
+  add_robot_options(command, request.dialect.robot);
   add_surface(command, request.surface);
   command
       .add_option("--max-time", request.max_time,

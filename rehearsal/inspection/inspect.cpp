@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,6 +16,7 @@
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "rehearsal/inspection/inspect_robot.h"
 #include "rehearsal/rotary_words.h"
 
 namespace understudy::rehearsal {
@@ -72,10 +74,16 @@ bool is_command(const std::string& word) {
   return word.size() > 1 && (word[0] == 'G' || word[0] == 'M' || is_letter(word[1]));
 }
 
+/// As shells take it.
+std::string quoted(const std::string& word) {
+  return word.find_first_of("[]$#(){}*?&|<>~ ") == std::string::npos ? word : "'" + word + "'";
+}
+
 class Inspector {
  public:
-  Inspector(const std::string& program, const std::string& machine, const std::string& macros)
-      : file_(program), text_(read_file(program)), machine_(machine::load_machine(machine)) {
+  Inspector(const std::string& program, std::string text, const std::string& machine,
+            const std::string& macros)
+      : file_(program), text_(std::move(text)), machine_(machine::load_machine(machine)) {
     result_.request.program = program;
     result_.request.machine = machine;
     result_.lines = static_cast<int>(std::count(text_.begin(), text_.end(), '\n'));
@@ -200,7 +208,9 @@ class Inspector {
 }  // namespace
 
 Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros) {
-  return Inspector(program, machine, macros).run();
+  std::string text = read_file(program);
+  if (toolpath::robot_language(program, text)) return inspect_robot(program, text, machine);
+  return Inspector(program, std::move(text), machine, macros).run();
 }
 
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder) {
@@ -211,9 +221,16 @@ std::string rehearse_command(const RehearsalRequest& request, const std::string&
   if (!dialect.coordinates.empty()) command += " --coordinates " + dialect.coordinates;
   if (dialect.b_sign < 0) command += " --b-sign -1";
   if (dialect.c_sign < 0) command += " --c-sign -1";
-  if (!dialect.ignored.empty()) command += fmt::format(" --ignore {}", fmt::join(dialect.ignored, ","));
+  if (!dialect.ignored.empty())
+    command += " --ignore " + quoted(fmt::format("{}", fmt::join(dialect.ignored, ",")));
   if (!dialect.macros.empty()) command += " --macros " + dialect.macros;
   if (dialect.temperature_c) command += fmt::format(" --temperature {}", *dialect.temperature_c);
+  const RobotProgramRequest& robot = dialect.robot;
+  if (!robot.signals.empty())
+    command += " --signal " + quoted(fmt::format("{}", fmt::join(robot.signals, ",")));
+  if (robot.bead_mm[0] > 0) command += fmt::format(" --bead {:g}x{:g}", robot.bead_mm[0], robot.bead_mm[1]);
+  if (robot.flow_mm3_per_s) command += fmt::format(" --flow {:g}", *robot.flow_mm3_per_s);
+  if (!robot.tool_points.empty()) command += " --tool-points " + robot.tool_points;
   return command + " --out " + folder;
 }
 

@@ -10,6 +10,7 @@
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/inspection/program_summary.h"
+#include "toolpath/robot/robot_program.h"
 
 namespace understudy::rehearsal {
 
@@ -27,6 +28,8 @@ struct Inspection {
   /// the words are read as if they turned nothing.
   std::string foreign_words;
   std::vector<std::string> machines_with_words;
+  std::optional<toolpath::RobotFacts> robot;  ///< of KRL and RAPID
+  std::string told_by;           ///< how its language is known: "its ending", "its content"; empty: G-code
   std::optional<double> nozzle;  ///< [m], that the slicer worked for
   double machine_nozzle = 0;     ///< [m]
   /// How it may be rehearsed: dialect, place on the table, words to ignore, temperature.

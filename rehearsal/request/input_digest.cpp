@@ -93,6 +93,9 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   for (const std::string& word : dialect.ignored) inputs.word("ignored", word);
   inputs.bytes_of("macros", dialect.macros);
   inputs.values("temperature", number(dialect.temperature_c));
+  const RobotProgramRequest& robot = dialect.robot;
+  for (const std::string& signal : robot.signals) inputs.word("signal", signal);
+  inputs.values("robot", robot.bead_mm, number(robot.flow_mm3_per_s), robot.tool_points);
   const SurfaceRequest& surface = request.surface;
   inputs.bytes_of("intended", surface.intended.empty() ? "" : machine::find_fixture(surface.intended));
   inputs.values("profile", surface.profile_mm, surface.probe);

@@ -13,6 +13,14 @@
 
 namespace understudy::rehearsal {
 
+/// How a robot's program, KRL or RAPID, is read (docs/robot-programs.md).
+struct RobotProgramRequest {
+  std::vector<std::string> signals;      ///< outputs that feed filament; empty: those that the program sets
+  std::array<double, 2> bead_mm{0, 0};   ///< width and height of what a signal above 0 lays; 0: not told
+  std::optional<double> flow_mm3_per_s;  ///< that a signal of 1 feeds
+  std::string tool_points;  ///< axis of its tool out of the nozzle: z, -x...; empty: told by the path
+};
+
 /// How a program of another machine is read (docs/gcode.md).
 struct DialectRequest {
   std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
@@ -22,6 +30,7 @@ struct DialectRequest {
   std::string macros;                       ///< path of a Klipper configuration; empty: none
   std::optional<double> temperature_c;      ///< of the nozzle from the start on
   std::string coordinates;  ///< of rotary programs: tip, machine, crossing; empty: the machine's
+  RobotProgramRequest robot;
 };
 
 /// What is asked about the surface as printed (docs/surface.md).
@@ -40,7 +49,7 @@ struct RegistrationRequest {
 };
 
 struct RehearsalRequest {
-  std::string program;                             ///< path of a G-code file; empty: nothing is printed
+  std::string program;  ///< path of G-code, KRL or RAPID; empty: nothing is printed
   std::string machine = machine::kDefaultMachine;  ///< name or path
   std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
   std::string engine = "mujoco";
