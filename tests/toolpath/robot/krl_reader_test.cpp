@@ -136,6 +136,22 @@ TEST(KrlReader, AxisValuesAndTheControllersHomeGoToTheMachinesHome) {
   EXPECT_THAT(rejection("$VEL.CP=1\nLIN {A1 0,A2 0}\n"), HasSubstr("LIN takes X Y Z, not axis values"));
 }
 
+// What the controller's inline forms write, as in programs that were edited on it.
+TEST(KrlReader, InlineFormsAreRead) {
+  const auto steps = steps_of(
+      "$BWDSTART=FALSE\nPDAT_ACT=PDEFAULT\nFDAT_ACT=FHOME\nBAS(#PTP_PARAMS,100)\n$H_POS=XHOME\nPTP XHOME\n"
+      "LDAT_ACT=LCPDAT2\nFDAT_ACT=FP2\nBAS(#CP_PARAMS,0.5)\nLIN XP2\n"
+      "SLIN XP2:{X 1} WITH $VEL=SVEL_CP(0.2, ,LCPDAT1),$TOOL=STOOL2(FP2),$BASE=SBASE(FP2.BASE_NO),"
+      "$IPO_MODE=SIPO_MODE(FP2.IPO_FRAME),$LOAD=SLOAD(FP2.TOOL_NO),$ACC=SACC_CP(LCPDAT1)\n",
+      "DEFDAT part\nDECL E6POS XP2={X 1,Y 2,Z 3,A 0,B 0,C 180}\nDECL FDAT FP2={TOOL_NO 8,BASE_NO 8,IPO_FRAME "
+      "#BASE}\nENDDAT\n");
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_EQ(steps[0].kind, StepKind::home);
+  EXPECT_EQ(steps[1].feed, 0.5);
+  EXPECT_EQ(steps[2].feed, 0.2);
+  EXPECT_TRUE(tip_mm(steps[2]).isApprox(Vec3(2, 2, 3), 1e-9));
+}
+
 TEST(KrlReader, RoutinesOfTheFileAreCalledAndSplinesAreRead) {
   const auto program = parse_krl(
       "DEF main( )\n$VEL.CP=0.01\nPTP {X 0,Y 0,Z 5,A 0,B 0,C 180}\nlayer( )\nlayer( )\nEND\n"
@@ -161,6 +177,9 @@ TEST(KrlReader, UnknownStatementsAreToldTogetherAndMayBeIgnored) {
       "line from line 15), 'XP9' (1 line from line 17), 'E1' (1 line from line 19): mend these lines, or "
       "pass "
       "over them by --ignore");
+  EXPECT_THAT(rejection("FOR I=1 TO 6\n$VEL_AXIS[I]=100\nLIN {X 1}\nENDFOR\n" + body),
+              HasSubstr("unknown words 'FOR' (1 line from line 3)"))
+      << "a loop that does more than set limits";
   auto o = options();
   o.ignored = {"IF", "WAIT_FOR", "GRIPPER", "XP9", "E1"};
   const auto steps = steps_of(body, "", o);
