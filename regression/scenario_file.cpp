@@ -174,6 +174,26 @@ void read_tolerances(YamlMap& map, Scenario& scenario) {
                    "a tool turned away by more is a no-go; else the machine's");
 }
 
+/// How a robot's program is read.
+void read_robot(YamlMap& map, RobotProgramRequest& robot) {
+  if (map.has("signal")) {
+    std::istringstream outputs(map.text("signal", "outputs that feed filament, joined by commas"));
+    for (std::string output; std::getline(outputs, output, ',');) robot.signals.push_back(output);
+  }
+  if (map.has("bead_mm")) {
+    const auto bead =
+        map.numbers("bead_mm", 2, {0.01, 100}, "width and height of what a signal above 0 lays");
+    if (bead[1] > bead[0] && !map.recording())
+      map.fail("bead_mm", "bead_mm: a bead is no higher than it is wide");
+    std::copy(bead.begin(), bead.end(), robot.bead_mm.begin());
+  }
+  if (map.has("flow_mm3_per_s"))
+    robot.flow_mm3_per_s = map.number("flow_mm3_per_s", {1e-6, 1e9}, "that a signal of 1 feeds");
+  if (map.has("tool_points"))
+    robot.tool_points = map.word("tool_points", {"x", "-x", "y", "-y", "z", "-z"},
+                                 "axis of the program's tool that points out of its nozzle");
+}
+
 /// How lines of the program are read.
 void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect) {
   if (map.has("place_mm")) {
@@ -199,6 +219,7 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
   if (map.has("coordinates"))
     dialect.coordinates =
         map.word("coordinates", {"tip", "machine", "crossing"}, "the point that X, Y and Z place");
+  read_robot(map, dialect.robot);
 }
 
 void read_surface(YamlMap& map, const fs::path& folder, SurfaceRequest& surface) {

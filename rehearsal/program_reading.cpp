@@ -115,13 +115,15 @@ std::vector<Finding> robot_program_findings(const RehearsalRequest& request,
     return [kind](const toolpath::Step& s) { return s.kind == kind; };
   };
   const auto home = std::ranges::find_if(program.steps, is(toolpath::StepKind::home));
-  if (home != program.steps.end())
+  if (home != program.steps.end()) {
+    const auto count = std::ranges::count_if(program.steps, is(toolpath::StepKind::home));
     findings.push_back(about_reading(
         "axis moves", home->line,
         fmt::format(
-            "{} moves by axis values go to the home of {}: what the program's own robot does on them is not "
+            "{} move{} by axis values go{} to the home of {}: what the program's own robot does there is not "
             "rehearsed",
-            std::ranges::count_if(program.steps, is(toolpath::StepKind::home)), request.machine)));
+            count, count == 1 ? "" : "s", count == 1 ? "es" : "", request.machine)));
+  }
   if (std::ranges::none_of(program.steps, is(toolpath::StepKind::print)))
     findings.push_back(
         about_reading("no filament", 0,

@@ -30,8 +30,9 @@ std::string counted(const std::map<std::string, int>& counts) {
 
 void print_signal(const toolpath::RobotFacts& facts, const rehearsal::RobotProgramRequest& request) {
   for (const toolpath::RobotOutput& output : facts.outputs)
-    fmt::print("  output {}: {}, set {} times, {:g} to {:g}\n", printable(output.name, 60),
-               output.analogue ? "analogue" : "switched", output.set, output.low, output.high);
+    fmt::print("  output {}: {}, set {} time{}, {:g} to {:g}\n", printable(output.name, 60),
+               output.analogue ? "analogue" : "switched", output.set, output.set == 1 ? "" : "s", output.low,
+               output.high);
   if (facts.signal.empty()) {
     fmt::print("  no output is set: `--signal always` prints every straight move, with --bead or --flow\n");
     return;
@@ -58,8 +59,8 @@ void print_robot_program(const rehearsal::Inspection& found) {
   if (!facts.tool_points.empty())
     fmt::print("  {} of its tool points out of the nozzle\n", facts.tool_points);
   if (facts.axis_moves > 0)
-    fmt::print("  {} moves by axis values, the first in line {}: read as moves to the machine's home\n",
-               facts.axis_moves, facts.first_axis_move);
+    fmt::print("  {} move{} by axis values, the first in line {}: read as motion to the machine's home\n",
+               facts.axis_moves, facts.axis_moves == 1 ? "" : "s", facts.first_axis_move);
   print_signal(facts, found.request.dialect.robot);
 }
 

@@ -2,6 +2,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -12,11 +13,13 @@
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
 #include "core/file/output_folder.h"
+#include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "rehearsal/findings/finding_groups.h"
 #include "rehearsal/findings/verdict.h"
 #include "rehearsal/rehearse.h"
 #include "report/page/write_results.h"
+#include "toolpath/robot/robot_program.h"
 
 namespace understudy::cli {
 namespace {
@@ -96,6 +99,14 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("report: {}\n", (std::filesystem::path(folder) / "report.html").string());
 }
 
+/// Where its name does not tell that the program is a robot's.
+void print_language(const std::string& program) {
+  std::error_code none;
+  if (toolpath::has_robot_ending(program) || !std::filesystem::is_regular_file(program, none)) return;
+  if (const auto language = toolpath::robot_language(program, read_file(program)))
+    fmt::print("{} is read as {}, as its content tells\n", program, to_string(*language));
+}
+
 int rehearse(const RehearseOptions& asked) {
   rehearsal::RehearsalRequest request = asked.with_faults();
   request.command = command_line();
@@ -104,6 +115,7 @@ int rehearse(const RehearseOptions& asked) {
   const rehearsal::Record record = rehearse_into(request, out.path());
   stop_if_interrupted();
   out.commit();
+  print_language(request.program);
   print_answer(record, asked.folder);
   return record.go ? kGood : kNo;
 }

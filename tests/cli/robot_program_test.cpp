@@ -40,11 +40,14 @@ TEST(RobotPrograms, PrintAsTheSameMovesInGcodeDo) {
       understudy("rehearse " + folder.write("square.gcode", kGcode) + kHow + (folder / "g"));
   ASSERT_LE(gcode.status, 1) << gcode.err;
   ASSERT_THAT(gcode.out, HasSubstr("filament fed 3.0 mm"));
-  for (const auto& program : {folder.write("square.src", kKrl), folder.write("square.mod", kRapid)}) {
+  for (const auto& program : {folder.write("square.src", kKrl), folder.write("square.mod", kRapid),
+                              folder.write("square.txt", kKrl)}) {
     const Outcome robot = understudy("rehearse " + program + " --bead 0.5x0.2" + kHow + (folder / "r"));
     EXPECT_EQ(robot.status, gcode.status) << robot.err;
     for (const char* part : {"print time", "filament fed", "gap at the start", "tip error"})
       EXPECT_EQ(line_with(robot.out, part), line_with(gcode.out, part)) << program;
+    EXPECT_EQ(robot.out.find("is read as KRL, as its content tells") != std::string::npos,
+              program.ends_with(".txt"));
   }
 }
 
@@ -59,7 +62,7 @@ TEST(RobotPrograms, InspectSaysWhatOneUsesAndHowToRehearseIt) {
   EXPECT_THAT(seen.out, HasSubstr("moves by base: $BASE 7"));
   EXPECT_THAT(seen.out, HasSubstr("speeds 20 to 20 mm/s"));
   EXPECT_THAT(seen.out, HasSubstr("z of its tool points out of the nozzle"));
-  EXPECT_THAT(seen.out, HasSubstr("1 moves by axis values, the first in line 4"));
+  EXPECT_THAT(seen.out, HasSubstr("1 move by axis values, the first in line 4"));
   EXPECT_THAT(seen.out, HasSubstr("output OUT[1]: switched, set 2 times, 0 to 1"));
   EXPECT_THAT(seen.out, HasSubstr("filament is fed by OUT[1]"));
   EXPECT_THAT(seen.out, HasSubstr("unknown word 'WAIT_FOR': 1 line, the first is 5"));
@@ -70,7 +73,7 @@ TEST(RobotPrograms, InspectSaysWhatOneUsesAndHowToRehearseIt) {
       understudy(command.substr(0, command.find(" --out")) +
                  " --engine quasistatic --no-pictures --temperature 210 --out " + (folder / "out"));
   EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
-  EXPECT_THAT(rehearsed.out, HasSubstr("1 moves by axis values go to the home of arm"));
+  EXPECT_THAT(rehearsed.out, HasSubstr("1 move by axis values goes to the home of arm"));
 }
 
 TEST(RobotPrograms, WhatIsNotKnownIsToldInOneLineWithWhatToDo) {

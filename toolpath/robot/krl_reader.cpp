@@ -1,6 +1,7 @@
 #include "toolpath/robot/krl_reader.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -180,9 +181,10 @@ void KrlReader::call(const std::string& name, Scanner& scanner) {
 
 /// Of the data list; what is none is without effect.
 void KrlReader::read_data(std::string_view text) {
-  const std::vector<std::string_view> lines = statements_of(text, file_ + ".dat");
+  const std::string file = std::filesystem::path(file_).replace_extension(".dat").string();
+  const std::vector<std::string_view> lines = statements_of(text, file);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    StatementScanner scanner(lines[i], {file_ + ".dat", static_cast<int>(i) + 1});
+    StatementScanner scanner(lines[i], {file, static_cast<int>(i) + 1});
     try {
       const std::string word = scanner.name();
       if (word.empty() || word == "DEFDAT" || word == "ENDDAT" || word == "EXT" || word == "EXTFCT" ||

@@ -17,7 +17,7 @@ constexpr double kFastest = 100;          // [m/s]
 constexpr double kSlowest = 1e-9;         // [m/s]
 constexpr double kMostValue = 1e9;        // of an output
 constexpr std::size_t kMostOutputs = 64;  // a program that sets more feeds nothing by them
-constexpr std::size_t kMostBases = 100;
+constexpr std::size_t kMostBases = 10'000;
 
 }  // namespace
 

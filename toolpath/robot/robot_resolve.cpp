@@ -108,7 +108,7 @@ class Extruder {
         all.emplace_back("more");
         break;
       }
-      all.push_back(fmt::format("{} ({} times)", output.name, output.set));
+      all.push_back(fmt::format("{} ({} time{})", output.name, output.set, output.set == 1 ? "" : "s"));
     }
     return fmt::format("{}", fmt::join(all, ", "));
   }

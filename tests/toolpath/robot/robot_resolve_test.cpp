@@ -79,7 +79,7 @@ TEST(RobotResolve, TheSignalIsTheOnlyOutputOrIsNamed) {
   RobotPath two = path(about_y(180));
   two.set_output("OUT[9]", 1, false);
   EXPECT_EQ(rejection(two, options()),
-            "p.src: the program sets OUT[1] (2 times), OUT[9] (1 times): say by --signal which of them feeds "
+            "p.src: the program sets OUT[1] (2 times), OUT[9] (1 time): say by --signal which of them feeds "
             "filament");
   RobotOptions o = options();
   o.extruder.outputs = {"$out[1]"};
