@@ -187,8 +187,8 @@ void read_robot(YamlMap& map, RobotProgramRequest& robot) {
       map.fail("bead_mm", "bead_mm: a bead is no higher than it is wide");
     std::copy(bead.begin(), bead.end(), robot.bead_mm.begin());
   }
-  if (map.has("flow_mm3_per_s"))
-    robot.flow_mm3_per_s = map.number("flow_mm3_per_s", {1e-6, 1e9}, "that a signal of 1 feeds");
+  if (map.has("flow_mm3_per_second"))
+    robot.flow_mm3_per_s = map.number("flow_mm3_per_second", {1e-6, 1e9}, "mm3/s that a signal of 1 feeds");
   if (map.has("tool_points"))
     robot.tool_points = map.word("tool_points", {"x", "-x", "y", "-y", "z", "-z"},
                                  "axis of the program's tool that points out of its nozzle");

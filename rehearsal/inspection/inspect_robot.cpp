@@ -53,8 +53,10 @@ Inspection inspect_robot(const std::string& program, const std::string& text, co
     toolpath::RobotOptions options = robot_options(dialect, description);
     options.unknown = strict ? nullptr : &result.unknown;
     options.facts = strict ? nullptr : &*result.robot;
-    result.summary = toolpath::summarise(toolpath::read_robot_program(program, text, options),
-                                         options.X_WT_home.translation(), description.tool.filament_diameter);
+    const toolpath::Program steps = toolpath::read_robot_program(program, text, options);
+    if (!strict)  // where the program puts it, as of G-code
+      result.summary =
+          toolpath::summarise(steps, options.X_WT_home.translation(), description.tool.filament_diameter);
   };
   // The bead: as high as its layers, and a little wider than the nozzle.
   const auto bead = [&](double height) {
