@@ -177,7 +177,7 @@ TEST(KrlReader, UnknownStatementsAreToldTogetherAndMayBeIgnored) {
       "line from line 15), 'XP9' (1 line from line 17), 'E1' (1 line from line 19): mend these lines, or "
       "pass "
       "over them by --ignore");
-  EXPECT_THAT(rejection("FOR I=1 TO 6\n$VEL_AXIS[I]=100\nLIN {X 1}\nENDFOR\n" + body),
+  EXPECT_THAT(rejection("FOR I=1 TO 6\nLIN {X 1}\n$VEL_AXIS[I]=100\nENDFOR\n" + body),
               HasSubstr("unknown words 'FOR' (1 line from line 3)"))
       << "a loop that does more than set limits";
   auto o = options();
