@@ -23,7 +23,7 @@ constexpr Kind kKinds[] = {
     {"unreachable", ""},   {"collision", "collision"}, {"near_collision", "collision"},
     {"gap", "gap"},        {"adhesion", "gap"},        {"sag", "sag"},
     {"flow", "print"},     {"accuracy", "accuracy"},   {"registration", "registration"},
-    {"reading", ""}};
+    {"reading", ""},       {"placement", ""}};
 
 // Figures of the contract, by section.
 constexpr const char* kFigures[] = {"print.duration_s",

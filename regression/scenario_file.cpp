@@ -180,6 +180,12 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
     const auto place = map.numbers("place_mm", 3, {}, "where the program's origin stands in W");
     std::copy(place.begin(), place.end(), dialect.place_mm.begin());
   }
+  if (map.has("placement"))
+    dialect.place_auto = map.word("placement", {"given", "auto"}, "auto: the place is found") == "auto";
+  if (map.has("turn_deg"))
+    dialect.turn_deg = map.number("turn_deg", {-360, 360}, "of the program about z through its origin");
+  if (map.has("spin_deg"))
+    dialect.spin_deg = map.number("spin_deg", {-360, 360}, "of the tool about its own axis");
   if (map.has("extruder_letter"))
     dialect.extruder_letter = map.word("extruder_letter", {"E", "A"}, "the word of the filament");
   if (map.has("ignored")) {

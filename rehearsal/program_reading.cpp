@@ -11,6 +11,7 @@
 #include "core/units.h"
 #include "rehearsal/readings.h"
 #include "rehearsal/rotary_words.h"
+#include "toolpath/gcode/turned_program.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -48,9 +49,10 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
 
 toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
   const toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
+  const toolpath::ProgramTurn turn{from_deg(request.dialect.turn_deg), from_deg(request.dialect.spin_deg)};
   toolpath::Program program = [&] {
     try {
-      return toolpath::read_gcode(request.program, options);
+      return toolpath::read_turned_gcode(request.program, options, turn);
     } catch (const InputError& error) {
       offer_inspection(error, request);
     }

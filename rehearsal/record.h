@@ -98,6 +98,15 @@ struct RegistrationFigures {
   std::vector<RegistrationRow> rows;
   std::optional<control::PartFit> fit;
 };
+/// The place on the table that was found (rehearsal/placement).
+struct PlacementFigures {
+  std::array<double, 3> place_mm{0, 0, 0};
+  double turn_deg = 0, spin_deg = 0;
+  double margin = 0;    ///< to the nearest limit: 0 at it, 1 in the middle of a range
+  std::string least;    ///< the limit that is nearest
+  std::string refused;  ///< why no place holds every limit; empty: this one does
+  std::string words;    ///< as options of `rehearse`
+};
 struct EngineFigures {
   std::string name, version;
   double timestep_s = 0;
@@ -165,9 +174,10 @@ struct Record {
   std::vector<Finding> findings;  ///< errors first, then by line
   std::string title;              ///< "curved-line.gcode on hexapod"
   std::string program_name, machine_name, fixture_name, gap_control;
-  std::string machine_word;                 ///< as `--machine` took it
-  std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
-  bool measures_gap = false;                ///< the machine has laser and microscope
+  std::string machine_word;                   ///< as `--machine` took it
+  std::array<double, 3> place_mm{0, 0, 0};    ///< where the program's origin stands in W
+  std::optional<PlacementFigures> placement;  ///< where the place was found, not given
+  bool measures_gap = false;                  ///< the machine has laser and microscope
 
   std::optional<PrintFigures> print;
   std::optional<AccuracyFigures> accuracy;

@@ -22,6 +22,8 @@
 #include "rehearsal/fixture.h"
 #include "rehearsal/gap_belief.h"
 #include "rehearsal/library_versions.h"
+#include "rehearsal/placement/home_posture.h"
+#include "rehearsal/placement/placement.h"
 #include "rehearsal/program_reading.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/request/input_digest.h"
@@ -62,6 +64,7 @@ TwinSetup prepare(const RehearsalRequest& request) {
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   TwinSetup setup;
   setup.machine = machine::load_machine(request.machine, setup.calibrated);
+  stand_at_home(request.home_axes, setup.machine);
   check_memory(request);
   if (!request.program.empty()) setup.program = read_program(request, setup.machine);
   toolpath::check_duration(setup.program, (setup.machine.X_WB * setup.machine.X_BT_home).translation(),
@@ -248,12 +251,37 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
     record.registration = registration_figures(*runs.main.registration, *setup.registration);
 }
 
+/// The inputs are those that were asked for: the place follows from them.
+void tell_placement(const RehearsalRequest& asked, const Placement& placement, Record& record) {
+  record.provenance.inputs_sha256 = inputs_sha256(asked, record.provenance.program_sha256);
+  const ProgramPlace& at = placement.place;
+  record.placement = {{at.x_mm, at.y_mm, at.z_mm},
+                      at.turn_deg,
+                      at.spin_deg,
+                      placement.margin,
+                      placement.least,
+                      placement.possible ? "" : placement.reason,
+                      place_words(at)};
+}
+
+Finding no_place(const PlacementFigures& placement) {
+  Finding finding;
+  finding.kind = "placement";
+  finding.value = placement.margin;
+  finding.unit = "1";
+  finding.message = "no place on the table holds every limit; at the best one " + placement.refused;
+  return finding;
+}
+
 }  // namespace
 
-Record rehearse(const RehearsalRequest& request, const Progress& progress) {
+Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
   const Progress report = [&](double share, const std::string& what) {
     if (progress) progress(share, what);
   };
+  std::optional<Placement> placement;
+  if (asked.dialect.place_auto) placement = find_placement(asked, {}, progress);
+  const RehearsalRequest request = placement ? placed(asked, placement->place) : asked;
   report(0, "reading");
   const TwinSetup setup = prepare(request);
   std::optional<BeforeCalibration> before;
@@ -261,6 +289,7 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
   const SurfaceTask surface = prepare_surface(request.surface);
   const control::GapControl mode = gap_control_of(request.gap_control, setup.machine);
   Record record = describe_run(request, setup, mode);
+  if (placement) tell_placement(asked, *placement, record);
 
   report(0.02, "checking limits");
   record.findings = findings_of(control::check_constraints(setup.program, setup.machine));
@@ -275,6 +304,8 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
     printed = runs->main.workpiece;
     study_surface(surface, *printed, record);
   }
+  if (record.placement && !record.placement->refused.empty())
+    record.findings.push_back(no_place(*record.placement));
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
   if (request.keep_scene) record.scene = scene_of(setup, record.trace, printed);

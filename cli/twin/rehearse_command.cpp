@@ -72,6 +72,9 @@ void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
 
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
+  if (record.placement)
+    fmt::print("  placed by {}: margin {:.3f} ({})\n", record.placement->words, record.placement->margin,
+               record.placement->least);
   print_findings(rehearsal::group_findings(record));
   if (record.registration) print_registration(*record.registration);
   if (record.gap) {

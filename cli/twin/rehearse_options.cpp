@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 
@@ -33,9 +34,33 @@ void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
       ->check(CLI::PositiveNumber);
 }
 
+void read_place(const std::string& word, rehearsal::DialectRequest& dialect) {
+  dialect.place_auto = word == "auto";
+  if (dialect.place_auto) return;
+  std::istringstream numbers(word);
+  char comma[2] = {' ', ' '};
+  auto& [x, y, z] = dialect.place_mm;
+  numbers >> x >> comma[0] >> y >> comma[1] >> z;
+  if (!numbers || comma[0] != ',' || comma[1] != ',' || numbers.peek() != std::char_traits<char>::eof())
+    throw CLI::ValidationError("--place", "'" + word + "' is neither X,Y,Z in mm nor auto");
+}
+
 void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
-  command.add_option("--place", dialect.place_mm, "X,Y,Z in mm: where the program's origin stands")
-      ->delimiter(',')
+  command
+      .add_option_function<std::string>(
+          "--place", [&dialect](const std::string& word) { read_place(word, dialect); },
+          "X,Y,Z in mm: where the program's origin stands; auto: where `understudy place` puts it")
+      ->type_name("X,Y,Z|auto")
+      ->group("Programs of other machines");
+  command
+      .add_option("--turn", dialect.turn_deg,
+                  "degrees: the program turned about the vertical through its origin")
+      ->check(CLI::Range(-360., 360.))
+      ->group("Programs of other machines");
+  command
+      .add_option("--spin", dialect.spin_deg,
+                  "degrees: the tool turned about its own axis, on machines that can")
+      ->check(CLI::Range(-360., 360.))
       ->group("Programs of other machines");
   command
       .add_option("--extruder-letter", dialect.extruder_letter,
@@ -106,6 +131,13 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
       "the machine before its calibration, a name or a machine.yaml: the same print on the same "
       "twin, driven by that; the report compares tip errors");
   command
+      .add_option("--home-axes", request.home_axes,
+                  "positions of all axes at home, in mm and degrees: another posture of an arm than the "
+                  "machine file's")
+      ->delimiter(',')
+      ->excludes("--before")
+      ->group("Programs of other machines");
+  command
       .add_option("--engine", request.engine,
                   "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
       ->capture_default_str();
@@ -147,6 +179,10 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
 }
 
 }  // namespace
+
+void add_dialect_options(CLI::App& command, rehearsal::DialectRequest& dialect) {
+  add_dialect(command, dialect);
+}
 
 void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
   add_request(command, options.request);

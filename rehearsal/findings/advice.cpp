@@ -29,8 +29,15 @@ std::string calibrate(const Record& record) {
 }
 
 std::string move_into_reach(const Finding&, const Record& record) {
-  return "shift the program into reach with `--place X,Y,Z` (mm), or change these lines; " +
+  return "shift the program into reach with `--place X,Y,Z` (mm) or `--place auto`, or change these lines; " +
          show_reach(record);
+}
+
+std::string print_less(const Finding&, const Record& record) {
+  return fmt::format(
+      "print it smaller or in parts, or on a larger machine; `understudy place {} --machine {} -o map.png` "
+      "shows the margin over the table",
+      record.program_name, record.machine_word);
 }
 
 std::string lean_less(const Finding&, const Record& record) {
@@ -143,6 +150,7 @@ const std::map<std::string, About>& advice_by_kind() {
       {"joint_limit", move_into_reach},
       {"joint_angle", lean_less},
       {"unreachable", move_into_reach},
+      {"placement", print_less},
       {"singularity", avoid_singular_pose},
       {"axis_velocity", always("lower the feed F there; else the print takes longer than programmed")},
       {"axis_acceleration", always("lower the feed F there; else the print takes longer than programmed")},

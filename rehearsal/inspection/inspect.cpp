@@ -206,8 +206,15 @@ Inspection inspect(const std::string& program, const std::string& machine, const
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder) {
   const DialectRequest& dialect = request.dialect;
   std::string command = fmt::format("understudy rehearse {} --machine {}", request.program, request.machine);
-  if (dialect.place_mm != std::array<double, 3>{0, 0, 0})
+  if (dialect.place_auto)
+    command += " --place auto";
+  else if (dialect.place_mm != std::array<double, 3>{0, 0, 0})
     command += fmt::format(" --place {}", fmt::join(dialect.place_mm, ","));
+  if (dialect.turn_deg != 0) command += fmt::format(" --turn {}", dialect.turn_deg);
+  if (dialect.spin_deg != 0) command += fmt::format(" --spin {}", dialect.spin_deg);
+  if (!request.home_axes.empty())
+    command += fmt::format(" --home-axes {:.6g}", fmt::join(request.home_axes, ","));
+  if (!request.fixture.empty()) command += " --fixture " + request.fixture;
   if (!dialect.coordinates.empty()) command += " --coordinates " + dialect.coordinates;
   if (dialect.b_sign < 0) command += " --b-sign -1";
   if (dialect.c_sign < 0) command += " --c-sign -1";

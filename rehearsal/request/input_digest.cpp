@@ -93,6 +93,8 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   for (const std::string& word : dialect.ignored) inputs.word("ignored", word);
   inputs.bytes_of("macros", dialect.macros);
   inputs.values("temperature", number(dialect.temperature_c));
+  inputs.values("placement", dialect.place_auto, dialect.turn_deg, dialect.spin_deg);
+  inputs.values("home", request.home_axes);
   const SurfaceRequest& surface = request.surface;
   inputs.bytes_of("intended", surface.intended.empty() ? "" : machine::find_fixture(surface.intended));
   inputs.values("profile", surface.profile_mm, surface.probe);

@@ -16,12 +16,16 @@ namespace understudy::rehearsal {
 /// How a program of another machine is read (docs/gcode.md).
 struct DialectRequest {
   std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
-  std::string extruder_letter;              ///< E, A...; empty: the machine's
-  int b_sign = 1, c_sign = 1;               ///< -1: the program counts that axis the other way round
-  std::vector<std::string> ignored;         ///< commands passed over with their lines, upper case
-  std::string macros;                       ///< path of a Klipper configuration; empty: none
-  std::optional<double> temperature_c;      ///< of the nozzle from the start on
-  std::string coordinates;  ///< of rotary programs: tip, machine, crossing; empty: the machine's
+  bool place_auto = false;                  ///< the place is found (rehearsal/placement), `place_mm` unused
+  /// The program turned about z of W through its origin, and the tool about its own axis besides
+  /// (toolpath/gcode/turned_program.h).
+  double turn_deg = 0, spin_deg = 0;
+  std::string extruder_letter;          ///< E, A...; empty: the machine's
+  int b_sign = 1, c_sign = 1;           ///< -1: the program counts that axis the other way round
+  std::vector<std::string> ignored;     ///< commands passed over with their lines, upper case
+  std::string macros;                   ///< path of a Klipper configuration; empty: none
+  std::optional<double> temperature_c;  ///< of the nozzle from the start on
+  std::string coordinates;              ///< of rotary programs: tip, machine, crossing; empty: the machine's
 };
 
 /// What is asked about the surface as printed (docs/surface.md).
@@ -42,6 +46,9 @@ struct RegistrationRequest {
 struct RehearsalRequest {
   std::string program;                             ///< path of a G-code file; empty: nothing is printed
   std::string machine = machine::kDefaultMachine;  ///< name or path
+  /// Where the axes of a chain stand at home [mm or deg]: another posture of an arm than the machine file's;
+  /// empty: that.
+  std::vector<double> home_axes;
   std::string before;  ///< the machine before its calibration, name or path; empty: no comparison
   std::string engine = "mujoco";
   std::string fixture;   ///< STL path, a name under models/parts, or empty: only the table

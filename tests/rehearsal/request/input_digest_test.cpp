@@ -67,6 +67,10 @@ TEST_F(InputDigest, EveryInputCounts) {
       [](auto& r) { r.dialect.ignored = {"G29"}; },
       [](auto& r) { r.dialect.macros = r.program; },
       [](auto& r) { r.dialect.temperature_c = 200; },
+      [](auto& r) { r.dialect.place_auto = true; },
+      [](auto& r) { r.dialect.turn_deg = 1e-9; },
+      [](auto& r) { r.dialect.spin_deg = 1e-9; },
+      [](auto& r) { r.home_axes = {1}; },
       [](auto& r) { r.surface.intended = "bottle"; },
       [](auto& r) { r.surface.profile_mm[3] = 2; },
       [](auto& r) {
