@@ -56,7 +56,7 @@ std::string placement_text(const Placement& placement, const std::string& title)
     text += fmt::format("  margin as it is: {:.3f}\n", *placement.margin_as_given);
   for (const rehearsal::LimitShare& limit : placement.limits)
     text += fmt::format("  {:<24} {:>7.3f}   line {}{}\n", limit.name, limit.share, limit.line,
-                        limit.counts ? "" : ", must only hold: no place gives it more than a little");
+                        limit.counts ? "" : ", must only hold");
   return text + fmt::format("  {} poses checked, {} places looked at with {} of them\n", placement.poses,
                             placement.placements, placement.searched_poses);
 }
