@@ -18,6 +18,7 @@
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings/accuracy_findings.h"
 #include "rehearsal/findings/findings.h"
+#include "rehearsal/findings/machine_findings.h"
 #include "rehearsal/findings/process_check.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/gap_belief.h"
@@ -264,6 +265,8 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
 
   report(0.02, "checking limits");
   record.findings = findings_of(control::check_constraints(setup.program, setup.machine));
+  for (const Finding& finding : machine_findings(machine::load_machine_notes(request.machine)))
+    record.findings.push_back(finding);
   if (const auto misread = misread_words(request, setup.program, setup.machine))
     record.findings.push_back(*misread);
   const RunOptions options{mode, true, any_error(record.findings)};

@@ -153,6 +153,10 @@ const std::map<std::string, About>& advice_by_kind() {
       {"registration", about_registration},
       {"flow", about_flow},
       {"adhesion", about_adhesion},
+      {"assumption", always("measure them, write them into the machine's file, and take their words out of "
+                            "`assumed` there (docs/arms.md)")},
+      {"unchecked", always("put the meshes beside the machine's file and take the links out of "
+                           "`geometry.unchecked_links` (docs/arms.md)")},
       {"sag", always("draw the strand slower and with more fan (`M106 S255`), or hold it at both ends")}};
   return kinds;
 }
