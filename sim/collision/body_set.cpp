@@ -4,13 +4,12 @@
 #include <string>
 #include <utility>
 
+#include "geometry/printed_clearance.h"
 #include "sim/collision/machine_bodies.h"
 #include "sim/distance/penetration.h"
 
 namespace understudy::sim {
 namespace {
-
-bool is_nozzle(const std::string& name) { return name.starts_with("nozzle"); }
 
 double reach_of(const geometry::Shape& shape) {
   if (const auto solid = convex_solid(shape)) return reach(*solid, shape.X_FS);
@@ -64,7 +63,7 @@ void BodySet::add_body(const geometry::Shape& shape, Owner owner, std::size_t in
   body.owner = owner;
   body.solid = convex_solid(shape);
   body.index = index;
-  body.nozzle = owner == Owner::tool && is_nozzle(shape.name);
+  body.nozzle = owner == Owner::tool && geometry::is_nozzle(shape.name);
   if (owner == Owner::tool) body.lever = reach_of(shape);
   // A strut turns about its base joint: no point of it moves farther than its ball joint.
   if (owner == Owner::strut) body.lever = geometry_.platform_joint[index].norm();
