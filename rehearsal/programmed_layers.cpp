@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/printed_clearance.h"
 #include "rehearsal/programmed_areas.h"
 #include "sim/deposition/bead_section.h"
 #include "sim/deposition/workpiece.h"
@@ -20,6 +21,7 @@ constexpr double kLowest = 0.1;        // quantile of its gaps
 constexpr double kSpacing = 2e-3;      // [m], between two looks along a line
 constexpr int kMostLooks = 25;         // on one line
 constexpr double kLeastLayer = 20e-6;  // [m]: what is nearer is the side of a bead of the same layer
+constexpr double kStrandSlope = 0.1;   // a line that leaves what is below it more steeply has no layer
 constexpr double kMostLayer = 2e-3;    // [m]: what is farther below is no layer but air
 
 std::array<float, 3> floats(const Vec3& v) {
@@ -39,7 +41,7 @@ class Stack {
 
   void move(double path) {
     path_ += path;
-    while (!ends_.empty() && ends_.front() < path_ - flat_ - 2 * last_width_) {
+    while (!ends_.empty() && ends_.front() < path_ - geometry::fresh_path(flat_, last_width_)) {
       ends_.pop_front();
       ++fresh_from_;
     }
@@ -113,11 +115,16 @@ ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
     const double area = static_cast<double>(areas[static_cast<std::size_t>(std::max(0, step.line))]);
     if (step.filament <= 0 || area <= 0 || length == 0) continue;
     const int looks = std::clamp(static_cast<int>(std::ceil(length / kSpacing)), 1, kMostLooks);
+    std::vector<double> gaps;
+    for (int i = 0; i < looks; ++i)
+      gaps.push_back(stack.gap(from + (i + 0.5) / looks * (to - from), step.X_WT.linear()));
     double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < looks; ++i) {
-      const double gap = stack.gap(from + (i + 0.5) / looks * (to - from), step.X_WT.linear());
+    const bool strand =
+        !(std::abs(gaps.back() - gaps.front()) <= kStrandSlope * length) && length > kMostLayer;
+    for (const double gap : gaps) {
       if (gap > kLeastLayer) least = std::min(least, gap);
-      if (gap > kLeastLayer && gap < kMostLayer) samples.push_back({length / looks, gap, area, step.line});
+      if (gap > kLeastLayer && gap < kMostLayer && !strand)
+        samples.push_back({length / looks, gap, area, step.line});
     }
     stack.add(from, to, step.X_WT.linear().col(2), least, area, step.line);
     length_so_far += length;
