@@ -174,6 +174,7 @@ class Search {
     for (const int node : lattice_.struts[at(strut)]) ++degree_[at(node)];
     hash_ ^= key_[at(strut)];
     ++left_;
+    if (rules_.put_back) rules_.put_back();
   }
   void restore_all() {
     for (const Level& level : levels_)

@@ -18,6 +18,7 @@ struct DisassemblyRules {
   /// Whether the strut could be printed last, from that node on, with `standing` (by strut, this one left
   /// out) around it. What is possible must stay so when fewer stand.
   std::function<bool(const Removal& removal, const std::vector<char>& standing)> removable;
+  std::function<void()> put_back = {};  ///< told when the search goes back and more stand again
   /// Where the search is stuck: a removal to make all the same, or false. Left out: none.
   std::function<bool(const std::vector<Removal>& anchored, const std::vector<char>& standing,
                      Removal& forced)>

@@ -274,10 +274,13 @@ bool StrutAccess::find(const Removal& removal, const std::vector<char>& standing
     print = print_along(removal, axes_[i], standing);
     if (c.fit == Fit::unknown && !meets_itself(print).empty()) c.fit = Fit::never;
     if (c.fit == Fit::never) continue;
-    const auto obstacle = std::find_if(from_top_.begin(), from_top_.end(), [&](int other) {
+    const auto begin = from_top_.begin() + (c.round == round_ ? c.clear_to : 0);
+    const auto obstacle = std::find_if(begin, from_top_.end(), [&](int other) {
       return standing[at(other)] && other != removal.strut && !clears(print, other);
     });
     c.obstacle = obstacle == from_top_.end() ? -1 : *obstacle;
+    c.clear_to = static_cast<int>(obstacle - from_top_.begin());
+    c.round = round_;
     if (c.obstacle >= 0) continue;
     if (c.fit == Fit::unknown) c.fit = beyond_reach(print).empty() ? Fit::possible : Fit::never;
     if (c.fit == Fit::never) continue;

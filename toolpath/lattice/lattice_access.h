@@ -25,6 +25,9 @@ class StrutAccess {
   /// are built. False when there is none. Fills everything of `print`.
   bool find(const Removal& removal, const std::vector<char>& standing, StrutPrint& print);
 
+  /// More struts stand again than at the last find().
+  void put_back() { ++round_; }
+
   /// Whether no axis can ever print the strut, in either direction, with nothing else built; and why.
   bool never(int strut, std::string& why) const;
 
@@ -49,6 +52,8 @@ class StrutAccess {
     Fit fit = Fit::unknown;
     bool on_top = false;  // of another strut, at a grounded node: what the rest holds for
     int obstacle = -1;    // the strut that was in its way last
+    int clear_to = 0;     // in from_top_: what stands before it was not, as long as none was put back
+    int round = 0;        // when that was
   };
   std::vector<Case>& cases(int strut, int from);
   bool lies(int strut) const;
@@ -88,6 +93,7 @@ class StrutAccess {
   std::vector<StrutBody> bodies_;           // by strut, as printed
   std::vector<std::vector<Case>> cases_;    // two of each strut: from its first node, from its second
   std::vector<int> from_top_;               // struts, highest first
+  int round_ = 0;                           // how often struts were put back
   double highest_ = 0;                      // [m], of all struts
 };
 

@@ -31,6 +31,7 @@ class Sequence {
       prints_[static_cast<std::size_t>(removal.strut)] = std::move(print);
       return true;
     };
+    rules.put_back = [this] { access_.put_back(); };
     if (limits_.accept_interference)
       rules.force = [this](const auto& removals, const auto& standing, Removal& forced) {
         return force(removals, standing, forced);
