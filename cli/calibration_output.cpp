@@ -33,10 +33,12 @@ int CalibrationOutput::write(const calibration::MachineCalibration& result) {
   StagedFile machine = machine::staged_with_section(
       result.machine.file, machine::calibration_section(result.machine, result.stored), machine_file_);
   std::optional<StagedFile> named = machine::staged_urdf(result.machine.file, machine_file_), corrected;
+  const auto companions = machine::staged_companions(result.machine.file, machine_file_);
   if (!urdf_file_.empty()) corrected.emplace(urdf_file_, urdf_of(result.machine));
   stop_if_interrupted();
   if (report_) report_->commit();
   if (named) named->commit();
+  for (const auto& file : companions) file->commit();
   if (corrected) corrected->commit();
   machine.commit();
   fmt::print("{}machine: {}\n", report::calibration_text(result), machine_file_);

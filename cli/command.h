@@ -17,6 +17,7 @@ using Action = std::function<int()>;
 void add_rehearse(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);
 void add_pose(CLI::App& app, Action& action);
+void add_place(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_register(CLI::App& app, Action& action);
 void add_scenario(CLI::App& app, Action& action);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -42,10 +43,18 @@ Pose pose_of(const NumberRow& row) {
 }
 
 /// "ok", or why there is no usable answer: the first limit that the pose breaks.
-std::string status_of(const Mechanism& mechanism, const Pose& X_BT, std::span<const double> axes) {
+struct Status {
+  std::string text;
+  bool only_singular = false;  // the axes may stand there, though no program may lead through
+};
+
+Status status_of(const Mechanism& mechanism, const Pose& X_BT, std::span<const double> axes) {
   std::vector<kinematics::LimitViolation> violations;
   mechanism.check(X_BT, axes, violations);
-  return violations.empty() ? "ok" : to_string(violations.front());
+  if (violations.empty()) return {"ok"};
+  const bool singular = std::ranges::all_of(
+      violations, [](const auto& violation) { return violation.kind == kinematics::LimitKind::singularity; });
+  return {to_string(violations.front()), singular};
 }
 
 int print_axes(const std::string& name) {
@@ -60,7 +69,7 @@ int print_axes(const std::string& name) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const auto& [solve_status, axes] = solved[k];
     const std::string status = solve_status == kinematics::SolveStatus::ok
-                                   ? status_of(*mechanism, poses[k], axes)
+                                   ? status_of(*mechanism, poses[k], axes).text
                                    : to_string(solve_status);
     for (std::size_t i = 0; i < n; ++i)
       out += status == "ok" ? fmt::format("{:.6f},", axes[i] / file_unit(*mechanism, static_cast<int>(i)))
@@ -91,11 +100,11 @@ int print_poses(const std::string& name) {
   std::string out = fmt::format("{},status\n", fmt::join(kPoseHeader, ","));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& [solve_status, X_BT] = solved[k];
-    const std::string status = solve_status == kinematics::SolveStatus::ok
-                                   ? status_of(*mechanism, X_BT, axes[k])
-                                   : to_string(solve_status);
-    out += (status == "ok" ? pose_row(machine.X_WB * X_BT) : "nan,nan,nan,nan,nan,nan,nan") + "," + status +
-           "\n";
+    const Status status = solve_status == kinematics::SolveStatus::ok ? status_of(*mechanism, X_BT, axes[k])
+                                                                      : Status{to_string(solve_status)};
+    const bool is_there = status.text == "ok" || status.only_singular;
+    out +=
+        (is_there ? pose_row(machine.X_WB * X_BT) : "nan,nan,nan,nan,nan,nan,nan") + "," + status.text + "\n";
   }
   fmt::print("{}", out);
   return kGood;
@@ -116,7 +125,9 @@ void add_kinematics(CLI::App& app, Action& action) {
       app.add_subcommand("poses", "Forward kinematics: axes.csv on standard input, poses on standard output");
   add_machine_option(*poses, *machine);
   poses->footer(
-      "Header: the machine's axes, as `understudy axes` prints them; hexapod: l1_mm..l6_mm, strut lengths.");
+      "Header: the machine's axes, as `understudy axes` prints them; hexapod: l1_mm..l6_mm, strut lengths. A "
+      "row of "
+      "a singular posture has its pose, and the reason why no program may lead there.");
   poses->callback([=, &action] { action = [=] { return print_poses(*machine); }; });
 }
 

@@ -17,6 +17,7 @@
 #include "machine/file/hexapod_section.h"
 #include "machine/file/optics_section.h"
 #include "machine/file/tool_section.h"
+#include "machine/machine_notes.h"
 #include "machine/model_files.h"
 
 namespace understudy::machine {
@@ -102,6 +103,7 @@ struct MachineFile {
   CalibratedParameters calibrated;
   BuiltTolerances tolerances;
   std::optional<AcceptedErrors> accepted;
+  MachineNotes notes;
 };
 
 void read_machine(YamlMap& root, MachineFile& file) {
@@ -109,9 +111,13 @@ void read_machine(YamlMap& root, MachineFile& file) {
   m.name = root.text("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
+  if (root.has("assumed")) {
+    file.notes.assumed = root.texts("assumed", "groups of figures below that nobody measured");
+    for (const std::string& word : file.notes.assumed) root.check_word("assumed", word, assumption_words());
+  }
   const bool chain = m.mechanism != kinematics::kHexapod;
   if (chain) {
-    read_chain(root, m);
+    read_chain(root, m, file.notes);
     read_gcode_section(root, m);
   } else {
     read_hexapod(root, m);
@@ -177,6 +183,8 @@ MachineDescription load_machine(const std::string& name_or_path, CalibratedParam
 BuiltTolerances load_built_tolerances(const std::string& name_or_path) {
   return read_file_of(name_or_path).tolerances;
 }
+
+MachineNotes load_machine_notes(const std::string& name_or_path) { return read_file_of(name_or_path).notes; }
 
 AcceptedErrors load_accepted_errors(const std::string& name_or_path) {
   const MachineFile file = read_file_of(name_or_path);

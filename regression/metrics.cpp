@@ -17,13 +17,24 @@ struct Kind {
   const char* word;
   const char* section;
 };
-constexpr Kind kKinds[] = {
-    {"strut_length", ""},  {"joint_angle", ""},        {"joint_limit", ""},
-    {"axis_velocity", ""}, {"axis_acceleration", ""},  {"singularity", ""},
-    {"unreachable", ""},   {"collision", "collision"}, {"near_collision", "collision"},
-    {"gap", "gap"},        {"adhesion", "gap"},        {"sag", "sag"},
-    {"flow", "print"},     {"accuracy", "accuracy"},   {"registration", "registration"},
-    {"reading", ""}};
+constexpr Kind kKinds[] = {{"strut_length", ""},
+                           {"joint_angle", ""},
+                           {"joint_limit", ""},
+                           {"axis_velocity", ""},
+                           {"axis_acceleration", ""},
+                           {"singularity", ""},
+                           {"unreachable", ""},
+                           {"collision", "collision"},
+                           {"near_collision", "collision"},
+                           {"gap", "gap"},
+                           {"adhesion", "gap"},
+                           {"sag", "sag"},
+                           {"flow", "print"},
+                           {"accuracy", "accuracy"},
+                           {"registration", "registration"},
+                           {"reading", ""},
+                           {"program", ""},
+                           {"placement", ""}};
 
 // Figures of the contract, by section.
 constexpr const char* kFigures[] = {"print.duration_s",

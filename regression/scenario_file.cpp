@@ -174,12 +174,38 @@ void read_tolerances(YamlMap& map, Scenario& scenario) {
                    "a tool turned away by more is a no-go; else the machine's");
 }
 
+/// How a robot's program is read.
+void read_robot(YamlMap& map, RobotProgramRequest& robot) {
+  if (map.has("signal")) {
+    std::istringstream outputs(map.text("signal", "outputs that feed filament, joined by commas"));
+    for (std::string output; std::getline(outputs, output, ',');) robot.signals.push_back(output);
+  }
+  if (map.has("bead_mm")) {
+    const auto bead =
+        map.numbers("bead_mm", 2, {0.01, 100}, "width and height of what a signal above 0 lays");
+    if (bead[1] > bead[0] && !map.recording())
+      map.fail("bead_mm", "bead_mm: a bead is no higher than it is wide");
+    std::copy(bead.begin(), bead.end(), robot.bead_mm.begin());
+  }
+  if (map.has("flow_mm3_per_second"))
+    robot.flow_mm3_per_s = map.number("flow_mm3_per_second", {1e-6, 1e9}, "mm3/s that a signal of 1 feeds");
+  if (map.has("tool_points"))
+    robot.tool_points = map.word("tool_points", {"x", "-x", "y", "-y", "z", "-z"},
+                                 "axis of the program's tool that points out of its nozzle");
+}
+
 /// How lines of the program are read.
 void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect) {
   if (map.has("place_mm")) {
     const auto place = map.numbers("place_mm", 3, {}, "where the program's origin stands in W");
     std::copy(place.begin(), place.end(), dialect.place_mm.begin());
   }
+  if (map.has("placement"))
+    dialect.place_auto = map.word("placement", {"given", "auto"}, "auto: the place is found") == "auto";
+  if (map.has("turn_deg"))
+    dialect.turn_deg = map.number("turn_deg", {-360, 360}, "of the program about z through its origin");
+  if (map.has("spin_deg"))
+    dialect.spin_deg = map.number("spin_deg", {-360, 360}, "of the tool about its own axis");
   if (map.has("extruder_letter"))
     dialect.extruder_letter = map.word("extruder_letter", {"E", "A"}, "the word of the filament");
   if (map.has("ignored")) {
@@ -191,6 +217,16 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
         existing_file(map, "macros", folder, "path of a Klipper configuration with macros").string();
   if (map.has("temperature_c"))
     dialect.temperature_c = map.number("temperature_c", {100, 450}, "of the nozzle from the start on");
+  if (map.has("nozzle_mm"))
+    dialect.nozzle_mm =
+        map.number("nozzle_mm", {0.05, 10}, "bore that is mounted, if not the machine file's");
+  if (map.has("layer_mm"))
+    dialect.layer_mm = map.number("layer_mm", {0.01, 10}, "of layers, where the path does not tell");
+  if (map.has("strict")) {
+    const std::string word = map.word("strict", {"yes", "no", "true", "false"},
+                                      "whether lines that cannot be read or made are refused");
+    dialect.strict = word == "yes" || word == "true";
+  }
   const auto sign = [&map](const char* key, const char* about) {
     return map.number(key, {}, about) < 0 ? -1 : 1;
   };
@@ -199,6 +235,7 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
   if (map.has("coordinates"))
     dialect.coordinates =
         map.word("coordinates", {"tip", "machine", "crossing"}, "the point that X, Y and Z place");
+  read_robot(map, dialect.robot);
 }
 
 void read_surface(YamlMap& map, const fs::path& folder, SurfaceRequest& surface) {

@@ -66,6 +66,8 @@ BeforeCalibration before_calibration(const TwinSetup& setup, const std::string& 
   BeforeCalibration result{setup, file_name(before), file_name(after), {}};
   MachineDescription& machine = result.setup.machine;
   machine = machine::load_machine(before, result.setup.calibrated);
+  machine.tool.nozzle_diameter = setup.machine.tool.nozzle_diameter;  // the one that is mounted
+  machine.tool.flat_diameter = setup.machine.tool.flat_diameter;
   if (machine.mechanism != setup.machine.mechanism)
     throw InputError(fmt::format("--before {}: its mechanism is {}, that of {} is {}", before,
                                  machine.mechanism, after, setup.machine.mechanism));

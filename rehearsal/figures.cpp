@@ -43,6 +43,19 @@ void add(const PrintFigures& print, Figures& to) {
   to.put("fill_factor", print.fill_factor);
 }
 
+void add(const PlacementFigures& placement, Figures& to) {
+  to.section("placement");
+  const auto& [x, y, z] = placement.place_mm;
+  to.put("x_mm", x);
+  to.put("y_mm", y);
+  to.put("z_mm", z);
+  to.put("turn_deg", placement.turn_deg);
+  to.put("spin_deg", placement.spin_deg);
+  to.put("margin", placement.margin);
+  to.text("least", placement.least);
+  if (!placement.refused.empty()) to.text("refused", placement.refused);
+}
+
 void add(const AccuracyFigures& accuracy, const Record& record, Figures& to) {
   to.section("accuracy");
   to.put("tip_rms_um", accuracy.tip_rms_um);
@@ -164,6 +177,7 @@ void add(const Provenance& provenance, Figures& to) {
 
 std::vector<Figure> figures(const Record& record) {
   Figures all;
+  if (record.placement) add(*record.placement, all);
   if (record.print) add(*record.print, all);
   if (record.accuracy) add(*record.accuracy, record, all);
   if (record.calibration) add(*record.calibration, all);

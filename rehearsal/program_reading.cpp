@@ -1,16 +1,21 @@
 #include "rehearsal/program_reading.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "rehearsal/readings.h"
+#include "rehearsal/robot_reading.h"
 #include "rehearsal/rotary_words.h"
+#include "toolpath/gcode/turned_program.h"
+#include "toolpath/inspection/program_summary.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -18,9 +23,44 @@ namespace {
 /// Called where `error` is caught. Of words that mean nothing to this machine: what says more.
 [[noreturn]] void offer_inspection(const InputError& error, const RehearsalRequest& request) {
   const std::string what = error.what();
-  if (what.find("unknown word") == std::string::npos && what.find("rotary axes") == std::string::npos) throw;
+  const char* kAnswered[] = {"unknown word", "rotary axes", "--signal", "--bead", "--tool-points"};
+  if (std::none_of(std::begin(kAnswered), std::end(kAnswered),
+                   [&](const char* part) { return what.find(part) != std::string::npos; }))
+    throw;
   throw InputError(fmt::format("{}; `understudy inspect {} --machine {}` shows what to do", what,
                                request.program, request.machine));
+}
+
+void read_gcode_into(ReadProgram& read, const std::string& text, const RehearsalRequest& request,
+                     const machine::MachineDescription& machine) {
+  refuse_robot_options(request);
+  toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
+  options.passed_over = &read.passed_over;
+  read.facts = toolpath::slicer_facts(text);
+  const toolpath::ProgramTurn turn{from_deg(request.dialect.turn_deg), from_deg(request.dialect.spin_deg)};
+  read.program = toolpath::parse_turned_gcode(text, request.program, options, turn);
+}
+
+Finding finding_of(const toolpath::PassedOver& passed) {
+  const double filament_mm = to_mm(passed.filament);
+  std::string message = fmt::format("line {} cannot be read: {}; passed over", passed.line, passed.why);
+  if (passed.last_line > passed.line)
+    message +=
+        fmt::format(", with the moves up to line {}, because {} of line {} {} not known", passed.last_line,
+                    fmt::join(passed.unknown, " "), passed.line, passed.unknown.size() == 1 ? "is" : "are");
+  if (passed.filament > 0 || !passed.filament_known)
+    message += fmt::format(", without {:.3f} mm of filament{}", filament_mm,
+                           passed.filament_known ? "" : " and what cannot be read");
+  return {"program",
+          Severity::error,
+          passed.line,
+          0,
+          filament_mm,
+          0,
+          "mm",
+          std::move(message),
+          passed.last_line,
+          fmt::format("{} {}", kPassedOver, passed.line)};  // each is told on its own
 }
 
 }  // namespace
@@ -46,23 +86,36 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   return gcode;
 }
 
-toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
-  const toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
-  toolpath::Program program = [&] {
-    try {
-      return toolpath::read_gcode(request.program, options);
-    } catch (const InputError& error) {
-      offer_inspection(error, request);
-    }
-  }();
-  if (!request.dialect.temperature_c) return program;
+ReadProgram read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
+  ReadProgram read;
+  const std::string text = read_file(request.program);
+  read.of_robot = toolpath::robot_language(request.program, text).has_value();
+  try {
+    if (read.of_robot)
+      read.program =
+          toolpath::read_robot_program(request.program, text, robot_options(request.dialect, machine));
+    else
+      read_gcode_into(read, text, request, machine);
+  } catch (const InputError& error) {
+    offer_inspection(error, request);
+  }
+  if (request.dialect.strict && !read.passed_over.empty())
+    toolpath::refuse_passed_over(read.program.file, read.passed_over);
+  if (!request.dialect.temperature_c) return read;
   toolpath::Step heat;
   heat.kind = toolpath::StepKind::temperature;
-  heat.X_WT = options.X_WT_home;
+  heat.X_WT = machine.X_WB * machine.X_BT_home;
   heat.temperature = *request.dialect.temperature_c + kCelsiusZero;
   heat.wait = true;
-  program.steps.insert(program.steps.begin(), heat);
-  return program;
+  read.program.steps.insert(read.program.steps.begin(), heat);
+  return read;
+}
+
+std::vector<Finding> findings_of(const std::vector<toolpath::PassedOver>& lines) {
+  std::vector<Finding> findings;
+  findings.reserve(lines.size());
+  for (const toolpath::PassedOver& line : lines) findings.push_back(finding_of(line));
+  return findings;
 }
 
 std::optional<Finding> misread_words(const RehearsalRequest& request, const toolpath::Program& program,
@@ -72,8 +125,10 @@ std::optional<Finding> misread_words(const RehearsalRequest& request, const tool
            (s.rotary->b != program.steps.front().rotary->b || s.rotary->c != program.steps.front().rotary->c);
   };
   if (std::ranges::none_of(program.steps, turned)) return std::nullopt;
-  return misread_words(program, {request.program, read_file(request.program)},
-                       gcode_options(request.dialect, machine), request.machine);
+  toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
+  std::vector<toolpath::PassedOver> told_already;
+  options.passed_over = &told_already;
+  return misread_words(program, {request.program, read_file(request.program)}, options, request.machine);
 }
 
 }  // namespace understudy::rehearsal

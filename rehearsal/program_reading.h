@@ -1,7 +1,10 @@
 // The program of a request, read as the machine and the request say.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "machine/description.h"
 #include "rehearsal/findings/finding.h"
@@ -14,9 +17,20 @@ namespace understudy::rehearsal {
 toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
                                      const machine::MachineDescription& machine);
 
-/// With the temperature that the request asks for ahead of it. Throws InputError as read_gcode() does, with
-/// the command that says more where words mean nothing to this machine.
-toolpath::Program read_program(const RehearsalRequest& request, const machine::MachineDescription& machine);
+struct ReadProgram {
+  toolpath::Program program;
+  bool of_robot = false;                          ///< KRL or RAPID
+  std::vector<toolpath::PassedOver> passed_over;  ///< none where the request is strict
+  std::map<std::string, std::string> facts;       ///< of the slicer's comments (toolpath::slicer_facts)
+};
+
+/// With the temperature that the request asks for ahead of it. Throws InputError as read_gcode() and
+/// read_robot_program() do, with the command that says more where words mean nothing to this machine; of a
+/// strict request with all lines that cannot be read.
+ReadProgram read_program(const RehearsalRequest& request, const machine::MachineDescription& machine);
+
+/// A finding for each line that was passed over: an error.
+std::vector<Finding> findings_of(const std::vector<toolpath::PassedOver>& lines);
 
 /// A finding where its rotary words are for another kind of machine (readings.h).
 std::optional<Finding> misread_words(const RehearsalRequest& request, const toolpath::Program& program,

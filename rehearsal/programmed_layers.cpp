@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/printed_clearance.h"
 #include "rehearsal/programmed_areas.h"
 #include "sim/deposition/bead_section.h"
 #include "sim/deposition/workpiece.h"
@@ -20,6 +21,7 @@ constexpr double kLowest = 0.1;        // quantile of its gaps
 constexpr double kSpacing = 2e-3;      // [m], between two looks along a line
 constexpr int kMostLooks = 25;         // on one line
 constexpr double kLeastLayer = 20e-6;  // [m]: what is nearer is the side of a bead of the same layer
+constexpr double kStrandSlope = 0.1;   // a line that leaves what is below it more steeply has no layer
 constexpr double kMostLayer = 2e-3;    // [m]: what is farther below is no layer but air
 
 std::array<float, 3> floats(const Vec3& v) {
@@ -39,7 +41,7 @@ class Stack {
 
   void move(double path) {
     path_ += path;
-    while (!ends_.empty() && ends_.front() < path_ - flat_ - 2 * last_width_) {
+    while (!ends_.empty() && ends_.front() < path_ - geometry::fresh_path(flat_, last_width_)) {
       ends_.pop_front();
       ++fresh_from_;
     }
@@ -96,9 +98,13 @@ struct ProgrammedLayers::Stretch {
 
 ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
                                    const machine::MachineDescription& machine,
-                                   const std::shared_ptr<const geometry::Mesh>& part)
-    : limits_(machine.gap) {
+                                   const std::shared_ptr<const geometry::Mesh>& part, double told)
+    : limits_(machine.gap), told_(told) {
   const std::vector<float> areas = programmed_areas(program, machine);
+  std::vector<std::pair<double, double>> printed;
+  for (const float area : areas)
+    if (area > 0) printed.emplace_back(area, 1);
+  told_area_ = quantile_by_length(std::move(printed), 0.5);
   Stack stack(machine, part);
   std::vector<Sample> samples;
   std::vector<Stretch> stretches;
@@ -113,11 +119,16 @@ ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
     const double area = static_cast<double>(areas[static_cast<std::size_t>(std::max(0, step.line))]);
     if (step.filament <= 0 || area <= 0 || length == 0) continue;
     const int looks = std::clamp(static_cast<int>(std::ceil(length / kSpacing)), 1, kMostLooks);
+    std::vector<double> gaps;
+    for (int i = 0; i < looks; ++i)
+      gaps.push_back(stack.gap(from + (i + 0.5) / looks * (to - from), step.X_WT.linear()));
     double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < looks; ++i) {
-      const double gap = stack.gap(from + (i + 0.5) / looks * (to - from), step.X_WT.linear());
+    const bool strand =
+        !(std::abs(gaps.back() - gaps.front()) <= kStrandSlope * length) && length > kMostLayer;
+    for (const double gap : gaps) {
       if (gap > kLeastLayer) least = std::min(least, gap);
-      if (gap > kLeastLayer && gap < kMostLayer) samples.push_back({length / looks, gap, area, step.line});
+      if (gap > kLeastLayer && gap < kMostLayer && !strand)
+        samples.push_back({length / looks, gap, area, step.line});
     }
     stack.add(from, to, step.X_WT.linear().col(2), least, area, step.line);
     length_so_far += length;
@@ -163,15 +174,19 @@ ProgrammedLayers::Layer ProgrammedLayers::typical(const std::vector<Stretch>& st
           static_cast<float>(quantile_by_length(std::move(areas), 0.5))};
 }
 
+sim::GapBand ProgrammedLayers::told_band() const {
+  return told_ > 0 ? sim::gap_band(limits_, told_, told_area_) : sim::gap_band(limits_);
+}
+
 sim::GapBand ProgrammedLayers::band(int line) const {
   const auto at = static_cast<std::size_t>(std::max(0, line));
   const Layer layer = at < layers_.size() ? layers_[at] : Layer{};
-  if (layer.layer <= 0) return sim::gap_band(limits_);
+  if (layer.layer <= 0) return told_band();
   return sim::gap_band(limits_, static_cast<double>(layer.layer), static_cast<double>(layer.area));
 }
 
 sim::GapBand ProgrammedLayers::typical_band() const {
-  if (typical_.layer <= 0) return sim::gap_band(limits_);
+  if (typical_.layer <= 0) return told_band();
   return sim::gap_band(limits_, static_cast<double>(typical_.layer), static_cast<double>(typical_.area));
 }
 

@@ -16,9 +16,10 @@ namespace understudy::rehearsal {
 /// about it, so that a line over a hollow has the layer of those beside it.
 class ProgrammedLayers {
  public:
-  /// The part may be null.
+  /// The part may be null. `told` [m]: the layer of lines whose path does not tell one; 0: the machine's
+  /// band.
   ProgrammedLayers(const toolpath::Program& program, const machine::MachineDescription& machine,
-                   const std::shared_ptr<const geometry::Mesh>& part);
+                   const std::shared_ptr<const geometry::Mesh>& part, double told = 0);
 
   /// The band of gaps that is good on this line of the file; the machine's own where it has no layer.
   sim::GapBand band(int line) const;
@@ -32,6 +33,8 @@ class ProgrammedLayers {
     float layer = 0;  // [m]; 0: none
     float area = 0;   // [m^2]
   };
+  sim::GapBand told_band() const;
+
   struct Sample;
   struct Stretch;
   static Stretch close(std::vector<Sample>& samples);
@@ -40,6 +43,7 @@ class ProgrammedLayers {
   machine::GapLimits limits_;
   std::vector<Layer> layers_;  // by line
   Layer typical_;
+  double told_, told_area_ = 0;  // [m], [m^2]
 };
 
 }  // namespace understudy::rehearsal

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "control/gap/gap_controller.h"
@@ -98,6 +99,15 @@ struct RegistrationFigures {
   std::vector<RegistrationRow> rows;
   std::optional<control::PartFit> fit;
 };
+/// The place on the table that was found (rehearsal/placement).
+struct PlacementFigures {
+  std::array<double, 3> place_mm{0, 0, 0};
+  double turn_deg = 0, spin_deg = 0;
+  double margin = 0;    ///< to the nearest limit: 0 at it, 1 in the middle of a range
+  std::string least;    ///< the limit that is nearest
+  std::string refused;  ///< why no place holds every limit; empty: this one does
+  std::string words;    ///< as options of `rehearse`
+};
 struct EngineFigures {
   std::string name, version;
   double timestep_s = 0;
@@ -165,9 +175,12 @@ struct Record {
   std::vector<Finding> findings;  ///< errors first, then by line
   std::string title;              ///< "curved-line.gcode on hexapod"
   std::string program_name, machine_name, fixture_name, gap_control;
-  std::string machine_word;                 ///< as `--machine` took it
-  std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
-  bool measures_gap = false;                ///< the machine has laser and microscope
+  std::string machine_word;                   ///< as `--machine` took it
+  std::array<double, 3> place_mm{0, 0, 0};    ///< where the program's origin stands in W
+  std::optional<PlacementFigures> placement;  ///< where the place was found, not given
+  bool measures_gap = false;                  ///< the machine has laser and microscope
+  /// First and last line of what was passed over, in order: the run is one without it.
+  std::vector<std::pair<int, int>> passed_over;
 
   std::optional<PrintFigures> print;
   std::optional<AccuracyFigures> accuracy;

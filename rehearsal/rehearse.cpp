@@ -4,10 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "control/motion/constraint_check.h"
 #include "core/assert.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -18,17 +19,23 @@
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings/accuracy_findings.h"
 #include "rehearsal/findings/findings.h"
+#include "rehearsal/findings/machine_findings.h"
 #include "rehearsal/findings/process_check.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/gap_belief.h"
 #include "rehearsal/library_versions.h"
+#include "rehearsal/placement/home_posture.h"
+#include "rehearsal/placement/placement.h"
 #include "rehearsal/program_reading.h"
+#include "rehearsal/reachable_program.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/request/input_digest.h"
 #include "rehearsal/request/memory_need.h"
+#include "rehearsal/robot_reading.h"
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/surface.h"
+#include "rehearsal/told_process.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/as_built/truth.h"
 #include "toolpath/crowding.h"
@@ -56,21 +63,47 @@ machine::AcceptedErrors accepted_errors(const RehearsalRequest& request) {
   return accepted;
 }
 
-TwinSetup prepare(const RehearsalRequest& request) {
+/// What the program is wrong in itself, and where it is run without what is wrong.
+struct Mended {
+  std::vector<Finding> findings;
+  std::vector<std::pair<int, int>> passed_over;  // lines
+  std::map<std::string, std::string> facts;      // that the slicer's comments state
+};
+
+void read_into(const RehearsalRequest& request, TwinSetup& setup, Mended& mended) {
+  ReadProgram read = read_program(request, setup.machine);
+  setup.program = std::move(read.program);
+  mended.findings =
+      read.of_robot ? robot_program_findings(setup.program, request.machine) : findings_of(read.passed_over);
+  for (const auto& lines : read.passed_over) mended.passed_over.emplace_back(lines.line, lines.last_line);
+  mended.facts = std::move(read.facts);
+}
+
+/// What cannot be fed is refused, or left out.
+void mend_filament(const RehearsalRequest& request, TwinSetup& setup, Mended& mended) {
+  if (request.dialect.strict) check_process(setup.program, setup.machine, setup.material);
+  const auto faults = mend_process(setup.program, setup.machine, setup.material);
+  mended.findings.insert(mended.findings.end(), faults.begin(), faults.end());
+}
+
+TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   const auto& engines = engine_names();
   if (std::find(engines.begin(), engines.end(), request.engine) == engines.end())
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   TwinSetup setup;
   setup.machine = machine::load_machine(request.machine, setup.calibrated);
+  stand_at_home(request.home_axes, setup.machine);
   check_memory(request);
-  if (!request.program.empty()) setup.program = read_program(request, setup.machine);
+  if (request.dialect.nozzle_mm && setup.machine.tool.prints())
+    mount_nozzle(setup.machine.tool, from_mm(*request.dialect.nozzle_mm));
+  if (!request.program.empty()) read_into(request, setup, mended);
   toolpath::check_duration(setup.program, (setup.machine.X_WB * setup.machine.X_BT_home).translation(),
                            request.max_time);
   toolpath::check_crowding(setup.program);
   if (setup.machine.tool.prints()) {
     setup.material =
         machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);
-    check_process(setup.program, setup.machine, setup.material);
+    mend_filament(request, setup, mended);
   }
   if (!request.fixture.empty())
     setup.part = read_fixture(machine::find_fixture(request.fixture), setup.machine);
@@ -81,7 +114,11 @@ TwinSetup prepare(const RehearsalRequest& request) {
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
   if (setup.machine.tool.prints())
-    setup.layers = std::make_shared<ProgrammedLayers>(setup.program, setup.machine, setup.part);
+    setup.layers = std::make_shared<ProgrammedLayers>(setup.program, setup.machine, setup.part,
+                                                      told_layer(request.dialect, mended.facts));
+  for (Finding& finding : process_warnings(request.dialect, setup.machine.tool, mended.facts,
+                                           setup.layers ? setup.layers->typical_layer() : 0))
+    mended.findings.push_back(std::move(finding));
   setup.registration = registration_task(request, setup.machine, setup.part, setup.program);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;
@@ -194,6 +231,16 @@ bool any_error(const std::vector<Finding>& findings) {
                      [](const Finding& f) { return f.severity == Severity::error; });
 }
 
+/// Of the machine; moves that it cannot make are left out of the program.
+std::vector<Finding> check_limits(const RehearsalRequest& request, TwinSetup& setup, Mended& mended) {
+  const auto misread = misread_words(request, setup.program, setup.machine);
+  Reach reach = check_reach(setup.program, setup.machine, request.dialect.strict);
+  if (misread) reach.findings.push_back(*misread);
+  mended.passed_over.insert(mended.passed_over.end(), reach.passed_over.begin(), reach.passed_over.end());
+  std::sort(mended.passed_over.begin(), mended.passed_over.end());
+  return std::move(reach.findings);
+}
+
 /// Nothing where the program breaks limits so far that the engine fails: a finding says so.
 std::optional<Runs> run_or_find(const RehearsalRequest& request, const TwinSetup& setup,
                                 const std::optional<BeforeCalibration>& before, const RunOptions& options,
@@ -248,26 +295,55 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
     record.registration = registration_figures(*runs.main.registration, *setup.registration);
 }
 
+/// The inputs are those that were asked for: the place follows from them.
+void tell_placement(const RehearsalRequest& asked, const Placement& placement, Record& record) {
+  record.provenance.inputs_sha256 = inputs_sha256(asked, record.provenance.program_sha256);
+  const ProgramPlace& at = placement.place;
+  record.placement = {{at.x_mm, at.y_mm, at.z_mm},
+                      at.turn_deg,
+                      at.spin_deg,
+                      placement.margin,
+                      placement.least,
+                      placement.possible ? "" : placement.reason,
+                      place_words(at)};
+}
+
+Finding no_place(const PlacementFigures& placement) {
+  Finding finding;
+  finding.kind = "placement";
+  finding.value = placement.margin;
+  finding.unit = "1";
+  finding.message = "no place on the table holds every limit; at the best one " + placement.refused;
+  return finding;
+}
+
 }  // namespace
 
-Record rehearse(const RehearsalRequest& request, const Progress& progress) {
+Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
   const Progress report = [&](double share, const std::string& what) {
     if (progress) progress(share, what);
   };
+  std::optional<Placement> placement;
+  if (asked.dialect.place_auto) placement = find_placement(asked, {}, progress);
+  const RehearsalRequest request = placement ? placed(asked, placement->place) : asked;
   report(0, "reading");
-  const TwinSetup setup = prepare(request);
+  Mended mended;
+  TwinSetup setup = prepare(request, mended);
   std::optional<BeforeCalibration> before;
   if (!request.before.empty()) before = before_calibration(setup, request.before, request.machine);
   const SurfaceTask surface = prepare_surface(request.surface);
   const control::GapControl mode = gap_control_of(request.gap_control, setup.machine);
   Record record = describe_run(request, setup, mode);
+  if (placement) tell_placement(asked, *placement, record);
 
   report(0.02, "checking limits");
-  record.findings = findings_of(control::check_constraints(setup.program, setup.machine));
-  if (const auto misread = misread_words(request, setup.program, setup.machine))
-    record.findings.push_back(*misread);
+  record.findings = check_limits(request, setup, mended);
+  for (const Finding& finding : machine_findings(machine::load_machine_notes(request.machine)))
+    record.findings.push_back(finding);
   const RunOptions options{mode, true, any_error(record.findings)};
   if (options.beyond_limits) tell_how_simulated(record.findings);
+  record.findings.insert(record.findings.begin(), mended.findings.begin(), mended.findings.end());
+  record.passed_over = mended.passed_over;
   std::shared_ptr<const sim::Workpiece> printed;
   if (const auto runs = run_or_find(request, setup, before, options, report, record)) {
     fill(setup, before, options, *runs, record);
@@ -275,6 +351,8 @@ Record rehearse(const RehearsalRequest& request, const Progress& progress) {
     printed = runs->main.workpiece;
     study_surface(surface, *printed, record);
   }
+  if (record.placement && !record.placement->refused.empty())
+    record.findings.push_back(no_place(*record.placement));
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
   if (request.keep_scene) record.scene = scene_of(setup, record.trace, printed);

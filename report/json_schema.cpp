@@ -171,6 +171,8 @@ Json Writer::reference(const MapSchema& schema, const std::string& key) {
 }
 
 Json Writer::list(const KeySchema& key) {
+  if (key.maps.empty())  // of words, where one may stand without brackets
+    return {{"type", {"array", "string"}}, {"minItems", 1}, {"items", {{"type", {"string", "number"}}}}};
   Json json{{"type", "array"}, {"minItems", std::max<std::size_t>(key.count, 1)}};
   if (key.count > 0) json["maxItems"] = key.count;
   if (key.maps.size() == 1) {

@@ -70,6 +70,8 @@ Json summary_value(const rehearsal::Record& record) {
   summary["verdict"] = record.go ? "go" : "no-go";
   summary["go"] = record.go;
   summary["grade"] = word(rehearsal::grade_of(record));
+  for (const auto& [first, last] : record.passed_over)
+    summary["passed_over"].push_back(Json::array({first, last}));
   summary["findings"] = Json::array();
   for (const Finding& finding : record.findings) summary["findings"].push_back(finding_value(finding));
   summary["finding_groups"] = Json::array();

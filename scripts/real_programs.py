@@ -81,7 +81,7 @@ def main():
                 lines_all += lines
                 seconds_all += seconds
             answer = answered(run.stdout, program) if status == "read" else refused(run.stderr, program)
-            print(f"| {row['tool']} | {row['repository']} @ {row['commit'][:7]} `{row['path']}` | {lines} | {row['machine']} | {answer} |")
+            print(f"| {row['tool']} | `{row['repository']}/{row['path']}` @ {row['commit'][:7]} | {lines} | {row['machine']} | {answer} |")
     print(f"\n{lines_all} lines were read in {seconds_all:.1f} s: {1e5 * seconds_all / max(lines_all, 1):.2f} s for 100 000.")
     return 1 if different else 0
 

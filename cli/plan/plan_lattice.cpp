@@ -1,15 +1,18 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
-#include <span>
 
 #include <fmt/format.h>
 
+#include "cli/plan/lattice_reach.h"
 #include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "geometry/printed_clearance.h"
 #include "machine/fixture_file.h"
 #include "toolpath/lattice/lattice_fill.h"
 #include "toolpath/lattice/lattice_json.h"
@@ -21,7 +24,8 @@ namespace {
 struct LatticeRequest {
   PlanOptions options;
   std::string part, place = "0,0,0";
-  double strut_mm = 5, scale = 1, diameter_mm = 0.48, dwell_s = 3, margin_mm = 0.1, tilt_max_deg = 90;
+  double strut_mm = 5, scale = 1, diameter_mm = 0.48, dwell_s = 3, margin_mm = 0.1, tilt_max_deg = 90,
+         time_limit_s = 600, joint_press_mm = to_mm(-geometry::contact_with_printed(true));
   bool force = false, ignore_reach = false;
 };
 
@@ -30,6 +34,9 @@ void check(const LatticeRequest& r) {
   check_option("--scale", r.scale, 1000);
   check_option("--diameter", r.diameter_mm, 20);
   check_option("--margin", r.margin_mm, 10);
+  if (!(r.joint_press_mm >= 0 && r.joint_press_mm <= 10))
+    throw InputError(fmt::format("--joint-press {:g} is outside 0..10", r.joint_press_mm));
+  check_option("--time-limit", r.time_limit_s, 86400);
   if (!(r.tilt_max_deg >= 0 && r.tilt_max_deg <= 90))
     throw InputError(fmt::format("--tilt {:g} is outside 0..90", r.tilt_max_deg));
 }
@@ -76,31 +83,29 @@ void warn_of_lengths(const toolpath::Lattice& lattice) {
                to_mm(toolpath::kLongestStrut), to_mm(longest));
 }
 
-std::function<bool(const Pose&)> reach_of(const machine::MachineDescription& machine) {
-  const std::shared_ptr<kinematics::Mechanism> mechanism = machine.make_mechanism();
-  return [mechanism, X_BW = Pose(machine.X_WB.inverse())](const Pose& X_WT) {
-    kinematics::AxisVector storage{};
-    const auto axes = std::span(storage).first(static_cast<std::size_t>(mechanism->axis_count()));
-    const Pose X_BT = X_BW * X_WT;
-    if (mechanism->inverse(X_BT, {}, axes) != kinematics::SolveStatus::ok) return false;
-    std::vector<kinematics::LimitViolation> violations;
-    mechanism->check(X_BT, axes, violations);
-    return violations.empty();
-  };
+/// True from `seconds` on.
+std::function<bool()> deadline(double seconds) {
+  const auto end =
+      std::chrono::steady_clock::now() +
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+  return [end] { return std::chrono::steady_clock::now() > end; };
 }
 
 toolpath::LatticePlan plan_of(const LatticeRequest& r, const machine::MachineDescription& machine) {
   toolpath::LatticePlan plan;
   plan.limits.tool = machine.tool.bodies;
+  plan.limits.nozzle_flat = machine.tool.flat_diameter;
   plan.limits.strut_diameter = from_mm(r.diameter_mm);
   plan.limits.ground_gap = machine.gap.aim;
   plan.limits.margin = from_mm(r.margin_mm);
   // Where the nozzle's flat still overlaps a strut that leaves the node across the tool's axis.
   plan.limits.joint = 0.5 * machine.tool.flat_diameter + plan.limits.strut_diameter + plan.limits.margin;
+  plan.limits.joint_press = from_mm(r.joint_press_mm);
   plan.limits.lift = from_mm(r.options.clearance_mm);
   plan.limits.tilt_max = from_deg(r.tilt_max_deg);
-  if (!r.ignore_reach) plan.limits.reachable = reach_of(machine);
+  if (!r.ignore_reach) plan.limits.way = lattice_reach(machine);
   plan.limits.accept_interference = r.force;
+  plan.limits.out_of_time = deadline(r.time_limit_s);
   plan.feed = from_mm(r.options.feed_mm_per_s);
   plan.approach_feed = from_mm(r.options.approach_mm_per_s);
   plan.approach = machine.gap.standoff;
@@ -157,6 +162,16 @@ void add_plan_lattice(CLI::App& plan, Action& action) {
   lattice->add_option("--margin", request->margin_mm, "mm between tool and struts, at least")
       ->capture_default_str();
   lattice->add_option("--tilt", request->tilt_max_deg, "degrees from vertical that the tool may lean")
+      ->capture_default_str();
+  lattice
+      ->add_option(
+          "--joint-press", request->joint_press_mm,
+          "mm that the nozzle may press into struts where they meet the one it prints; more than this "
+          "is a contact in a rehearsal")
+      ->capture_default_str();
+  lattice
+      ->add_option("--time-limit", request->time_limit_s,
+                   "s that the search for an order may take; then no order is an error")
       ->capture_default_str();
   lattice->add_flag("--force", request->force,
                     "where no way is clear, take the clearest and warn, instead of refusing");

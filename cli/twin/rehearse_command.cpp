@@ -2,6 +2,9 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -12,11 +15,13 @@
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
 #include "core/file/output_folder.h"
+#include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "rehearsal/findings/finding_groups.h"
 #include "rehearsal/findings/verdict.h"
 #include "rehearsal/rehearse.h"
 #include "report/page/write_results.h"
+#include "toolpath/robot/robot_program.h"
 
 namespace understudy::cli {
 namespace {
@@ -70,8 +75,23 @@ void print_findings(const std::vector<rehearsal::FindingGroup>& groups) {
   }
 }
 
+/// Ahead of all figures: they are not those of the whole program.
+void print_passed_over(const std::vector<std::pair<int, int>>& lines) {
+  if (lines.empty()) return;
+  std::string text;
+  for (const auto& [first, last] : lines)
+    text += (text.empty() ? "" : ", ") +
+            (last > first ? fmt::format("{} to {}", first, last) : fmt::format("{}", first));
+  fmt::print("  passed over, so that all of the following is about the program without it: {} {}\n",
+             text.find_first_of(", ") == std::string::npos ? "line" : "lines", text);
+}
+
 void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
+  print_passed_over(record.passed_over);
+  if (record.placement)
+    fmt::print("  placed by {}: margin {:.3f} ({})\n", record.placement->words, record.placement->margin,
+               record.placement->least);
   print_findings(rehearsal::group_findings(record));
   if (record.registration) print_registration(*record.registration);
   if (record.gap) {
@@ -96,6 +116,14 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
   fmt::print("report: {}\n", (std::filesystem::path(folder) / "report.html").string());
 }
 
+/// Where its name does not tell that the program is a robot's.
+void print_language(const std::string& program) {
+  std::error_code none;
+  if (toolpath::has_robot_ending(program) || !std::filesystem::is_regular_file(program, none)) return;
+  if (const auto language = toolpath::robot_language(program, read_file(program)))
+    fmt::print("{} is read as {}, as its content tells\n", program, to_string(*language));
+}
+
 int rehearse(const RehearseOptions& asked) {
   rehearsal::RehearsalRequest request = asked.with_faults();
   request.command = command_line();
@@ -104,6 +132,7 @@ int rehearse(const RehearseOptions& asked) {
   const rehearsal::Record record = rehearse_into(request, out.path());
   stop_if_interrupted();
   out.commit();
+  print_language(request.program);
   print_answer(record, asked.folder);
   return record.go ? kGood : kNo;
 }

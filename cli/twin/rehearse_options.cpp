@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 
@@ -10,6 +11,7 @@
 #include "cli/machine_option.h"
 #include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
+#include "cli/twin/robot_options.h"
 #include "core/error.h"
 #include "rehearsal/request/fault_words.h"
 
@@ -33,9 +35,33 @@ void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
       ->check(CLI::PositiveNumber);
 }
 
+void read_place(const std::string& word, rehearsal::DialectRequest& dialect) {
+  dialect.place_auto = word == "auto";
+  if (dialect.place_auto) return;
+  std::istringstream numbers(word);
+  char comma[2] = {' ', ' '};
+  auto& [x, y, z] = dialect.place_mm;
+  numbers >> x >> comma[0] >> y >> comma[1] >> z;
+  if (!numbers || comma[0] != ',' || comma[1] != ',' || numbers.peek() != std::char_traits<char>::eof())
+    throw CLI::ValidationError("--place", "'" + word + "' is neither X,Y,Z in mm nor auto");
+}
+
 void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
-  command.add_option("--place", dialect.place_mm, "X,Y,Z in mm: where the program's origin stands")
-      ->delimiter(',')
+  command
+      .add_option_function<std::string>(
+          "--place", [&dialect](const std::string& word) { read_place(word, dialect); },
+          "X,Y,Z in mm: where the program's origin stands; auto: where `understudy place` puts it")
+      ->type_name("X,Y,Z|auto")
+      ->group("Programs of other machines");
+  command
+      .add_option("--turn", dialect.turn_deg,
+                  "degrees: the program turned about the vertical through its origin")
+      ->check(CLI::Range(-360., 360.))
+      ->group("Programs of other machines");
+  command
+      .add_option("--spin", dialect.spin_deg,
+                  "degrees: the tool turned about its own axis, on machines that can")
+      ->check(CLI::Range(-360., 360.))
       ->group("Programs of other machines");
   command
       .add_option("--extruder-letter", dialect.extruder_letter,
@@ -53,10 +79,12 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
       .add_option("--macros", dialect.macros,
                   "Klipper's configuration, whose macros stand for commands that are unknown here")
       ->group("Programs of other machines");
+  add_process_options(command, dialect);
   command
-      .add_option("--temperature", dialect.temperature_c,
-                  "C: the nozzle's from the start on, where a macro of the printer sets it")
-      ->check(CLI::Range(100., 450.))
+      .add_flag(
+          "--strict", dialect.strict,
+          "refuse a program with lines that cannot be read or made, instead of a no-go that tells of them "
+          "and of the rest")
       ->group("Programs of other machines");
   command.add_option("--b-sign", dialect.b_sign, "-1: the program counts B the other way round")
       ->check(CLI::IsMember({-1, 1}))
@@ -74,6 +102,22 @@ void add_dialect(CLI::App& command, rehearsal::DialectRequest& dialect) {
           "of a machine whose turning axes cross at the program's origin); without it the machine file's")
       ->group("Programs of other machines");
 }
+
+}  // namespace
+
+void add_process_options(CLI::App& command, rehearsal::DialectRequest& dialect) {
+  const auto add = [&](const char* name, std::optional<double>& value, const char* about, double low,
+                       double high) {
+    command.add_option(name, value, about)->check(CLI::Range(low, high))->group("Programs of other machines");
+  };
+  add("--temperature", dialect.temperature_c,
+      "C: the nozzle's from the start on, where a macro of the printer sets it", 100, 450);
+  add("--nozzle", dialect.nozzle_mm, "mm: bore of the nozzle that is mounted, if not the machine file's",
+      0.05, 10);
+  add("--layer", dialect.layer_mm, "mm: height of the layers, where the path does not tell", 0.01, 10);
+}
+
+namespace {
 
 void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
   command
@@ -98,13 +142,22 @@ void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
 }
 
 void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
-  command.add_option("program", request.program, "G-code, with the tool's orientation at each point")
+  command
+      .add_option("program", request.program,
+                  "G-code, with the tool's orientation at each point, or KRL or RAPID")
       ->required();
   add_machine_option(command, request.machine);
   command.add_option(
       "--before", request.before,
       "the machine before its calibration, a name or a machine.yaml: the same print on the same "
       "twin, driven by that; the report compares tip errors");
+  command
+      .add_option("--home-axes", request.home_axes,
+                  "positions of all axes at home, in mm and degrees: another posture of an arm than the "
+                  "machine file's")
+      ->delimiter(',')
+      ->excludes("--before")
+      ->group("Programs of other machines");
   command
       .add_option("--engine", request.engine,
                   "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
@@ -136,6 +189,7 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
   for (const char* option : {"--pattern", "--places"}) command.get_option(option)->needs(find);
   add_tolerances(command, request);
   add_dialect(command, request.dialect);
+  add_robot_options(command, request.dialect.robot);
   add_surface(command, request.surface);
   command
       .add_option("--max-time", request.max_time,
@@ -147,6 +201,10 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
 }
 
 }  // namespace
+
+void add_dialect_options(CLI::App& command, rehearsal::DialectRequest& dialect) {
+  add_dialect(command, dialect);
+}
 
 void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
   add_request(command, options.request);

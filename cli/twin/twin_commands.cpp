@@ -47,6 +47,7 @@ void add_twin_commands(CLI::App& app, Action& action) {
   add_rehearse(app, action);
   add_inspect(app, action);
   add_pose(app, action);
+  add_place(app, action);
   add_verify(app, action);
   add_register(app, action);
   add_scenario(app, action);

@@ -88,11 +88,13 @@ class Checker {
     if (const auto first = path_.self_motion_before(segment, axes_)) axes_ = first->self_motion->to;
     const bool programmed_feed = step.kind == StepKind::move || step.kind == StepKind::print;
     const int parts = parts_of(segment, step_, kCheckTurn);
+    if (!at_possible_) refuse_step();  // it begins where no axes reach
     for (int k = 1; k <= parts; ++k) {
       const kinematics::AxisVector before = axes_;
       const double fraction = static_cast<double>(k) / parts, s = fraction * segment.length;
       const Location at{pushed_, fraction};
-      if (!note_pose(path_.pose_at(segment, s), path_.axes_at(segment, s, axes_), step.line, at)) continue;
+      at_possible_ = note_pose(path_.pose_at(segment, s), path_.axes_at(segment, s, axes_), step.line, at);
+      if (!at_possible_) continue;
       if (!segment.rotary) note_leap(before, step.line, at);
       if (programmed_feed) note_speed(segment, s, at);
     }
@@ -108,7 +110,7 @@ class Checker {
     for (const LimitViolation& violation : violations_) note({violation, line}, at);
     if (status != SolveStatus::ok) {
       if (violations_.empty()) note({{LimitKind::unreachable, "tool pose", 0, 0, ""}, line}, at);
-      plannable_ = false;
+      refuse_step();
       return false;
     }
     for (std::size_t i = 0; i < axis_count(); ++i) {
@@ -125,7 +127,7 @@ class Checker {
     if (turn <= kMaxAxisJump) return;
     note({{LimitKind::singularity, "axis " + mechanism_->axis_name(axis), turn, kMaxAxisJump, "rad"}, line},
          at);
-    plannable_ = false;
+    refuse_step();
   }
 
   void note_speed(const PathSegment& segment, double s, const Location& at) {
@@ -164,6 +166,14 @@ class Checker {
     untimed_.insert(run.found);
   }
 
+  /// Nothing is planned from here on.
+  void refuse_step() {
+    plannable_ = false;
+    auto& steps = report_.impossible;
+    if (pushed_ < program_.steps.size() && (steps.empty() || steps.back() != pushed_))
+      steps.push_back(pushed_);
+  }
+
   void plan(const Step& step) {
     stop_if_interrupted();
     if (!plannable_) return;
@@ -172,7 +182,7 @@ class Checker {
     } catch (const InputError&) {
       // Only a way past a singular pose gets here: everything else was noted and is not planned.
       note({{LimitKind::singularity, "the way past a singular pose", 0, 0, ""}, step.line}, {pushed_, 0});
-      plannable_ = false;
+      refuse_step();
       return;
     }
     // The machine waits here until the outputs are set.
@@ -224,6 +234,7 @@ class Checker {
   MotionPlanner planner_;
   Pose X_WT_;
   bool plannable_ = true;
+  bool at_possible_ = true;  // where the step before ended
   std::size_t pushed_ = 0;
   kinematics::AxisVector axes_{}, velocity_{};
   std::vector<LimitViolation> violations_;

@@ -1,6 +1,7 @@
 // The check before any motion (Song 2015, sections 3.4, 3.5 and 5): every limit, along the whole path.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "machine/description.h"
@@ -26,6 +27,9 @@ struct ConstraintReport {
   kinematics::AxisVector velocity_max{};          ///< largest planned axis speed
   kinematics::AxisVector acceleration_max{};      ///< change of speed in a cycle, jumps at corners included
   double condition_worst = 0;
+  /// Of the program, ascending: moves that lead to or through poses which no axes reach, or so near a
+  /// singular one that axes would leap.
+  std::vector<std::size_t> impossible;
 };
 
 /// Poses are checked between the programmed points too, at most `step` (and one degree) apart, from home on.

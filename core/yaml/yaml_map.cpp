@@ -375,7 +375,7 @@ std::string YamlMap::text(const std::string& key, const char* about) { return wo
 
 std::vector<std::string> YamlMap::texts(const std::string& key, const char* about) {
   if (recording_) {
-    recording_->ask(schema_of(key, KeySchema::Type::text, about));
+    recording_->ask(schema_of(key, KeySchema::Type::list, about));  // without maps: of words
     return {};
   }
   std::vector<std::string> words;

@@ -6,6 +6,7 @@
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
 #include "core/yaml/yaml_map.h"
+#include "machine/file/urdf_section.h"
 
 namespace understudy::machine {
 namespace fs = std::filesystem;
@@ -27,6 +28,18 @@ std::string urdf_named_in(const std::string& text, const fs::path& file) {
   return urdf;
 }
 
+namespace {
+
+/// Throws where another file has the place.
+bool is_there(const fs::path& from, const fs::path& to, const fs::path& original) {
+  if (!fs::exists(to)) return false;
+  if (read_file(to) == read_file(from)) return true;
+  throw InputError(fmt::format("{} is not that of {}: write the machine to another folder", to.string(),
+                               original.string()));
+}
+
+}  // namespace
+
 std::optional<StagedFile> staged_urdf(const fs::path& original, const fs::path& path) {
   const std::string urdf = urdf_named_in(read_file(original), original);
   if (urdf.empty() || fs::path(urdf).is_absolute()) return std::nullopt;
@@ -34,14 +47,26 @@ std::optional<StagedFile> staged_urdf(const fs::path& original, const fs::path& 
                  to = fs::absolute(path).parent_path() / urdf;
   std::error_code error;
   if (fs::equivalent(from, to, error)) return std::nullopt;
-  const std::string content = read_file(from);
-  if (fs::exists(to)) {
-    if (read_file(to) == content) return std::nullopt;
-    throw InputError(fmt::format("{} is not the URDF of {}: write the machine to another folder", to.string(),
-                                 original.string()));
-  }
+  if (is_there(from, to, original)) return std::nullopt;
   check_writable(to);
-  return std::optional<StagedFile>(std::in_place, to, content);
+  return std::optional<StagedFile>(std::in_place, to, read_file(from));
+}
+
+std::vector<std::unique_ptr<StagedFile>> staged_companions(const fs::path& original, const fs::path& path) {
+  std::vector<std::unique_ptr<StagedFile>> staged;
+  const fs::path folder = fs::absolute(original).parent_path(), place = fs::absolute(path).parent_path();
+  std::error_code error;
+  if (fs::equivalent(folder, place, error)) return staged;
+  const std::vector<fs::path> files = files_named_in(read_file(original), original);
+  for (std::size_t i = 1; i < files.size(); ++i) {  // the first is the URDF
+    const fs::path name = files[i].lexically_relative(folder);
+    if (name.empty() || *name.begin() == "..") continue;
+    if (is_there(files[i], place / name, original)) continue;
+    fs::create_directories((place / name).parent_path(), error);
+    check_writable(place / name);
+    staged.push_back(std::make_unique<StagedFile>(place / name, read_file(files[i])));
+  }
+  return staged;
 }
 
 }  // namespace understudy::machine

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/file/staged_file.h"
 
@@ -16,5 +18,10 @@ std::string urdf_named_in(const std::string& text, const std::filesystem::path& 
 /// nothing where none is named or it lies there already. Throws InputError where another file has that place.
 std::optional<StagedFile> staged_urdf(const std::filesystem::path& original,
                                       const std::filesystem::path& path);
+
+/// The same of the SRDF and the meshes of that URDF, each at its place below the folder of `path`; those that
+/// lie outside the original's folder are left where they are.
+std::vector<std::unique_ptr<StagedFile>> staged_companions(const std::filesystem::path& original,
+                                                           const std::filesystem::path& path);
 
 }  // namespace understudy::machine

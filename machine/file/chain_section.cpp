@@ -1,18 +1,16 @@
 #include "machine/file/chain_section.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "core/digest.h"
 #include "core/error.h"
-#include "core/file/outside.h"
-#include "core/file/read_file.h"
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
 #include "machine/file/tool_section.h"
-#include "machine/file/urdf_chain.h"
+#include "machine/file/urdf_section.h"
 
 namespace understudy::machine {
 namespace {
@@ -140,7 +138,16 @@ ChainAxis any_urdf_axis(YamlMap& map) {
   return axis;
 }
 
-void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription& machine) {
+void assume_mass(MachineDescription& machine, std::size_t axis, MachineNotes& notes) {
+  const Link rod = assumed_link(machine.chain().kinematics.chain, static_cast<int>(axis));
+  Link& link = machine.chain().links[axis];
+  link = {rod.mass, rod.centre_O, rod.inertia_O, std::move(link.bodies)};
+  if (std::find(notes.assumed.begin(), notes.assumed.end(), kAssumedMasses) == notes.assumed.end())
+    notes.assumed.emplace_back(kAssumedMasses);
+}
+
+void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription& machine,
+               MachineNotes& notes) {
   ChainModel& model = machine.chain();
   Chain& chain = model.kinematics.chain;
   if (listed) {
@@ -158,8 +165,8 @@ void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription&
                                  index + 1, model.kinematics.kind, chain.axes[index].name));
   }
   ChainAxis& axis = chain.axes[index];
-  const bool any_urdf = map.recording() && !listed && model.kinematics.parameters.empty();
-  if (any_urdf) axis = any_urdf_axis(map);
+  const bool of_urdf = !listed && model.kinematics.parameters.empty();
+  if (of_urdf && map.recording()) axis = any_urdf_axis(map);
   read_range(map, axis);
   model.kinematics.home[index] = read_home(map, axis);
   map.section("drive", "motor and gear",
@@ -171,12 +178,16 @@ void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription&
       map.has(friction)
           ? map.quantity(friction, {0, 1000}, "a smaller load leaves the axis where it is within its play")
           : 0.0;
-  // A link that a URDF has told may be told anew.
-  const bool told = any_urdf || (index < model.links.size() && model.links[index].mass > 0);
   if (index >= model.links.size()) model.links.emplace_back();
-  if (!told || map.has("link"))
-    map.section("link", "what the axis carries, told in O with all axes at 0",
-                [&](YamlMap& link) { model.links[index] = read_link(link); });
+  Link& told = model.links[index];  // by a URDF; its mass may be told anew, its bodies stay
+  if (!of_urdf || map.has("link"))
+    map.section("link", "what the axis carries, told in O with all axes at 0", [&](YamlMap& link) {
+      const std::vector<geometry::Shape> bodies = std::move(told.bodies);
+      told = read_link(link);
+      told.bodies.insert(told.bodies.begin(), bodies.begin(), bodies.end());
+    });
+  else if (told.mass == 0 && map.complete())
+    assume_mass(machine, index, notes);
   if (map.complete()) check_apart(map, chain, index);
 }
 
@@ -188,46 +199,6 @@ Pose read_tool_mount(YamlMap& map) {
                    tip);
 }
 
-/// The body that a URDF's links on one axis make together.
-Link rigid_body(const UrdfArm& arm, int axis) {
-  Link body;
-  Vec3 moment = Vec3::Zero();
-  for (const LinkMass& part : arm.links) {
-    if (part.axis != axis) continue;
-    body.mass += part.mass;
-    moment += part.mass * part.centre_O;
-  }
-  if (!(body.mass > 0)) return body;
-  body.centre_O = moment / body.mass;
-  for (const LinkMass& part : arm.links) {
-    if (part.axis != axis) continue;
-    const Vec3 r = part.centre_O - body.centre_O;
-    body.inertia_O += part.inertia_O + part.mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-  }
-  return body;
-}
-
-/// Axes, links and the tool's mount from a URDF beside the machine file.
-void read_urdf_chain(YamlMap& map, MachineDescription& machine) {
-  ChainModel& model = machine.chain();
-  const std::string file = map.text("urdf", "file with axes, ranges and masses, relative to this one"),
-                    base = map.text("base_link", "the link that carries the work"),
-                    tool = map.text("tool_link", "the link that carries the tool");
-  const Pose X_LT = read_tool_mount(map);
-  if (map.recording()) model.kinematics.chain.axes.resize(1);  // one axis for all
-  if (!map.complete()) return;
-  const auto folder = machine.file.parent_path(), path = folder / file;
-  if (!may_be_named_from(folder, path))
-    throw InputError(map.place("urdf"), fmt::format("{} is '{}', outside the machine file's folder: copy it "
-                                                    "there, or set {}=1 if you trust this file",
-                                                    map.path("urdf"), file, kAllowOutside));
-  const UrdfArm arm = read_urdf(path, base, tool);
-  machine.sha256 = sha256_hex(machine.sha256 + sha256_hex(read_file(path)));  // the machine is both files
-  model.kinematics.chain = arm.chain;
-  model.kinematics.chain.X_OT_zero = arm.chain.X_OT_zero * X_LT;
-  for (int i = 0; i < arm.chain.size(); ++i) model.links.push_back(rigid_body(arm, i));
-}
-
 void read_base(YamlMap& map, MachineDescription& machine) {
   const Vec3 base = map.vector("base_mm", kPlace, "B in W");
   const double turn = map.quantity("base_turn_deg", {-360, 360}, "turn of B about z of W");
@@ -236,7 +207,7 @@ void read_base(YamlMap& map, MachineDescription& machine) {
 
 }  // namespace
 
-void read_chain(YamlMap& root, MachineDescription& machine) {
+void read_chain(YamlMap& root, MachineDescription& machine, MachineNotes& notes) {
   ChainModel& model = machine.model.emplace<machine::ChainModel>();
   model.kinematics.kind = machine.mechanism;
   const ChainKind& kind = *kinematics::find_chain_kind(machine.mechanism);
@@ -258,7 +229,7 @@ void read_chain(YamlMap& root, MachineDescription& machine) {
       chain = kind.chain(model.kinematics.parameters);
       return;
     }
-    if (from_urdf) return read_urdf_chain(map, machine);
+    if (from_urdf) return read_urdf_chain(map, read_tool_mount(map), machine, notes);
     tool = read_carrier(map, "tool_carried_by", "name of an axis, or frame");
     work = read_carrier(map, "work_carried_by", "name of an axis, or frame");
     chain.X_OT_zero = read_tool_mount(map);
@@ -272,7 +243,7 @@ void read_chain(YamlMap& root, MachineDescription& machine) {
   std::size_t count = 0;
   root.list("axes", kind.chain ? chain.axes.size() : 0, "range, drive, play and body of each axis",
             [&](YamlMap& map, std::size_t index) {
-              read_axis(map, listed, index, machine);
+              read_axis(map, listed, index, machine, notes);
               count = index + 1;
             });
   if (root.has("frame"))

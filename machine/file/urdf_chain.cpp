@@ -6,17 +6,13 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <string_view>
 
-#include <console_bridge/console.h>
 #include <fmt/format.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include "core/error.h"
-#include "core/file/read_file.h"
 #include "core/text/printable.h"
-#include "core/text/xml.h"
+#include "machine/file/urdf_model.h"
 
 namespace understudy::machine {
 namespace {
@@ -25,33 +21,6 @@ using kinematics::Chain;
 using kinematics::ChainAxis;
 using kinematics::kMaxAxes;
 
-/// Collects what urdfdom would print, while it lives. Its output is global: one reader at a time.
-class QuietConsole final : public console_bridge::OutputHandler {
- public:
-  QuietConsole() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
-  ~QuietConsole() override { console_bridge::restorePreviousOutputHandler(); }
-  QuietConsole(const QuietConsole&) = delete;
-  QuietConsole& operator=(const QuietConsole&) = delete;
-
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR || ++errors_ > 2) return;
-    if (!message_.empty()) message_ += "; ";
-    for (const char c : text) message_ += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  const std::string& message() const { return message_; }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex mutex;
-    return mutex;
-  }
-  std::lock_guard<std::mutex> lock_;
-  int errors_ = 0;
-  std::string message_;  // the first two errors: the value, and the element that it stands in
-};
-
-constexpr int kLinksMax = 1000;  // docs/limits.md
-constexpr std::size_t kBytesMax = 64'000'000;
 constexpr std::size_t kNameMax = 100;
 constexpr double kMassMax = 1e4;     // [kg], as machine files have it
 constexpr double kInertiaMax = 1e6;  // [kg m^2]: ten tons ten metres away
@@ -72,9 +41,6 @@ class UrdfReader {
 
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError({file_, 0, 0}, message); }
-  void check_size(const std::string& text) const;
-  void check_tree() const;
-  urdf::LinkConstSharedPtr link(const std::string& name) const;
   /// Joints from a link up to the root.
   std::vector<urdf::JointConstSharedPtr> way_up(const urdf::LinkConstSharedPtr& from) const;
   Pose pose(const std::string& place, const urdf::Pose& p) const;
@@ -82,7 +48,8 @@ class UrdfReader {
   void add_axis(const urdf::Joint& joint, int parent);
   /// Frames of all links at 0, and their masses.
   void place_links(const urdf::LinkConstSharedPtr& from, const Pose& X_OL);
-  void add_masses(const urdf::LinkConstSharedPtr& from, int axis);
+  void add_masses_and_shapes(const urdf::LinkConstSharedPtr& from, int axis);
+  void add_shapes(const urdf::Link& link, int axis);
   LinkMass link_mass(const urdf::Link& link, int axis) const;
 
   std::string file_, base_name_, tool_name_;
@@ -94,60 +61,7 @@ class UrdfReader {
 
 UrdfReader::UrdfReader(const std::filesystem::path& file, const std::string& base_link,
                        const std::string& tool_link)
-    : file_(file.string()), base_name_(base_link), tool_name_(tool_link) {
-  const std::string text = read_file(file, kBytesMax);
-  check_size(text);
-  QuietConsole console;
-  try {
-    model_ = urdf::parseURDF(text);
-  } catch (const std::exception& e) {
-    fail(std::string("is no URDF: ") + e.what());
-  }
-  // With some errors it only leaves out the element that they stand in, such as a mass.
-  if (!model_ || !console.message().empty())
-    fail("is no URDF: " + (console.message().empty() ? "unknown reason" : console.message()));
-}
-
-// urdfdom recurses into elements and links, however many there are.
-void UrdfReader::check_size(const std::string& text) const {
-  tinyxml2::XMLDocument document;
-  if (document.Parse(text.data(), text.size()) == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
-    fail(fmt::format("is no URDF: elements are nested more than {} deep", TINYXML2_MAX_ELEMENT_DEPTH));
-  if (document.RootElement() == nullptr) return;  // urdfdom's message says more
-  for (const char* kind : {"link", "joint"}) {
-    int count = 0;
-    for (const auto* e = document.RootElement()->FirstChildElement(kind); e; e = e->NextSiblingElement(kind))
-      ++count;
-    if (count > kLinksMax) fail(fmt::format("has {} {}s, more than {}", count, kind, kLinksMax));
-  }
-}
-
-// urdfdom takes a link with two parents, and leaves one of them out without a word; and links that hang on
-// none, or on each other in a loop.
-void UrdfReader::check_tree() const {
-  std::map<std::string, std::string> parent_joint;
-  for (const auto& [name, joint] : model_->joints_) {
-    const auto [known, is_new] = parent_joint.emplace(joint->child_link_name, name);
-    if (!is_new)
-      fail(fmt::format("link '{}' is the child of two joints, '{}' and '{}': loops are not supported",
-                       joint->child_link_name, known->second, name));
-  }
-  std::vector<std::string> reached{model_->getRoot()->name};
-  for (std::size_t i = 0; i < reached.size(); ++i)
-    for (const auto& joint : model_->getLink(reached[i])->child_joints)
-      reached.push_back(joint->child_link_name);
-  for (const auto& [name, link] : model_->links_)
-    if (std::find(reached.begin(), reached.end(), name) == reached.end())
-      fail(fmt::format("link '{}' is not connected to the root link '{}'", name, reached[0]));
-}
-
-urdf::LinkConstSharedPtr UrdfReader::link(const std::string& name) const {
-  if (auto found = model_->getLink(name)) return found;
-  std::vector<std::string> names;
-  for (const auto& [known, ignored] : model_->links_) names.push_back(known);
-  const std::string near = nearest_word(name, names);
-  fail(fmt::format("has no link '{}'{}", name, near.empty() ? "" : ", did you mean '" + near + "'?"));
-}
+    : file_(file.string()), base_name_(base_link), tool_name_(tool_link), model_(parse_urdf(file)) {}
 
 std::vector<urdf::JointConstSharedPtr> UrdfReader::way_up(const urdf::LinkConstSharedPtr& from) const {
   std::vector<urdf::JointConstSharedPtr> way;
@@ -255,17 +169,56 @@ LinkMass UrdfReader::link_mass(const urdf::Link& link, int axis) const {
   return {link.name, axis, given.mass, X_OC.translation(), R * I * R.transpose()};
 }
 
-void UrdfReader::add_masses(const urdf::LinkConstSharedPtr& from, int axis) {
+void UrdfReader::add_shapes(const urdf::Link& link, int axis) {
+  const std::string place = "link '" + link.name + "'";
+  const auto checked = [&](std::initializer_list<double> sizes, const char* what) {
+    for (const double size : sizes)
+      if (!(size > 0) || size > kFarthest)
+        fail(fmt::format("{}: collision {} has a size of {:g} m, not above 0 and at most {:g} m", place, what,
+                         size, kFarthest));
+  };
+  for (const auto& collision : link.collision_array) {
+    if (!collision || !collision->geometry) continue;
+    UrdfShape shape{link.name, axis, geometry::Sphere{},
+                    X_OL_.at(link.name) * pose(place, collision->origin)};
+    const urdf::Geometry& form = *collision->geometry;
+    if (form.type == urdf::Geometry::SPHERE) {
+      const auto& sphere = dynamic_cast<const urdf::Sphere&>(form);
+      checked({sphere.radius}, "sphere");
+      shape.form = geometry::Sphere{sphere.radius};
+    } else if (form.type == urdf::Geometry::CYLINDER) {
+      const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(form);
+      checked({cylinder.radius, cylinder.length}, "cylinder");
+      shape.form = geometry::Cylinder{cylinder.radius, cylinder.length};
+    } else if (form.type == urdf::Geometry::BOX) {
+      const auto& box = dynamic_cast<const urdf::Box&>(form);
+      checked({box.dim.x, box.dim.y, box.dim.z}, "box");
+      shape.form = geometry::Box{Vec3(box.dim.x, box.dim.y, box.dim.z)};
+    } else {
+      const auto& mesh = dynamic_cast<const urdf::Mesh&>(form);
+      const Vec3 scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
+      if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
+        fail(fmt::format("{}: collision mesh has the scale {:g} {:g} {:g}", place, scale.x(), scale.y(),
+                         scale.z()));
+      shape.form = UrdfMesh{mesh.filename, scale};
+    }
+    arm_.shapes.push_back(std::move(shape));
+  }
+}
+
+void UrdfReader::add_masses_and_shapes(const urdf::LinkConstSharedPtr& from, int axis) {
   if (from->inertial && from->inertial->mass != 0) arm_.links.push_back(link_mass(*from, axis));
+  add_shapes(*from, axis);
   for (const auto& joint : from->child_joints) {
     const auto moved = axis_of_joint_.find(joint->name);
-    add_masses(model_->getLink(joint->child_link_name), moved == axis_of_joint_.end() ? axis : moved->second);
+    add_masses_and_shapes(model_->getLink(joint->child_link_name),
+                          moved == axis_of_joint_.end() ? axis : moved->second);
   }
 }
 
 UrdfArm UrdfReader::read() {
-  check_tree();
-  const auto base = link(base_name_), tool = link(tool_name_);
+  const auto base = find_link(*model_, file_, base_name_), tool = find_link(*model_, file_, tool_name_);
+  for (const auto& [name, link] : model_->links_) arm_.link_names.push_back(name);
   place_links(model_->getRoot(), Pose::Identity());
   auto to_base = way_up(base), to_tool = way_up(tool);
   // What carries both moves neither against the other.
@@ -280,7 +233,7 @@ UrdfArm UrdfReader::read() {
   if (arm_.chain.axes.empty()) fail(fmt::format("no joint moves '{}' against '{}'", tool_name_, base_name_));
   arm_.chain.X_OS_zero = X_OL_.at(base_name_);
   arm_.chain.X_OT_zero = X_OL_.at(tool_name_);
-  add_masses(model_->getRoot(), -1);
+  add_masses_and_shapes(model_->getRoot(), -1);
   return std::move(arm_);
 }
 

@@ -29,8 +29,15 @@ std::string calibrate(const Record& record) {
 }
 
 std::string move_into_reach(const Finding&, const Record& record) {
-  return "shift the program into reach with `--place X,Y,Z` (mm), or change these lines; " +
+  return "shift the program into reach with `--place X,Y,Z` (mm) or `--place auto`, or change these lines; " +
          show_reach(record);
+}
+
+std::string print_less(const Finding&, const Record& record) {
+  return fmt::format(
+      "print it smaller or in parts, or on a larger machine; `understudy place {} --machine {} -o map.png` "
+      "shows the margin over the table",
+      record.program_name, record.machine_word);
 }
 
 std::string lean_less(const Finding&, const Record& record) {
@@ -131,6 +138,20 @@ std::string about_flow(const Finding& finding, const Record&) {
   return "lower the feed F where the bead begins and ends, or let the extruder start earlier";
 }
 
+std::string about_program(const Finding& finding, const Record&) {
+  if (finding.about == kOtherNozzle)
+    return fmt::format("if that nozzle will be mounted: `--nozzle {:g}`; else slice for the one of {:g} mm",
+                       finding.value, finding.limit);
+  if (finding.about == kOtherLayer)
+    return "look whether `--place X,Y,Z` (mm) has the program at its height, and at the slicer's layers";
+  if (finding.about.starts_with(kPassedOver))
+    return "mend this line and rehearse again: what the machine does there is not known, and everything else "
+           "here is about the program without it";
+  return "mend this line and rehearse again: the machine would jam or lay what no nozzle lays, and "
+         "everything "
+         "else here is about the program without that filament";
+}
+
 using About = std::function<std::string(const Finding&, const Record&)>;
 
 About always(const char* text) {
@@ -143,6 +164,7 @@ const std::map<std::string, About>& advice_by_kind() {
       {"joint_limit", move_into_reach},
       {"joint_angle", lean_less},
       {"unreachable", move_into_reach},
+      {"placement", print_less},
       {"singularity", avoid_singular_pose},
       {"axis_velocity", always("lower the feed F there; else the print takes longer than programmed")},
       {"axis_acceleration", always("lower the feed F there; else the print takes longer than programmed")},
@@ -152,7 +174,12 @@ const std::map<std::string, About>& advice_by_kind() {
       {"gap", about_gap},
       {"registration", about_registration},
       {"flow", about_flow},
+      {"program", about_program},
       {"adhesion", about_adhesion},
+      {"assumption", always("measure them, write them into the machine's file, and take their words out of "
+                            "`assumed` there (docs/arms.md)")},
+      {"unchecked", always("put the meshes beside the machine's file and take the links out of "
+                           "`geometry.unchecked_links` (docs/arms.md)")},
       {"sag", always("draw the strand slower and with more fan (`M106 S255`), or hold it at both ends")}};
   return kinds;
 }

@@ -22,6 +22,9 @@ struct Finding {
 };
 
 // What findings are about, where advice depends on it.
+inline constexpr const char* kPassedOver = "line that is passed over,";
+inline constexpr const char* kOtherNozzle = "another nozzle";
+inline constexpr const char* kOtherLayer = "other layers";
 inline constexpr const char* kStopped = "the print stopped";
 inline constexpr const char* kTooLow = "too low";
 inline constexpr const char* kTooHigh = "too high";

@@ -17,14 +17,16 @@ namespace {
 double excess(const Finding& finding) { return std::abs(finding.value - finding.limit); }
 
 /// From causes to consequences. A tip error comes before the contacts that it explains, else after them.
-constexpr std::array kFromCauseToConsequence{"limit", "stop", "accuracy", "collision", "other accuracy",
-                                             "gap",   "flow", "adhesion", "sag"};
+constexpr std::array kFromCauseToConsequence{"program",        "limit",    "stop", "accuracy", "collision",
+                                             "other accuracy", "gap",      "flow", "adhesion", "sag",
+                                             "assumption",     "unchecked"};
 
 std::string_view stage_of(const Finding& finding, bool tip_error_explains_contacts) {
   if (finding.about == kStopped) return "stop";
   if (finding.kind == "accuracy") return tip_error_explains_contacts ? "accuracy" : "other accuracy";
   if (finding.kind == "near_collision") return "gap";
-  for (const std::string_view kind : {"collision", "gap", "flow", "adhesion", "sag"})
+  for (const std::string_view kind :
+       {"program", "collision", "gap", "flow", "adhesion", "sag", "assumption", "unchecked"})
     if (finding.kind == kind) return kind;
   return "limit";
 }

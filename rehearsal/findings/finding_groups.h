@@ -17,7 +17,7 @@ struct FindingGroup {
 };
 
 /// Errors first; of these what breaks, stops or misleads the machine ahead of what comes of it on the part
-/// (limits, stops, contacts and tip errors, gap, flow, adhesion, sag); then by line.
+/// (the program itself, limits, stops, contacts and tip errors, gap, flow, adhesion, sag); then by line.
 std::vector<FindingGroup> group_findings(const Record& record);
 
 /// "line 7"; "lines 7 to 80, 21 times"; empty without a line.

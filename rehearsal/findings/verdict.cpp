@@ -29,6 +29,23 @@ int total(const std::vector<FindingGroup>& groups, Severity severity) {
 // 100.0 % means all of it. The small part makes up for a decimal fraction that binary cannot hold.
 double percent_rounded_down(double fraction) { return std::floor(1000 * fraction + 1e-6) / 10; }
 
+std::string enumerate(const std::vector<std::string>& items) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == items.size() ? " and " : ", ") + items[i];
+  return text;
+}
+
+/// Nobody is to take the figures for those of the whole program.
+std::string without_lines(const Record& record) {
+  std::vector<std::string> lines;
+  for (const auto& [first, last] : record.passed_over)
+    lines.push_back(last > first ? fmt::format("{} to {}", first, last) : fmt::format("{}", first));
+  if (lines.empty()) return "";
+  const bool one = lines.size() == 1 && record.passed_over[0].first == record.passed_over[0].second;
+  return fmt::format(" All figures are of the program without line{} {}.", one ? "" : "s", enumerate(lines));
+}
+
 std::string no_go_sentence(const Record& record) {
   const std::vector<FindingGroup> groups = group_findings(record);
   const int errors = total(groups, Severity::error);
@@ -38,14 +55,7 @@ std::string no_go_sentence(const Record& record) {
   if (const int others = errors - groups.front().count; others > 0)
     text += fmt::format(", and {} other error{}", others, others > 1 ? "s" : "");
   if (!record.print) text += "; the program was not run";
-  return text + ".";
-}
-
-std::string enumerate(const std::vector<std::string>& items) {
-  std::string text;
-  for (std::size_t i = 0; i < items.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == items.size() ? " and " : ", ") + items[i];
-  return text;
+  return text + "." + without_lines(record);
 }
 
 /// "flow and sag", each once.

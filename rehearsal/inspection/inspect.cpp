@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,26 +15,17 @@
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "rehearsal/inspection/inspect_robot.h"
 #include "rehearsal/rotary_words.h"
+#include "rehearsal/told_process.h"
 
 namespace understudy::rehearsal {
 namespace {
 
 constexpr double kMostOffTable = 0.2e-3;  // [m], by which the first layer may lie under the table
 constexpr double kDefaultLayer = 0.2e-3;  // [m], where a program does not tell
+constexpr double kSameNozzle = 0.05;      // of the bore
 constexpr double kWarmest = 450;          // [C]
-
-/// The number that a comment begins with; a slicer of several extruders lists one for each.
-std::optional<double> number_of(const std::map<std::string, std::string>& facts, const std::string& key) {
-  const auto found = facts.find(key);
-  if (found == facts.end()) return std::nullopt;
-  double value = 0;
-  const std::string& text = found->second;
-  return std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc() &&
-                 std::isfinite(value)
-             ? std::optional(value)
-             : std::nullopt;
-}
 
 /// The letters of words with a number on lines of G commands, outside of comments.
 std::set<char> letters_of(std::string_view text) {
@@ -72,15 +63,25 @@ bool is_command(const std::string& word) {
   return word.size() > 1 && (word[0] == 'G' || word[0] == 'M' || is_letter(word[1]));
 }
 
+/// As shells take it.
+std::string quoted(const std::string& word) {
+  return word.find_first_of("[]$#(){}*?&|<>~ ") == std::string::npos ? word : "'" + word + "'";
+}
+
 class Inspector {
  public:
-  Inspector(const std::string& program, const std::string& machine, const std::string& macros)
-      : file_(program), text_(read_file(program)), machine_(machine::load_machine(machine)) {
+  Inspector(const std::string& program, std::string text, const std::string& machine,
+            const std::string& macros, const DialectRequest& told)
+      : file_(program), text_(std::move(text)), machine_(machine::load_machine(machine)) {
     result_.request.program = program;
     result_.request.machine = machine;
     result_.lines = static_cast<int>(std::count(text_.begin(), text_.end(), '\n'));
+    result_.request.dialect.nozzle_mm = told.nozzle_mm;
+    result_.request.dialect.layer_mm = told.layer_mm;
+    result_.request.dialect.temperature_c = told.temperature_c;
     take(machine_);
     options_.unknown = &result_.unknown;
+    options_.passed_over = &result_.passed_over;
     if (macros.empty()) return;
     result_.request.dialect.macros = macros;
     options_.macros = std::make_shared<toolpath::GcodeMacros>(toolpath::GcodeMacros::read(macros));
@@ -88,7 +89,7 @@ class Inspector {
 
   Inspection run() {
     result_.slicer_facts = toolpath::slicer_facts(text_);
-    if (const auto nozzle = number_of(result_.slicer_facts, "nozzle_diameter"))
+    if (const auto nozzle = fact_number(result_.slicer_facts, "nozzle_diameter"))
       result_.nozzle = from_mm(*nozzle);
     const std::string turning = turning_letters(text_, options_.extruder_letter);
     if (!all_among(turning, options_.rotary ? options_.rotary->letters : "")) read_for_others(turning);
@@ -155,16 +156,21 @@ class Inspector {
   }
 
   double filament_diameter() const {
-    const auto said = number_of(result_.slicer_facts, "filament_diameter");
+    const auto said = fact_number(result_.slicer_facts, "filament_diameter");
     return said && *said > 0 ? from_mm(*said) : machine_.tool.filament_diameter;
   }
 
   void request_words() {
     for (const auto& word : result_.unknown)
       if (is_command(word.word)) result_.request.dialect.ignored.push_back(word.word);
-    if (!result_.summary.temperatures.empty()) return;
+    auto& dialect = result_.request.dialect;
+    const double bore = to_mm(machine_.tool.nozzle_diameter);
+    if (const auto nozzle = result_.nozzle; !dialect.nozzle_mm && nozzle && *nozzle > 0 && bore > 0 &&
+                                            std::abs(to_mm(*nozzle) - bore) > kSameNozzle * bore)
+      dialect.nozzle_mm = std::round(1e3 * to_mm(*nozzle)) / 1e3;
+    if (!result_.summary.temperatures.empty() || dialect.temperature_c) return;
     for (const char* key : {"first_layer_temperature", "temperature"})
-      if (const auto said = number_of(result_.slicer_facts, key); said && *said > 0 && *said <= kWarmest) {
+      if (const auto said = fact_number(result_.slicer_facts, key); said && *said > 0 && *said <= kWarmest) {
         result_.request.dialect.temperature_c = *said;
         return;
       }
@@ -199,21 +205,40 @@ class Inspector {
 
 }  // namespace
 
-Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros) {
-  return Inspector(program, machine, macros).run();
+Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros,
+                   const DialectRequest& told) {
+  std::string text = read_file(program);
+  if (toolpath::robot_language(program, text)) return inspect_robot(program, text, machine);
+  return Inspector(program, std::move(text), machine, macros, told).run();
 }
 
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder) {
   const DialectRequest& dialect = request.dialect;
   std::string command = fmt::format("understudy rehearse {} --machine {}", request.program, request.machine);
-  if (dialect.place_mm != std::array<double, 3>{0, 0, 0})
+  if (dialect.place_auto)
+    command += " --place auto";
+  else if (dialect.place_mm != std::array<double, 3>{0, 0, 0})
     command += fmt::format(" --place {}", fmt::join(dialect.place_mm, ","));
+  if (dialect.turn_deg != 0) command += fmt::format(" --turn {}", dialect.turn_deg);
+  if (dialect.spin_deg != 0) command += fmt::format(" --spin {}", dialect.spin_deg);
+  if (!request.home_axes.empty())
+    command += fmt::format(" --home-axes {:.6g}", fmt::join(request.home_axes, ","));
+  if (!request.fixture.empty()) command += " --fixture " + request.fixture;
   if (!dialect.coordinates.empty()) command += " --coordinates " + dialect.coordinates;
   if (dialect.b_sign < 0) command += " --b-sign -1";
   if (dialect.c_sign < 0) command += " --c-sign -1";
-  if (!dialect.ignored.empty()) command += fmt::format(" --ignore {}", fmt::join(dialect.ignored, ","));
+  if (!dialect.ignored.empty())
+    command += " --ignore " + quoted(fmt::format("{}", fmt::join(dialect.ignored, ",")));
   if (!dialect.macros.empty()) command += " --macros " + dialect.macros;
   if (dialect.temperature_c) command += fmt::format(" --temperature {}", *dialect.temperature_c);
+  if (dialect.nozzle_mm) command += fmt::format(" --nozzle {}", *dialect.nozzle_mm);
+  if (dialect.layer_mm) command += fmt::format(" --layer {}", *dialect.layer_mm);
+  const RobotProgramRequest& robot = dialect.robot;
+  if (!robot.signals.empty())
+    command += " --signal " + quoted(fmt::format("{}", fmt::join(robot.signals, ",")));
+  if (robot.bead_mm[0] > 0) command += fmt::format(" --bead {:g}x{:g}", robot.bead_mm[0], robot.bead_mm[1]);
+  if (robot.flow_mm3_per_s) command += fmt::format(" --flow {:g}", *robot.flow_mm3_per_s);
+  if (!robot.tool_points.empty()) command += " --tool-points " + robot.tool_points;
   return command + " --out " + folder;
 }
 

@@ -10,6 +10,7 @@
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/inspection/program_summary.h"
+#include "toolpath/robot/robot_program.h"
 
 namespace understudy::rehearsal {
 
@@ -18,6 +19,7 @@ constexpr double kFarAbove = 2e-3;  ///< [m] above the table, where no first lay
 struct Inspection {
   int lines = 0;
   std::vector<toolpath::UnknownWordCount> unknown;  ///< their lines are passed over here
+  std::vector<toolpath::PassedOver> passed_over;    ///< lines that cannot be read
   std::map<std::string, std::string> slicer_facts;  ///< from comments
   toolpath::ProgramSummary summary;                 ///< under the first of `readings`, if there are any
   std::vector<RotaryReading> readings;              ///< the most likely first; none without rotary words
@@ -27,6 +29,8 @@ struct Inspection {
   /// the words are read as if they turned nothing.
   std::string foreign_words;
   std::vector<std::string> machines_with_words;
+  std::optional<toolpath::RobotFacts> robot;  ///< of KRL and RAPID
+  std::string told_by;           ///< how its language is known: "its ending", "its content"; empty: G-code
   std::optional<double> nozzle;  ///< [m], that the slicer worked for
   double machine_nozzle = 0;     ///< [m]
   /// How it may be rehearsed: dialect, place on the table, words to ignore, temperature.
@@ -35,7 +39,9 @@ struct Inspection {
 
 /// Reads `program` as for `machine`, with `macros` (a path; empty: none); unknown words are counted, not
 /// refused. Readings are ranked as rank_readings() does. Throws InputError as read_gcode() does.
-Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros = {});
+/// Of `told`, nozzle, layer and temperature count, ahead of what comments say.
+Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros = {},
+                   const DialectRequest& told = {});
 
 /// "understudy rehearse ..." with the options that differ from their defaults.
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder);

@@ -12,6 +12,7 @@
 #include "machine/description.h"
 #include "machine/fixture_file.h"
 #include "machine/material.h"
+#include "toolpath/gcode/gcode_macros.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -91,8 +92,18 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   inputs.values("dialect", dialect.place_mm, dialect.extruder_letter, dialect.b_sign, dialect.c_sign,
                 dialect.coordinates);
   for (const std::string& word : dialect.ignored) inputs.word("ignored", word);
-  inputs.bytes_of("macros", dialect.macros);
+  if (!dialect.macros.empty()) {
+    const auto macros = toolpath::GcodeMacros::read(dialect.macros);
+    for (const std::string& file : macros.files()) inputs.bytes_of("macros", file);
+  }
   inputs.values("temperature", number(dialect.temperature_c));
+  inputs.values("nozzle and layer", number(dialect.nozzle_mm), number(dialect.layer_mm));
+  inputs.values("strict", dialect.strict);
+  const RobotProgramRequest& robot = dialect.robot;
+  for (const std::string& signal : robot.signals) inputs.word("signal", signal);
+  inputs.values("robot", robot.bead_mm, number(robot.flow_mm3_per_s), robot.tool_points);
+  inputs.values("placement", dialect.place_auto, dialect.turn_deg, dialect.spin_deg);
+  inputs.values("home", request.home_axes);
   const SurfaceRequest& surface = request.surface;
   inputs.bytes_of("intended", surface.intended.empty() ? "" : machine::find_fixture(surface.intended));
   inputs.values("profile", surface.profile_mm, surface.probe);

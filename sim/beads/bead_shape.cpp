@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "sim/distance/gjk.h"
+#include "sim/distance/hull_core.h"
 
 namespace understudy::sim {
 namespace {
@@ -153,5 +154,6 @@ template Separation separation(const PointCore&, double, const Pose&, const Bead
 template Separation separation(const SegmentCore&, double, const Pose&, const BeadCore&, double);
 template Separation separation(const FrustumCore&, double, const Pose&, const BeadCore&, double);
 template Separation separation(const BoxCore&, double, const Pose&, const BeadCore&, double);
+template Separation separation(const HullCore&, double, const Pose&, const BeadCore&, double);
 
 }  // namespace understudy::sim

@@ -4,13 +4,14 @@
 #include <string>
 #include <utility>
 
+#include "geometry/printed_clearance.h"
+#include "machine/machine_notes.h"
+#include "sim/beads/hull_beads.h"
 #include "sim/collision/machine_bodies.h"
 #include "sim/distance/penetration.h"
 
 namespace understudy::sim {
 namespace {
-
-bool is_nozzle(const std::string& name) { return name.starts_with("nozzle"); }
 
 double reach_of(const geometry::Shape& shape) {
   if (const auto solid = convex_solid(shape)) return reach(*solid, shape.X_FS);
@@ -19,6 +20,11 @@ double reach_of(const geometry::Shape& shape) {
     r = std::max(r, (shape.X_FS * v).norm());
   }
   return r;
+}
+
+std::vector<std::array<std::string, 2>> kept_apart_by(const machine::MachineDescription& machine) {
+  if (!machine.is_chain() || machine.file.empty()) return {};
+  return machine::load_machine_notes(machine.file.string()).apart;
 }
 
 /// A block with the top's height and tilt. Where that is bowed, the block touches its highest place.
@@ -36,7 +42,8 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
       geometry_(as_built.hexapod),
       links_(machine, as_built),
       is_chain_(machine.is_chain()),
-      beads_(beads) {
+      beads_(beads),
+      apart_(kept_apart_by(machine)) {
   for (const geometry::Shape& shape : machine.tool.bodies) add_body(shape, Owner::tool, 0);
   if (is_chain_) {
     for (std::size_t i = 0; i < links_.items().size(); ++i) add_body(links_.items()[i].shape, Owner::link, i);
@@ -63,12 +70,14 @@ void BodySet::add_body(const geometry::Shape& shape, Owner owner, std::size_t in
   body.shape = shape;
   body.owner = owner;
   body.solid = convex_solid(shape);
+  if (const auto* mesh = std::get_if<geometry::MeshShape>(&shape.form); mesh && owner == Owner::link)
+    body.hull = HullCore{mesh->mesh};
   body.index = index;
-  body.nozzle = owner == Owner::tool && is_nozzle(shape.name);
+  body.nozzle = owner == Owner::tool && geometry::is_nozzle(shape.name);
   if (owner == Owner::tool) body.lever = reach_of(shape);
   // A strut turns about its base joint: no point of it moves farther than its ball joint.
   if (owner == Owner::strut) body.lever = geometry_.platform_joint[index].norm();
-  body.fcl = world_.add(shape);
+  body.fcl = body.hull ? world_.add_hull(*body.hull->mesh) : world_.add(shape);
   bodies_.push_back(std::move(body));
 }
 
@@ -86,8 +95,17 @@ int BodySet::axis_of(const Body& body) const {
 
 bool BodySet::joined(const Body& a, const Body& b, double strut_radius) const {
   if (is_chain_)
-    return (a.owner == Owner::link || b.owner == Owner::link) && links_.joined(axis_of(a), axis_of(b));
+    return (a.owner == Owner::link || b.owner == Owner::link) &&
+           (links_.joined(axis_of(a), axis_of(b)) || kept_apart(a, b));
   return b.owner == Owner::tool && carries_joint(b, a.index, strut_radius);
+}
+
+bool BodySet::kept_apart(const Body& a, const Body& b) const {
+  if (a.owner != Owner::link || b.owner != Owner::link) return false;
+  return std::ranges::any_of(apart_, [&](const std::array<std::string, 2>& pair) {
+    return (pair[0] == a.shape.name && pair[1] == b.shape.name) ||
+           (pair[0] == b.shape.name && pair[1] == a.shape.name);
+  });
 }
 
 void BodySet::add_pairs(double strut_radius) {
@@ -109,7 +127,8 @@ void BodySet::add_pairs(double strut_radius) {
 void BodySet::add_bead_pairs(std::size_t table) {
   for (const BodyPair& pair : std::vector<BodyPair>(pairs_)) {
     const Body& body = bodies_[pair.body];
-    if (pair.obstacle == table && body.solid) pairs_.push_back({pair.body, table, body.nozzle, false, true});
+    if (pair.obstacle == table && (body.solid || body.hull))
+      pairs_.push_back({pair.body, table, body.nozzle, false, true});
   }
 }
 
@@ -165,6 +184,7 @@ std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const
   Body& body = bodies_[pair.body];
   if (body.owner == Owner::link) links_.pose(configuration.axes);
   const Pose X_WS = place(body, configuration.X_WT);
+  if (body.hull) return sim::nearest_bead(*beads_, *body.hull, X_WS, kBeadReach, before);
   return beads_->nearest(*body.solid, X_WS, kBeadReach, before);
 }
 
@@ -174,7 +194,9 @@ double BodySet::bead_clearance(const BodyPair& pair, const Configuration& config
   const Vec3 from(bead.from_W[0], bead.from_W[1], bead.from_W[2]),
       to(bead.to_W[0], bead.to_W[1], bead.to_W[2]);
   const Vec3 middle_S = place(body, configuration.X_WT).inverse(Eigen::Isometry) * (0.5 * (from + to));
-  return signed_distance(*body.solid, middle_S) - 0.5 * ((to - from).norm() + double(bead.width));
+  const double middle =
+      body.hull ? body.hull->mesh->signed_distance(middle_S) : signed_distance(*body.solid, middle_S);
+  return middle - 0.5 * ((to - from).norm() + double(bead.width));
 }
 
 }  // namespace understudy::sim

@@ -2,8 +2,10 @@
 // move for a given motion of the tool.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/beads/bead_index.h"
@@ -11,6 +13,7 @@
 #include "sim/collision/collision.h"
 #include "sim/collision/fcl_world.h"
 #include "sim/distance/convex_solid.h"
+#include "sim/distance/hull_core.h"
 #include "sim/distance/mesh_clearance.h"
 
 namespace understudy::sim {
@@ -27,7 +30,9 @@ struct BodyPair {
 
 class BodySet {
  public:
-  /// The part and the beads may be null. Struts and links have the as-built geometry.
+  /// The part and the beads may be null. Struts and links have the as-built geometry; a link that is a mesh
+  /// is its own convex hull. Pairs of links that the machine's file keeps apart (machine/machine_notes.h) are
+  /// left out: it is read again for them, where the description came from a file.
   BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
           std::shared_ptr<const geometry::Mesh> part, const BeadIndex* beads);
 
@@ -61,6 +66,7 @@ class BodySet {
     geometry::Shape shape;  // X_FS in T for the tool's, in W for the world's
     Owner owner = Owner::world;
     std::optional<ConvexSolid> solid;  // nothing for a mesh
+    std::optional<HullCore> hull;      // of a link that is one
     std::size_t index = 0;             // of the strut or link
     bool nozzle = false;
     double lever = 0;  // [m], from the tip to the farthest point that turns with the tool
@@ -71,6 +77,7 @@ class BodySet {
   void add_bead_pairs(std::size_t table);
   bool carries_joint(const Body& tool, std::size_t strut, double strut_radius) const;
   bool joined(const Body& a, const Body& b, double strut_radius) const;
+  bool kept_apart(const Body& a, const Body& b) const;
   int axis_of(const Body& body) const;
   Pose place(Body& body, const Pose& X_WT);
   Separation surfaces(const Body& body, const Pose& X_W1, const Body& obstacle, const Pose& X_W2) const;
@@ -83,6 +90,7 @@ class BodySet {
   std::unique_ptr<MeshClearance> part_;
   std::size_t part_body_ = 0;
   FclWorld world_;
+  std::vector<std::array<std::string, 2>> apart_;
   std::vector<Body> bodies_;
   std::vector<BodyPair> pairs_;
 };

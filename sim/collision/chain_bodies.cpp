@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/distance/convex_solid.h"
+#include "sim/distance/hull_core.h"
 
 namespace understudy::sim {
 namespace {
@@ -37,11 +38,11 @@ ChainBodies::ChainBodies(const machine::MachineDescription& machine, const AsBui
 /// Of the item's farthest point from a point of the axis (-1: from the frame's origin), in any configuration:
 /// along the chain between them.
 double ChainBodies::reach_from(int from, const Item& item) const {
-  const auto solid = convex_solid(item.shape);
+  const auto* mesh = std::get_if<geometry::MeshShape>(&item.shape.form);
   const Vec3 anchor = item.axis < 0 ? Vec3(0, 0, 0) : axis(item.axis).point;
   Pose X_AF = item.shape.X_FS;
   X_AF.translation() -= anchor;
-  double length = solid ? reach(*solid, X_AF) : X_AF.translation().norm();
+  double length = mesh ? reach(HullCore{mesh->mesh}, X_AF) : reach(*convex_solid(item.shape), X_AF);
   for (int i = item.axis; i >= 0 && i != from; i = axis(i).parent) {
     const Vec3 parent = axis(i).parent < 0 ? Vec3(0, 0, 0) : axis(axis(i).parent).point;
     length += (axis(i).point - parent).norm() + slide_travel(axis(i));

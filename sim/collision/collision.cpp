@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "geometry/printed_clearance.h"
 #include "sim/collision/body_set.h"
 #include "sim/collision/conservative_advancement.h"
 
@@ -53,11 +54,11 @@ struct CollisionObserver::State {
   std::map<std::pair<int, std::size_t>, Contact> touching, near;
 
   double contact_level(const BodyPair& pair) const {
-    if (pair.printed && pair.nozzle_at_work) return -options.bead_press;
+    if (pair.printed) return geometry::contact_with_printed(pair.nozzle_at_work, options.bead_press);
     return pair.nozzle_at_work ? options.nozzle_contact : 0.0;
   }
   double near_level(const BodyPair& pair) const {
-    if (pair.printed && pair.nozzle_at_work) return -options.bead_press;
+    if (pair.printed && pair.nozzle_at_work) return contact_level(pair);
     return pair.nozzle_at_work ? options.nozzle_contact : options.near;
   }
 

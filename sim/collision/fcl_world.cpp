@@ -1,8 +1,10 @@
 #include "sim/collision/fcl_world.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -64,6 +66,26 @@ Geometry polytope(double bottom, double top, double z0, double z1) {
     for (const int v : {4, i, j, n + j, n + i}) faces->push_back(v);
   }
   return std::make_shared<fcl::Convexd>(points, n + 2, faces);
+}
+
+// The mesh has a copy of a vertex for each of its smooth sides; FCL walks from vertex to neighbour and must
+// know them as one.
+Geometry hull(const geometry::Mesh& mesh) {
+  auto points = std::make_shared<std::vector<fcl::Vector3d>>();
+  auto faces = std::make_shared<std::vector<int>>();
+  std::map<std::array<double, 3>, int> known;
+  std::vector<int> index;
+  for (const Vec3& v : mesh.vertices()) {
+    const auto [place, is_new] =
+        known.emplace(std::array{v.x(), v.y(), v.z()}, static_cast<int>(points->size()));
+    if (is_new) points->push_back(v * kScale);
+    index.push_back(place->second);
+  }
+  for (const auto& t : mesh.triangles()) {
+    faces->push_back(3);
+    for (const int corner : t) faces->push_back(index[static_cast<std::size_t>(corner)]);
+  }
+  return std::make_shared<fcl::Convexd>(points, static_cast<int>(mesh.triangles().size()), faces);
 }
 
 struct Convert {
@@ -141,6 +163,11 @@ FclWorld::~FclWorld() = default;
 
 int FclWorld::add(const geometry::Shape& shape) {
   state_->bodies.push_back(std::visit(Convert{}, shape.form));
+  return static_cast<int>(state_->bodies.size()) - 1;
+}
+
+int FclWorld::add_hull(const geometry::Mesh& mesh) {
+  state_->bodies.push_back({hull(mesh), 0, nullptr, Vec3::Zero(), false});
   return static_cast<int>(state_->bodies.size()) - 1;
 }
 

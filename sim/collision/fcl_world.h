@@ -18,6 +18,8 @@ class FclWorld {
 
   /// Index of the shape. Its X_FS is left out: the caller poses the shape's own frame.
   int add(const geometry::Shape& shape);
+  /// The same of a mesh that is its own convex hull: a solid body, where add() takes its surface.
+  int add_hull(const geometry::Mesh& mesh);
   /// For struts: the capsule's distance between its cap centres [m].
   void set_capsule_length(int index, double length);
 

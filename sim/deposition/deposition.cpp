@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/printed_clearance.h"
 #include "sim/deposition/bead_builder.h"
 #include "sim/deposition/extruder.h"
 #include "sim/deposition/gap_sums.h"
@@ -139,7 +140,7 @@ struct DepositionObserver::State {
 
   void move_on(double step) {
     path += step;
-    const double window = nozzle_flat + 2 * builder.last_width();
+    const double window = geometry::fresh_path(nozzle_flat, builder.last_width());
     while (!fresh.empty() && fresh.front() < path - window) {
       fresh.pop_front();
       ++fresh_from;

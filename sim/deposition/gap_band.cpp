@@ -4,8 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/printed_clearance.h"
+
 namespace understudy::sim {
 namespace {
+
+static_assert(kSoftDepth == geometry::kNozzlePress);  // planners keep to the same rule
 
 constexpr double kSameLayer = 0.15;   // of the aim
 constexpr double kLeastAspect = 1.4;  // width over height: the flattest of slicers' default profiles is above

@@ -4,6 +4,7 @@
 
 #include "sim/distance/bead_core.h"
 #include "sim/distance/convex_solid.h"
+#include "sim/distance/hull_core.h"
 
 namespace understudy::sim {
 namespace {
@@ -186,9 +187,11 @@ template GjkResult distance_to_triangle(const PointCore&, const Triangle&, doubl
 template GjkResult distance_to_triangle(const SegmentCore&, const Triangle&, double);
 template GjkResult distance_to_triangle(const FrustumCore&, const Triangle&, double);
 template GjkResult distance_to_triangle(const BoxCore&, const Triangle&, double);
+template GjkResult distance_to_triangle(const HullCore&, const Triangle&, double);
 template GjkResult distance_to_bead_core(const PointCore&, const BeadCore&, double);
 template GjkResult distance_to_bead_core(const SegmentCore&, const BeadCore&, double);
 template GjkResult distance_to_bead_core(const FrustumCore&, const BeadCore&, double);
 template GjkResult distance_to_bead_core(const BoxCore&, const BeadCore&, double);
+template GjkResult distance_to_bead_core(const HullCore&, const BeadCore&, double);
 
 }  // namespace understudy::sim

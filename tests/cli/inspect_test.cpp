@@ -6,6 +6,7 @@
 namespace understudy::cli_test {
 namespace {
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Inspect, SaysWhatAProgramUsesAndHowToRehearseIt) {
   const Folder folder;
@@ -52,6 +53,21 @@ TEST(Inspect, WordsThatTheMachineLacksLeadToOneThatHasThem) {
   const Outcome rehearsed =
       understudy(words + " --engine quasistatic --no-pictures --out " + (folder / "out"));
   EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
+}
+
+TEST(Inspect, WhatDoesNotFitIsSentToPlace) {
+  const Folder folder;
+  // Above the upper end of z.
+  const std::string program =
+      folder.write("high.gcode", "G21 G90 M83\nM109 S210\nG28\nG0 X0 Y0 Z119\nG1 X20 Z121 E0.6 F600\n");
+  const Outcome seen = understudy("inspect " + program + " --machine corexy");
+  EXPECT_THAT(
+      seen.out,
+      HasSubstr("does not fit there: axis z is at 121.0 mm, above 120.0 mm (line 5); `understudy place " +
+                program + " --machine corexy`"));
+  const std::string fits =
+      folder.write("low.gcode", "G21 G90 M83\nM109 S210\nG28\nG0 X0 Y0 Z0.2\nG1 X20 E0.6 F600\n");
+  EXPECT_THAT(understudy("inspect " + fits + " --machine corexy").out, Not(HasSubstr("does not fit")));
 }
 
 TEST(Inspect, WhatIsNoProgramIsBadInput) {

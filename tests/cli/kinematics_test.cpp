@@ -61,6 +61,18 @@ TEST(Axes, ARowWithoutSolutionPrintsNanAndTheReason) {
   EXPECT_THAT(outcome.out, HasSubstr("ok\n"));
 }
 
+// Stretched out along x: 380 + 340 mm from the base, the wrist beside it by the sums of arm.urdf's origins.
+TEST(Poses, ASingularPostureHasItsPoseAndTheReason) {
+  const Folder folder;
+  const std::string rows =
+      folder.write("rows.csv", "j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\n0,0,0,0,0,0\n0,0,200,0,0,0\n");
+  const Outcome outcome = understudy("poses --machine offset-wrist-arm < " + rows);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("370.000000,300.000000,-90.000000,"));
+  EXPECT_THAT(outcome.out, HasSubstr(",tool pose has condition number"));
+  EXPECT_THAT(outcome.out, HasSubstr("nan,nan,nan,nan,nan,nan,nan,axis j3 is at 200.0 deg"));
+}
+
 TEST(Axes, BadRowsAreRefusedWithTheirPlace) {
   const Folder folder;
   const Outcome number = understudy("axes <" + folder.write("a.csv", kPoseHeader + "0,0,x,1,0,0,0\n"));

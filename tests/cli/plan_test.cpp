@@ -135,6 +135,31 @@ TEST(PlanLattice, PlansAFrameFromAFileAndWarnsOfItsLengths) {
   EXPECT_THAT(outcome.out, HasSubstr("2 struts, 30.0 mm"));
 }
 
+TEST(PlanLattice, RefusesAStrutThatTheMachineCannotReachAndSaysWhy) {
+  const Folder folder;
+  // The arm stands 450 mm from the table's middle and reaches 677 mm (docs/reference.md).
+  const auto frame = folder.write(
+      "far.json",
+      R"({"unit": "millimeter", "node_list": [{"point": {"X": 0, "Y": 0, "Z": 0}, "is_grounded": 1},
+          {"point": {"X": 8, "Y": 0, "Z": 8}, "is_grounded": 0}], "element_list": [{"end_node_ids": [0, 1]}]})");
+  const std::string output = folder / "far.gcode";
+  const Outcome far = understudy("plan lattice " + frame + " --place 400,0,0 -o " + output);
+  EXPECT_EQ(far.status, 2);
+  EXPECT_THAT(far.err, HasSubstr("strut 0 from "));
+  EXPECT_THAT(far.err, HasSubstr("no tool axis within 90 deg of vertical can print it: "));
+  EXPECT_EQ(understudy("plan lattice " + frame + " --place 400,0,0 --ignore-reach -o " + output).status, 0);
+  EXPECT_EQ(understudy("plan lattice " + frame + " -o " + output).status, 0);
+}
+
+TEST(PlanLattice, EndsItsSearchInTime) {
+  const Folder folder;
+  const Outcome outcome =
+      understudy("plan lattice box:60x60x60 --time-limit 1e-6 -o " + (folder / "lattice.gcode"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--time-limit"));
+  EXPECT_EQ(folder.entries(), 0);
+}
+
 TEST(PlanWaypoints, SetsALayerOnTheTable) {
   const Folder folder;
   const auto layer = folder.write("layer.txt", "0 5 0 0 1 0\n1 5 0 0 1 0\n2 5 0 0 1 0\n");
@@ -163,6 +188,8 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan lattice box:20x20x20 --strut 4", "strut length is 4 mm, outside 5 to 11 mm"},
            {"plan lattice box:20x20x20 --place 1,2", "--place '1,2' is not X,Y,Z in mm"},
            {"plan lattice /nonexistent.json", "/nonexistent.json"},
+           {"plan lattice box:20x20x20 --joint-press -1", "--joint-press -1 is outside 0..10"},
+           {"plan lattice box:20x20x20 --time-limit 0", "--time-limit 0 is outside 0..86400"},
            {"plan lattice box:20x20x20 --tilt 91", "--tilt 91 is outside 0..90"},
            {"plan lattice box:20x20x20 --machine finishing", "its tool does not print"},
            {"plan spiral --lean 80", "lean is 80 deg, outside 0 to 60 deg"},

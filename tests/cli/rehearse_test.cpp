@@ -122,6 +122,42 @@ TEST(Rehearse, ALimitBrokenOnTheLastLineLeavesTheRestSimulated) {
   EXPECT_EQ(parked["print"]["printed_mm"], whole["print"]["printed_mm"]);
 }
 
+// A line that cannot be read and a bead that no nozzle lays: what they do to the rest is told, not guessed.
+TEST(Rehearse, BadLinesAreANoGoThatTellsTheRestAndStrictRefusesThem) {
+  const Folder folder;
+  const std::string head = "G21\nG90\nM82\nM109 S210\nG0 X0 Y0 Z10\nG1 X0 Y0 Z0.16 F600\n";
+  const std::string bead = "G1 X0 Y20 E0.7 F300\n";
+  const std::string options =
+      " --machine five-axis --as-built nominal --engine quasistatic --no-pictures --out ";
+  const auto whole_file = folder.write("whole.gcode", head + bead + "G1 X3\n");
+  const auto bad_file =
+      folder.write("bad.gcode", head + "M106 S300\n" + bead + "G1 X3 E90\nG1 X1.2.3 Y30 Z50 E91\nG0 Z60\n");
+  EXPECT_EQ(understudy("rehearse " + whole_file + options + (folder / "whole")).status, 0);
+  const Outcome bad = understudy("rehearse " + bad_file + options + (folder / "bad"));
+  EXPECT_EQ(bad.status, 1) << bad.err;
+  EXPECT_THAT(bad.out, HasSubstr("NO-GO"));
+  EXPECT_THAT(bad.out, HasSubstr("about the program without it: lines 7, 10 to 11\n"));
+  EXPECT_THAT(bad.out,
+              HasSubstr("line 7 cannot be read: 'S300': the fan's speed is outside 0 to 255; passed over"));
+  EXPECT_THAT(bad.out, HasSubstr("line 10 cannot be read: 'X1.2.3'"));
+  EXPECT_THAT(bad.out, HasSubstr("simulated without this filament"));
+  const auto whole = nlohmann::json::parse(read_file(folder / "whole/summary.json"));
+  const auto rest = nlohmann::json::parse(read_file(folder / "bad/summary.json"));
+  EXPECT_FALSE(whole.contains("passed_over"));
+  EXPECT_EQ(rest["passed_over"].dump(), "[[7,7],[10,11]]");
+  EXPECT_EQ(rest["gap"], whole["gap"]);
+  EXPECT_EQ(rest["print"]["printed_mm"], whole["print"]["printed_mm"]);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(rest["findings"][i]["kind"], "program");
+  EXPECT_THAT(read_file(folder / "bad/report.html"),
+              HasSubstr("All figures are of the program without lines 7 and 10 to 11"));
+
+  const Outcome strict = understudy("rehearse " + bad_file + " --strict" + options + (folder / "strict"));
+  EXPECT_EQ(strict.status, 2);
+  EXPECT_THAT(strict.err, HasSubstr("bad.gcode:7:6: 'S300'"));
+  EXPECT_THAT(strict.err, HasSubstr("line 10: 'X1.2.3'"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "strict"));
+}
+
 TEST(Rehearse, ATipErrorBeyondTheToleranceIsANoGo) {
   const Folder folder;
   const std::string command =

@@ -34,6 +34,38 @@ std::string gcode_words(int n) {
 std::string gcode_one_line(int n) {
   return repeated(n, [](int) { return "M73 P1 "; });
 }
+std::string krl(int n) {
+  return "DEF part( )\n$VEL.CP=0.02\n$OUT[1]=TRUE\n" +
+         repeated(n,
+                  [](int i) {
+                    return fmt::format("LIN {{X {},Y {},Z 5,A 0,B 0,C 180}} C_DIS\n", i % 90, i % 70);
+                  }) +
+         "END\n";
+}
+std::string krl_names(int n) {
+  return "DEF part( )\n" + repeated(n, [](int i) { return fmt::format("P{}={{X {}}}\n", i, i); }) +
+         repeated(n, [](int i) { return fmt::format("UNHEARD{}\n", i); }) + "END\n";
+}
+std::string krl_blocks(int n) {
+  return "DEF part( )\n" + repeated(n, [](int) { return "LOOP\n"; }) +
+         repeated(n, [](int) { return "ENDLOOP\n"; }) + "END\n";
+}
+std::string rapid(int n) {
+  return "MODULE m\nPROC main()\nSetDO d,1;\n" +
+         repeated(n,
+                  [](int i) {
+                    return fmt::format(
+                        "MoveL [[{},{},5],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v20,z1,t;\n", i % 90,
+                        i % 70);
+                  }) +
+         "ENDPROC\nENDMODULE\n";
+}
+std::string rapid_array(int n) {
+  return "MODULE m\nCONST robtarget p{2}:=[" +
+         repeated(n, [](int i) { return fmt::format("{}{}", i > 0 ? "," : "", i % 10); }) +
+         "];\nPROC main()\n" + repeated(n, [](int i) { return fmt::format("x:=p{{{}}};\n", i + 1); }) +
+         "ENDPROC\nENDMODULE\n";
+}
 std::string facets(int n) {
   return "solid s\n" +
          repeated(n,
@@ -103,6 +135,11 @@ const std::vector<Case>& cases() {
   static const std::vector<Case> all{{"Gcode", "gcode", gcode, 500},
                                      {"GcodeShortLines", "gcode", gcode_words, 500},
                                      {"GcodeOneLine", "gcode", gcode_one_line, 1000},
+                                     {"Krl", "krl", krl, 200},
+                                     {"KrlNames", "krl", krl_names, 200},
+                                     {"KrlBlocks", "krl", krl_blocks, 500},
+                                     {"Rapid", "rapid", rapid, 200},
+                                     {"RapidArray", "rapid", rapid_array, 500},
                                      {"Stl", "stl", facets, 300},
                                      {"Curve", "curve", curve, 1000},
                                      {"Waypoints", "waypoints", waypoints, 500},

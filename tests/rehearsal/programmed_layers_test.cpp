@@ -53,6 +53,17 @@ TEST(ProgrammedLayers, WhatHangsInTheAirHasTheBandOfTheMachine) {
   EXPECT_EQ(layers.typical_band().high, 0.2e-3);
 }
 
+TEST(ProgrammedLayers, AStrutThatRisesFromTheTableHasTheBandOfTheMachine) {
+  // Four struts of a lattice, at 60, 12, 45 and 90 degrees to the table.
+  std::string text = "M83\nG1 F600\n";
+  for (const auto& [x, z] :
+       {std::pair(5.0, 8.66), std::pair(10.0, 2.13), std::pair(8.0, 8.0), std::pair(0.0, 10.0)})
+    text += fmt::format("G0 Z20\nG0 X0 Y{0}\nG0 Z0.13\nG1 X{0} Z{1} E1.8\n", x, z);
+  const ProgrammedLayers layers = layers_of(text);
+  EXPECT_EQ(layers.typical_layer(), 0);
+  for (const int line : {6, 10, 14, 18}) EXPECT_EQ(layers.band(line).low, 0.1e-3) << line;
+}
+
 TEST(ProgrammedLayers, LinesThatTheProgramDoesNotHaveHaveTheBandOfTheMachine) {
   const ProgrammedLayers layers = layers_of(rows({0.3}));
   EXPECT_EQ(layers.band(100000).high, 0.2e-3);

@@ -55,6 +55,18 @@ struct UnknownWordCount {
   int lines = 0, first_line = 0;
 };
 
+/// A line that cannot be read, and is left out with the moves after it that begin at a place which it alone
+/// says.
+struct PassedOver {
+  int line = 0, column = 0;
+  int last_line = 0;  ///< that is left out
+  std::string why;
+  std::string unknown;  ///< letters whose numbers had to be said again: X Y Z, B C, E, W of orientation
+  double filament = 0;  ///< [m], that these lines would have laid
+  bool filament_known = true;  ///< false: and more, which cannot be read
+};
+constexpr int kMostPassedOver = 20;  ///< lines of one program; with more it is refused
+
 struct GcodeOptions {
   Pose X_WT_home = Pose::Identity();  ///< where the tool starts and where G28 takes it
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
@@ -69,6 +81,9 @@ struct GcodeOptions {
   std::shared_ptr<const GcodeMacros> macros = nullptr;
   /// Where unknown words are counted, whose lines are then passed over; null: they are errors. Not owned.
   std::vector<UnknownWordCount>* unknown = nullptr;
+  /// Where lines that cannot be read are told, which are then passed over (docs/gcode.md); null: they are
+  /// errors. Not owned.
+  std::vector<PassedOver>* passed_over = nullptr;
 };
 
 /// Throws InputError with file, line and column for unknown words (all of the file's in one), a malformed or
@@ -77,6 +92,9 @@ struct GcodeOptions {
 /// `duration` = |E| / F instead.
 Program read_gcode(const std::filesystem::path& path, const GcodeOptions& options);
 Program parse_gcode(const std::string& text, const std::string& file, const GcodeOptions& options);
+
+/// Throws InputError that tells all of these lines, of which there is one at least.
+[[noreturn]] void refuse_passed_over(const std::string& file, const std::vector<PassedOver>& lines);
 
 /// Text that read_gcode turns into the same program: lengths within 0.5e-6 mm, quaternion components within
 /// 0.5e-9, orientation within 2e-9 rad. Turning axes are left out: the poses say where the tool goes, not by

@@ -63,8 +63,8 @@ void Block::check_numbers() const {
   for (const Entry& entry : words_) {
     const Word& word = entry.word;
     const bool axis_to_home = find(Command::home) != nullptr && std::strchr("XYZBC", word.letter) != nullptr;
-    const bool asked = find(Command::flow) != nullptr && word.letter == 'S';  // Bambu's M221 S
-    if (word.quoted || (word.bare && !axis_to_home && !asked))
+    const bool kept = find(Command::flow) != nullptr && std::strchr("SR", word.letter) != nullptr;  // Bambu's
+    if (word.quoted || (word.bare && !axis_to_home && !kept))
       fail(word, fmt::format("'{}': {} needs a finite decimal number", word.text, word.letter));
   }
 }

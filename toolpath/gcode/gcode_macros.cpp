@@ -9,37 +9,14 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/file/read_file.h"
+#include "toolpath/gcode/gcode_macro_text.h"
 
 namespace understudy::toolpath {
+using namespace macro_text;
+
 namespace {
 
 using Values = std::map<std::string, std::string>;
-
-constexpr std::string_view kMacro = "gcode_macro";
-constexpr std::size_t kShown = 60;  // characters of a template in a message
-
-char upper(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
-std::string upper(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), [](char c) { return upper(c); });
-  return result;
-}
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string shown(std::string_view text) {
-  std::string plain(text.substr(0, kShown));
-  for (char& c : plain)
-    if (c < 32 || c > 126) c = '?';
-  return plain;
-}
 
 std::optional<double> number_of(std::string_view text) {
   double value = 0;
@@ -154,37 +131,14 @@ std::size_t value_end(std::string_view text, bool in_words) {
   return static_cast<std::size_t>(std::find_if(text.begin(), text.end(), ends) - text.begin());
 }
 
-/// Of a call: "BED=60 NAME="a b"", or of a letter with a number "X10 Y5".
-Values parameters(const std::string& command, std::string_view call, const Place& place) {
-  call = call.substr(0, call.find_first_of(";#*"));
-  const std::size_t begin = upper(call).find(command) + command.size();
-  call.remove_prefix(std::min(begin, call.size()));
-  const bool in_words = command.size() == 1 || std::isdigit(static_cast<unsigned char>(command[1])) == 0;
-  Values values;
-  while (!(call = trimmed(call)).empty()) {
-    const std::size_t name_end = in_words ? std::min(call.find_first_of("= \t"), call.size()) : 1;
-    const std::string name = upper(call.substr(0, name_end));
-    call.remove_prefix(name_end);
-    if (in_words && !call.starts_with('='))
-      throw InputError(place,
-                       fmt::format("'{}' in the call of {}: NAME=VALUE is needed", shown(name), command));
-    if (in_words) call.remove_prefix(1);
-    const bool quoted = call.starts_with('"') && call.find('"', 1) != std::string_view::npos;
-    const std::size_t from = quoted ? 1 : 0;
-    const std::size_t end = quoted ? call.find('"', 1) : value_end(call, in_words);
-    values[name] = std::string(call.substr(from, end - from));
-    call.remove_prefix(std::min(end + from, call.size()));
-  }
-  return values;
-}
-
 class Template {
  public:
-  Template(Values params, const std::string& file) : params_(std::move(params)), file_(file) {}
+  Template(Values params, const std::vector<std::string>& files)
+      : params_(std::move(params)), files_(files) {}
 
   /// The line with its values; of {% set %} nothing is left.
   std::string fill(const MacroLine& line) {
-    const Place place{file_, line.number};
+    const Place place{files_[line.file], line.number};
     std::string_view rest = line.text;
     std::string result;
     while (true) {
@@ -222,94 +176,44 @@ class Template {
   }
 
   Values params_, names_;
-  std::string file_;
-};
-
-/// Lines of the file to macros.
-class FileParser {
- public:
-  FileParser(const std::string& file, std::map<std::string, std::vector<MacroLine>>& macros)
-      : file_(file), macros_(macros) {}
-
-  void add(std::string_view line, int number) {
-    line = line.substr(0, line.find('#'));
-    const std::string_view words = trimmed(line);
-    if (words.empty() || words.front() == ';') return;
-    if (line.front() == '[')
-      begin_section(words, number);
-    else if (is_blank(line.front()))
-      go_on(words, number);
-    else
-      begin_key(words, number);
-  }
-
- private:
-  [[noreturn]] void fail(int number, const std::string& message) const {
-    throw InputError(Place{file_, number}, message);
-  }
-
-  void begin_section(std::string_view words, int number) {
-    if (words.back() != ']') fail(number, fmt::format("'{}': the section has no ']'", shown(words)));
-    std::string_view name = words.substr(1, words.size() - 2);
-    in_section_ = true;
-    macro_ = nullptr;
-    in_gcode_ = false;
-    if (!name.starts_with(kMacro) || (name.size() > kMacro.size() && !is_blank(name[kMacro.size()]))) return;
-    name = trimmed(name.substr(kMacro.size()));
-    if (name.empty() || !std::all_of(name.begin(), name.end(), [](char c) { return is_name(c) || c == '.'; }))
-      fail(number, fmt::format("'{}': a macro's name has letters, digits and '_'", shown(words)));
-    const auto [entry, is_new] = macros_.try_emplace(upper(name));
-    if (!is_new) fail(number, fmt::format("'{}' is there a second time", entry->first));
-    macro_ = &entry->second;
-  }
-
-  void begin_key(std::string_view words, int number) {
-    const std::size_t end = words.find_first_of(":=");
-    if (!in_section_ || end == std::string_view::npos)
-      fail(number, fmt::format("'{}' is no [section] and no 'key: value' of one", shown(words)));
-    in_gcode_ = macro_ != nullptr && trimmed(words.substr(0, end)) == "gcode";
-    if (const std::string_view value = trimmed(words.substr(end + 1)); in_gcode_ && !value.empty())
-      go_on(value, number);
-  }
-
-  void go_on(std::string_view words, int number) {
-    if (in_gcode_) macro_->push_back({std::string(words.substr(0, words.find(';'))), number});
-  }
-
-  const std::string& file_;
-  std::map<std::string, std::vector<MacroLine>>& macros_;
-  std::vector<MacroLine>* macro_ = nullptr;  // null: in another section
-  bool in_section_ = false, in_gcode_ = false;
+  const std::vector<std::string>& files_;
 };
 
 }  // namespace
 
+Values call_parameters(const std::string& command, std::string_view call, const Place& place) {
+  call = call.substr(0, call.find_first_of(";#*"));
+  const std::size_t begin = upper(call).find(command) + command.size();
+  call.remove_prefix(std::min(begin, call.size()));
+  const bool in_words = command.size() == 1 || std::isdigit(static_cast<unsigned char>(command[1])) == 0;
+  Values values;
+  while (!(call = trimmed(call)).empty()) {
+    const std::size_t name_end = in_words ? std::min(call.find_first_of("= \t"), call.size()) : 1;
+    const std::string name = upper(call.substr(0, name_end));
+    call.remove_prefix(name_end);
+    if (in_words && !call.starts_with('='))
+      throw InputError(place,
+                       fmt::format("'{}' in the call of {}: NAME=VALUE is needed", shown(name), command));
+    if (in_words) call.remove_prefix(1);
+    const bool quoted = call.starts_with('"') && call.find('"', 1) != std::string_view::npos;
+    const std::size_t from = quoted ? 1 : 0;
+    const std::size_t end = quoted ? call.find('"', 1) : value_end(call, in_words);
+    values[name] = std::string(call.substr(from, end - from));
+    call.remove_prefix(std::min(end + from, call.size()));
+  }
+  return values;
+}
+
 std::vector<MacroLine> GcodeMacros::expand(const std::string& command, std::string_view call) const {
   const std::vector<MacroLine>& lines = macros_.at(command);
-  const Place place{file_, lines.empty() ? 0 : lines.front().number};
-  Template filled(parameters(command, call, place), file_);
+  if (lines.empty()) return {};
+  const Place place{files_[lines.front().file], lines.front().number};
+  Template filled(call_parameters(command, call, place), files_);
   std::vector<MacroLine> result;
   for (const MacroLine& line : lines)
     if (std::string text = filled.fill(line); !trimmed(text).empty())
-      result.push_back({std::move(text), line.number});
+      result.push_back({std::move(text), line.number, line.file});
   return result;
-}
-
-GcodeMacros GcodeMacros::parse(const std::string& text, const std::string& file) {
-  GcodeMacros result;
-  result.file_ = file;
-  FileParser parser(result.file_, result.macros_);
-  std::string_view rest = text;
-  for (int number = 1; !rest.empty(); ++number) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    parser.add(rest.substr(0, end), number);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return result;
-}
-
-GcodeMacros GcodeMacros::read(const std::filesystem::path& path) {
-  return parse(read_file(path), path.string());
 }
 
 }  // namespace understudy::toolpath

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -36,7 +37,8 @@ double length_of(const Block& block, const Word& word, double unit) {
 }
 
 GcodePosition::GcodePosition(const GcodeOptions& options)
-    : options_(options), coordinates_(options.rotary ? options.rotary->coordinates : Coordinates::tip) {
+    : options_(std::make_shared<const GcodeOptions>(options)),
+      coordinates_(options.rotary ? options.rotary->coordinates : Coordinates::tip) {
   if (options.extruder_letter != 'E' &&
       std::string_view(kRotaryLetters).find(options.extruder_letter) == std::string_view::npos)
     throw InputError(fmt::format("extruder on '{}': one of E, {}", options.extruder_letter,
@@ -55,7 +57,7 @@ GcodePosition::GcodePosition(const GcodeOptions& options)
 }
 
 std::string GcodePosition::rotary_letters() const {
-  return options_.rotary ? fmt::format("{} ", fmt::join(options_.rotary->letters, " ")) : "";
+  return options_->rotary ? fmt::format("{} ", fmt::join(options_->rotary->letters, " ")) : "";
 }
 
 void GcodePosition::set_coordinates(const Block& block) {
@@ -63,7 +65,7 @@ void GcodePosition::set_coordinates(const Block& block) {
   const Word* machine = block.find(Command::machine_coordinates);
   const Word* word = tip != nullptr ? tip : machine;
   if (word == nullptr) return;
-  if (!options_.rotary) block.fail(*word, fmt::format("'{}': this machine has no rotary axes", word->text));
+  if (!options_->rotary) block.fail(*word, fmt::format("'{}': this machine has no rotary axes", word->text));
   if (coordinates_ == Coordinates::crossing)
     block.fail(*word, fmt::format("'{}' in a program that is read as slides of axes that cross at its origin",
                                   word->text));
@@ -76,44 +78,44 @@ void GcodePosition::set_coordinates(const Block& block) {
                                   word->text));
   if (next == Coordinates::machine) {
     require_turns(*word, block, false);
-    if (!options_.rotary->slides) block.fail(*word, fmt::format("'{}': {}", word->text, kNoSlides));
+    if (!options_->rotary->slides) block.fail(*word, fmt::format("'{}': {}", word->text, kNoSlides));
   }
   coordinates_ = next;
   programmed_ = programmed_at(X_WT_);
 }
 
 Vec3 GcodePosition::shift() const {
-  return coordinates_ == Coordinates::crossing ? Vec3::Zero() : options_.offset_W;
+  return coordinates_ == Coordinates::crossing ? Vec3::Zero() : options_->offset_W;
 }
 
 Vec3 GcodePosition::origin() const { return shift() + work_.active(); }
 
 Vec3 GcodePosition::programmed_at(const Pose& X_WT) const {
   const Vec3 p_WT = X_WT.translation();
-  if (coordinates_ == Coordinates::machine) return options_.rotary->slides(p_WT, turns_->b, turns_->c);
+  if (coordinates_ == Coordinates::machine) return options_->rotary->slides(p_WT, turns_->b, turns_->c);
   if (coordinates_ == Coordinates::tip) return p_WT;
-  return crossing().inverse() * Vec3(p_WT - options_.offset_W);
+  return crossing().inverse() * Vec3(p_WT - options_->offset_W);
 }
 
 /// From X Y Z of slides whose turning axes cross at the program's origin, to the tip seen from there.
 Pose GcodePosition::crossing() const {
   const auto& [b, c] = *turns_;
-  if (options_.rotary->crossing) return options_.rotary->crossing(b, c);
-  return make_pose(Mat3(options_.rotary->tip_pose(Vec3::Zero(), b, c).linear()), Vec3::Zero());
+  if (options_->rotary->crossing) return options_->rotary->crossing(b, c);
+  return make_pose(Mat3(options_->rotary->tip_pose(Vec3::Zero(), b, c).linear()), Vec3::Zero());
 }
 
 Pose GcodePosition::pose_at_programmed() const {
   const auto& [b, c] = *turns_;
-  if (coordinates_ == Coordinates::machine) return options_.rotary->slides_pose(programmed_, b, c);
-  Pose X_WT = options_.rotary->tip_pose(programmed_, b, c);
+  if (coordinates_ == Coordinates::machine) return options_->rotary->slides_pose(programmed_, b, c);
+  Pose X_WT = options_->rotary->tip_pose(programmed_, b, c);
   if (coordinates_ == Coordinates::crossing)
-    X_WT.translation() = options_.offset_W + crossing() * programmed_;
+    X_WT.translation() = options_->offset_W + crossing() * programmed_;
   return X_WT;
 }
 
 void GcodePosition::go_home() {
-  X_WT_ = options_.X_WT_home;
-  if (options_.rotary) turns_ = {options_.rotary->b_home, options_.rotary->c_home};
+  X_WT_ = options_->X_WT_home;
+  if (options_->rotary) turns_ = {options_->rotary->b_home, options_->rotary->c_home};
   programmed_ = programmed_at(X_WT_);
   origin_ = origin();
   turns_origin_ = {};
@@ -122,7 +124,7 @@ void GcodePosition::go_home() {
 bool GcodePosition::go_home(Block& block) {
   spline_end_.reset();
   const std::string_view axes =
-      std::string_view("XYZBC").substr(0, 3 + (options_.rotary ? options_.rotary->letters.size() : 0));
+      std::string_view("XYZBC").substr(0, 3 + (options_->rotary ? options_->rotary->letters.size() : 0));
   const auto named = [&](char letter) { return block.take(letter) != nullptr; };
   const auto count = std::count_if(axes.begin(), axes.end(), named);
   const bool whole = count == 0 || count == std::ssize(axes);
@@ -132,31 +134,32 @@ bool GcodePosition::go_home(Block& block) {
 
 /// Slides where the machine's words are theirs, else the tip's coordinates.
 void GcodePosition::home_some(const Block& block) {
-  const bool rotary = options_.rotary.has_value(), slides = rotary && options_.rotary->slides;
-  const Vec3 p_home = options_.X_WT_home.translation();
+  const bool rotary = options_->rotary.has_value(), slides = rotary && options_->rotary->slides;
+  const Vec3 p_home = options_->X_WT_home.translation();
   Vec3 p = X_WT_.translation(), home = p_home;
   if (rotary) require_turns(*block.find_any("XYZBC"), block, false);
   if (slides) {
-    p = options_.rotary->slides(p, turns_->b, turns_->c);
-    home = options_.rotary->slides(p_home, options_.rotary->b_home, options_.rotary->c_home);
+    p = options_->rotary->slides(p, turns_->b, turns_->c);
+    home = options_->rotary->slides(p_home, options_->rotary->b_home, options_->rotary->c_home);
   }
   for (int i = 0; i < 3; ++i) {
     if (block.find("XYZ"[i]) == nullptr) continue;
     p[i] = home[i];
     origin_[i] = origin()[i];
   }
-  if (block.find('B') != nullptr) turns_->b = options_.rotary->b_home, turns_origin_.b = 0;
-  if (block.find('C') != nullptr) turns_->c = options_.rotary->c_home, turns_origin_.c = 0;
-  X_WT_ = slides   ? options_.rotary->slides_pose(p, turns_->b, turns_->c)
-          : rotary ? options_.rotary->tip_pose(p, turns_->b, turns_->c)
+  if (block.find('B') != nullptr) turns_->b = options_->rotary->b_home, turns_origin_.b = 0;
+  if (block.find('C') != nullptr) turns_->c = options_->rotary->c_home, turns_origin_.c = 0;
+  X_WT_ = slides   ? options_->rotary->slides_pose(p, turns_->b, turns_->c)
+          : rotary ? options_->rotary->tip_pose(p, turns_->b, turns_->c)
                    : make_pose(Mat3(X_WT_.linear()), p);
   programmed_ = programmed_at(X_WT_);
 }
 
 /// [rad] of 1 in the first or the second rotary word.
 double GcodePosition::turn_unit(int word) const {
-  if (!options_.rotary) return 0;
-  return word == 0 ? options_.b_sign * options_.rotary->b_unit : options_.c_sign * options_.rotary->c_unit;
+  if (!options_->rotary) return 0;
+  return word == 0 ? options_->b_sign * options_->rotary->b_unit
+                   : options_->c_sign * options_->rotary->c_unit;
 }
 
 void GcodePosition::rename(Block& block, double unit) {
@@ -176,6 +179,19 @@ void GcodePosition::select_work_offset(const Block& block) {
   const Vec3 before = work_.active();
   work_.select(block);
   origin_ += work_.active() - before;
+}
+
+void GcodePosition::take_shifts(const GcodePosition& saved) {
+  origin_ = work_.active() + (saved.origin_ - saved.work_.active());
+  turns_origin_ = saved.turns_origin_;
+}
+
+bool GcodePosition::go_back_to(const GcodePosition& saved) {
+  if (options_->rotary) return false;
+  spline_end_.reset();
+  programmed_ = saved.programmed_;
+  X_WT_ = make_pose(Mat3(X_WT_.linear()), programmed_);
+  return true;
 }
 
 void GcodePosition::set_work_offset(Block& block, double unit, bool relative) {
@@ -237,7 +253,7 @@ bool GcodePosition::read_turns(Block& block, bool relative) {
   const bool in_machine = block.find(Command::machine_position) != nullptr;
   relative = relative && !in_machine;
   require_turns(b != nullptr ? *b : *c, block,
-                !relative && b != nullptr && (c != nullptr || options_.rotary->letters.size() == 1));
+                !relative && b != nullptr && (c != nullptr || options_->rotary->letters.size() == 1));
   RotaryTurns turns = turns_.value_or(RotaryTurns{});
   const auto read = [&](const Word* word, double RotaryTurns::*axis, double unit_of_turn) {
     if (word == nullptr) return;
@@ -263,7 +279,7 @@ void GcodePosition::require_turns(const Word& word, const Block& block, bool bot
   block.fail(word,
              fmt::format("'{}' after an orientation by I J K: {} are not known before a line with both, "
                          "absolute (G90), or G28",
-                         word.text, fmt::join(options_.rotary->letters, " and ")));
+                         word.text, fmt::join(options_->rotary->letters, " and ")));
 }
 
 std::optional<Quat> GcodePosition::read_orientation(Block& block) const {
@@ -277,10 +293,10 @@ std::optional<Quat> GcodePosition::read_orientation(Block& block) const {
                                      "IJK"[i]));
   const Vec3 v(vector[0]->value, vector[1]->value, vector[2]->value);
   const double norm = w != nullptr ? std::hypot(w->value, v.stableNorm()) : v.stableNorm();
-  if (!(std::abs(norm - 1) <= options_.unit_tolerance))
+  if (!(std::abs(norm - 1) <= options_->unit_tolerance))
     block.fail(*first, fmt::format("the {} has length {:.6g}, farther than {:g} from 1",
                                    w != nullptr ? "quaternion W I J K" : "tool axis I J K", norm,
-                                   options_.unit_tolerance));
+                                   options_->unit_tolerance));
   if (w != nullptr) return Quat(w->value, v.x(), v.y(), v.z()).normalized();
   return shortest_arc_from_z(v.normalized());
 }

@@ -2,6 +2,7 @@
 // make.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,10 @@ class GcodePosition {
   void select_work_offset(const Block& block);
   /// G10 L2 and L20.
   void set_work_offset(Block& block, double unit, bool relative);
+  /// The shifts of G92 that were in force at `saved`.
+  void take_shifts(const GcodePosition& saved);
+  /// X Y Z where they were at `saved`. False: rotary words of the machine leave that open.
+  bool go_back_to(const GcodePosition& saved);
   /// Position and orientation of a G0 or G1; with G53 in machine coordinates.
   void move(Block& block, double unit, bool relative);
   /// Position of a G2 or G3 in the plane across axis `normal`: where its chords end, in W; the orientation
@@ -65,8 +70,8 @@ class GcodePosition {
   std::optional<Quat> read_orientation(Block& block) const;
   void require_turns(const Word& word, const Block& block, bool both_given) const;
 
-  GcodeOptions options_;
-  Pose X_WT_;  // where the tool is
+  std::shared_ptr<const GcodeOptions> options_;  // positions are copied, these are large
+  Pose X_WT_;                                    // where the tool is
   Coordinates coordinates_;
   Vec3 programmed_;             // [m], what X Y Z are a reading of: p_WT, or slides
   Vec3 origin_ = Vec3::Zero();  // [m], reading + origin = programmed (G54 to G59.3, G92)

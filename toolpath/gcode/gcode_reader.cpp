@@ -3,16 +3,20 @@
 #include <charconv>
 #include <cstdlib>
 #include <optional>
+#include <set>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/units.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/gcode_block.h"
 #include "toolpath/gcode/gcode_lexer.h"
+#include "toolpath/gcode/gcode_passed_over.h"
 #include "toolpath/gcode/gcode_state.h"
 
 namespace understudy::toolpath {
@@ -20,6 +24,8 @@ namespace {
 
 constexpr std::size_t kLineMax = 65'536;  // [bytes]; docs/limits.md
 constexpr std::size_t kDeepestCall = 20;
+constexpr std::size_t kMostSaved = 20;    // names of SAVE_GCODE_STATE
+constexpr double kFastest = 1e5;          // [mm/s]
 constexpr int kMostMacroLines = 100'000;  // docs/limits.md
 
 /// Up to a line feed, a carriage return, or both; a comment ends there, too.
@@ -122,13 +128,19 @@ bool has_meaning(const std::string& command) {
 class Reader {
  public:
   Reader(const std::string& file, const GcodeOptions& options, std::vector<Step>& steps)
-      : file_(file), options_(options), letters_(letters_of(options)), state_(options), steps_(steps) {}
+      : file_(file), options_(options), letters_(letters_of(options)), state_(options), steps_(steps) {
+    if (options.passed_over != nullptr) over_.emplace(file_, letters_);
+  }
 
   void read(std::string_view words, int line) {
+    if (over_) over_->before(state_, steps_.size());
     try {
       run(words, line);
-    } catch (const InputError&) {
+      if (over_) over_->after(line, state_, steps_);
+    } catch (const InputError& error) {
+      if (over_ && calls_.empty() && over_->pass_over(words, line, error, state_, steps_)) return;
       if (!options_.unknown) unknown_.fail_if_any();  // this may come of a line that was not read
+      fail_with_passed_over(error);
       throw;
     }
   }
@@ -138,20 +150,41 @@ class Reader {
       *options_.unknown = unknown_.counts();
     else
       unknown_.fail_if_any();
+    if (!over_) return;
+    over_->finish(state_);
+    *options_.passed_over = over_->found();
   }
 
  private:
+  /// What cannot be passed over may come of lines that were.
+  void fail_with_passed_over(const InputError& error) const {
+    if (!over_ || over_->found().empty()) return;
+    std::vector<PassedOver> lines = over_->found();
+    const std::string place = to_string(error.place()), text = error.what();
+    lines.push_back({error.place().line,
+                     error.place().column,
+                     0,
+                     text.substr(std::min(place.size() + 2, text.size())),
+                     {},
+                     0,
+                     true});
+    refuse_passed_over(file_, lines);
+  }
+
   void run(std::string_view words, int line) {
     if (words.size() > kLineMax)
       throw InputError(Place{file_, line},
                        fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
     if (is_passed_over(words, options_)) return;
     try {
+      if (keeps_state(words, line)) return;
       if (options_.macros != nullptr && call_macro(words, line)) return;
       const std::string word = command_in_words(words);
       Block block = word.empty() ? Block(words_of(words, line), file_, line, letters_)
                                  : block_of(word, words, {file_, line, column_of(words)}, file_, letters_);
+      if (over_) over_->check(block);
       state_.run(block, steps_);
+      if (over_) over_->note(block, state_);
     } catch (const UnknownWord& error) {
       unknown_.add(error);
     }
@@ -170,20 +203,51 @@ class Reader {
     }
   }
 
+  /// SAVE_GCODE_STATE [NAME=a], RESTORE_GCODE_STATE [NAME=a] [MOVE=1 [MOVE_SPEED=mm/s]].
+  bool keeps_state(std::string_view words, int line) {
+    const std::string command = command_in_words(words);
+    const bool save = command == "SAVE_GCODE_STATE";
+    if (!save && command != "RESTORE_GCODE_STATE") return false;
+    const Place place{file_, line};
+    auto parameters = call_parameters(command, words, place);
+    const std::string name = parameters.contains("NAME") ? parameters["NAME"] : "default";
+    if (over_) over_->require_place(place);
+    if (save) {
+      if (saved_names_.insert(name).second && saved_names_.size() > kMostSaved)
+        throw InputError(place, fmt::format("more than {} names of SAVE_GCODE_STATE", kMostSaved));
+      state_.save(name);
+      return true;
+    }
+    const auto number = [&](const char* key) -> std::optional<double> {
+      if (!parameters.contains(key)) return std::nullopt;
+      const std::string& text = parameters[key];
+      double value = 0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= kFastest))
+        throw InputError(place, fmt::format("{}: a number from 0 to {:g} is needed", key, kFastest));
+      return value;
+    };
+    const std::optional<double> speed = number("MOVE_SPEED");
+    if (speed && *speed <= 0) throw InputError(place, "MOVE_SPEED must be above 0 mm/s");
+    state_.restore(name, number("MOVE").value_or(0) != 0,
+                   speed ? std::optional(from_mm(*speed)) : std::nullopt, place, steps_);
+    return true;
+  }
+
   /// Runs the lines of the macro that this line calls, as if they stood here. False: it calls none.
   bool call_macro(std::string_view words, int line) {
     const std::string command = first_command(words);
     if (!options_.macros->has(command) || has_meaning(command) || letters_.switching(command)) return false;
-    const std::string& macros_file = options_.macros->file();
     if (std::ranges::count(calls_, command) > 0)
-      throw InputError(Place{file_, line}, fmt::format("macro {} calls itself ({})", command, macros_file));
+      throw InputError(Place{file_, line},
+                       fmt::format("macro {} calls itself ({})", command, options_.macros->file()));
     if (calls_.size() == kDeepestCall)
       throw InputError(Place{file_, line}, fmt::format("macros are called {} deep", kDeepestCall + 1));
     calls_.push_back(command);
-    std::string where = macros_file;
+    std::string where = options_.macros->file();
     try {
       for (const MacroLine& macro_line : options_.macros->expand(command, words)) {
-        where = to_string(Place{macros_file, macro_line.number});
+        where = to_string(Place{options_.macros->files()[macro_line.file], macro_line.number});
         if (++macro_lines_ > kMostMacroLines)
           throw InputError(Place{file_, line},
                            fmt::format("macros make more than {} lines", kMostMacroLines));
@@ -206,9 +270,24 @@ class Reader {
   GcodeState state_;
   std::vector<Step>& steps_;
   UnknownWords unknown_;
+  std::optional<LinesPassedOver> over_;  // nothing: such lines are errors
+  std::set<std::string> saved_names_;
   std::vector<std::string> calls_;  // of macros, the outermost first
   int macro_lines_ = 0;
 };
+
+void check_anything_is_left(const Program& program, const GcodeOptions& options, bool empty) {
+  const auto prints = [](const Step& step) { return step.kind == StepKind::print; };
+  const auto printed = [](const PassedOver& lines) { return lines.filament > 0 || !lines.filament_known; };
+  const bool moves_left = std::ranges::any_of(program.steps, moves);
+  if (options.passed_over != nullptr && !options.passed_over->empty() &&
+      (!moves_left ||
+       (std::ranges::any_of(*options.passed_over, printed) && std::ranges::none_of(program.steps, prints))))
+    refuse_passed_over(program.file, *options.passed_over);
+  if (moves_left) return;
+  throw InputError(Place{program.file},
+                   empty ? "empty file, at least 1 move is needed" : "0 moves, at least 1 is needed");
+}
 
 }  // namespace
 
@@ -222,10 +301,8 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // byte order mark of some editors
   for (int line = 1; !rest.empty(); ++line) reader.read(take_line(rest), line);
   reader.finish();
-  for (const Step& step : program.steps)
-    if (moves(step)) return program;
-  throw InputError(Place{file},
-                   text.empty() ? "empty file, at least 1 move is needed" : "0 moves, at least 1 is needed");
+  check_anything_is_left(program, options, text.empty());
+  return program;
 }
 
 Program read_gcode(const std::filesystem::path& path, const GcodeOptions& options) {

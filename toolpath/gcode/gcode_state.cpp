@@ -16,6 +16,12 @@ constexpr double kLongestRetraction = 1;                  // [m]
 constexpr double kNoTool = 255;                           // and above: Bambu's words for none
 constexpr int kLeastPercent = 1, kLargestPercent = 1000;  // of M220 and M221
 
+/// Of F, in units of `unit` [m] a minute, or one over minutes: what takes for ever is none.
+bool is_feed(double value, double unit) {
+  constexpr double kLongest = 1e6;  // [m], of paths and of filament
+  return value > 0 && std::isfinite(kLongest / (value * unit / 60)) && std::isfinite(60 / value);
+}
+
 bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != to.translation(); }
 
 }  // namespace
@@ -60,6 +66,27 @@ void GcodeState::set_modes(const Block& block) {
   position_.select_work_offset(block);
 }
 
+void GcodeState::take_modes(Block& block) {
+  set_modes(block);
+  const Word* word = block.take('F');
+  if (word != nullptr && is_feed(word->value, unit_) && !inverse_time_) feed_ = word->value * unit_ / 60;
+}
+
+void GcodeState::take_end(Block& block) {
+  position_.move(block, unit_, relative_);
+  fed_filament(block);
+}
+
+void GcodeState::rejoin(const Pose& from, double filament, int line, std::vector<Step>& steps) const {
+  constexpr double kUsualFeed = 0.03;   // [m/s], of filament at rest, where the program has said none yet
+  constexpr double kNoFilament = 1e-9;  // [m]: rounding
+  if (!from.isApprox(position_.X_WT(), 0)) steps.push_back(step(StepKind::travel, line));
+  if (std::abs(filament) < kNoFilament) return;
+  steps.push_back(step(filament > 0 ? StepKind::print : StepKind::move, line));
+  steps.back().filament = filament;
+  steps.back().duration = std::abs(filament) / feed_.value_or(kUsualFeed);
+}
+
 void GcodeState::set_feed(Block& block) {
   duration_.reset();
   if (block.find(Command::retraction) != nullptr) return;  // its F is that of G10
@@ -68,7 +95,7 @@ void GcodeState::set_feed(Block& block) {
   const bool homing = block.find(Command::home) != nullptr;
   const double feed = word->value * unit_ / 60;
   const double duration = 60 / word->value;
-  if (!(word->value > 0 && feed > 0 && std::isfinite(duration)))
+  if (!is_feed(word->value, unit_))
     block.fail(*word, fmt::format("'{}': the feed must be above 0", word->text));
   if (homing) return;  // of this line alone, and home is reached as fast as the machine may
   if (!inverse_time_) {
@@ -129,7 +156,7 @@ void GcodeState::set_fan(Block& block, std::vector<Step>& steps) {
 std::optional<double> GcodeState::percent(Block& block, const char* what) const {
   const Word* s = block.take('S');
   if (s == nullptr || s->bare) {
-    for (const char letter : {'X', 'Y', 'Z'}) block.extract(letter);
+    for (const char letter : {'X', 'Y', 'Z', 'R'}) block.extract(letter);
     return std::nullopt;
   }
   if (s->value < kLeastPercent || s->value > kLargestPercent)
@@ -227,7 +254,7 @@ void GcodeState::retract(Block& block, std::vector<Step>& steps) {
   if (back != retracted_) return;  // a second one does nothing
   retracted_ = !back;
   Step next = step(back ? StepKind::print : StepKind::move, block.line());
-  next.filament = (back ? 1 : -1) * *retraction_;
+  next.filament = count_fed((back ? 1 : -1) * *retraction_);
   next.duration = *retraction_ / retraction_feed_;
   if (next.filament != 0) steps.push_back(next);
 }
@@ -281,7 +308,13 @@ double GcodeState::fed_filament(Block& block) {
   if (std::abs(extruder_) > kLargestExtruder)
     block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
                                   to_mm(extruder_), to_mm(kLargestExtruder)));
-  return flow_ * (relative_extrusion_ ? value : value - before);
+  return count_fed(flow_ * (relative_extrusion_ ? value : value - before));
+}
+
+double GcodeState::count_fed(double filament) {
+  fed_ += filament;
+  most_fed_ = std::max(most_fed_, fed_);
+  return filament;
 }
 
 Step GcodeState::step(StepKind kind, int line) const {

@@ -1,9 +1,12 @@
 // What earlier lines of a G-code program left behind, and what one more line makes of it.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/gcode_block.h"
@@ -18,6 +21,30 @@ class GcodeState {
   /// Runs a line and appends its steps. In the order of RS-274: units and modes, feed, heater and fan,
   /// motion, end. Throws InputError with place.
   void run(Block& block, std::vector<Step>& steps);
+
+  /// Klipper's SAVE_GCODE_STATE: modes, feed, percentages, shifts, reading of E and place, by a name.
+  void save(const std::string& name);
+  /// RESTORE_GCODE_STATE: brings all of that back but the place. `back` goes there, at `speed` [m/s] or at
+  /// the saved feed. Throws InputError at `place` for a name that was not saved.
+  void restore(const std::string& name, bool back, const std::optional<double>& speed, const Place& place,
+               std::vector<Step>& steps);
+
+  // For lines that are passed over (gcode_passed_over.h).
+
+  const Pose& X_WT() const { return position_.X_WT(); }
+  bool relative() const { return relative_; }
+  bool relative_extrusion() const { return relative_extrusion_; }
+  bool ended() const { return ended_; }
+  bool on_arc() const { return is_curve(); }
+  double fed() const { return fed_; }                     ///< [m] of filament, since the beginning
+  double drawn_back() const { return most_fed_ - fed_; }  ///< [m] of filament
+  /// What a move that is passed over says of the motion and the feed of later lines.
+  void take_modes(Block& block);
+  /// And of where they begin and what E reads there. Throws InputError with place.
+  void take_end(Block& block);
+  /// The steps from a tool at `from` to where it is now, without a bead: a travel, and `filament` [m] that is
+  /// pushed back or drawn back at rest.
+  void rejoin(const Pose& from, double filament, int line, std::vector<Step>& steps) const;
 
  private:
   enum class Motion { none, rapid, linear, clockwise_arc, counterclockwise_arc, spline };
@@ -43,11 +70,20 @@ class GcodeState {
   bool is_curve() const { return is_arc() || motion_ == Motion::spline; }
   void set_pace(const Block& block, Step& step) const;
 
+  struct Saved {
+    GcodePosition position;
+    double extruder, flow, speed;
+    bool relative, relative_extrusion;
+    std::optional<double> feed;
+  };
+
   double fed_filament(Block& block);
+  double count_fed(double filament);
   Step step(StepKind kind, int line) const;
 
   GcodePosition position_;
   double extruder_ = 0;               // [m], reading of E
+  double fed_ = 0, most_fed_ = 0;     // [m]
   double flow_ = 1;                   // filament fed for one that is programmed (M221)
   double speed_ = 1;                  // of feeds, for what is programmed (M220)
   std::optional<double> retraction_;  // [m], of G10 (M207)
@@ -63,6 +99,7 @@ class GcodeState {
   std::optional<double> feed_;      // [m/s] under G94
   std::optional<double> duration_;  // [s] of this line's move under G93
   bool ended_ = false;
+  std::map<std::string, Saved> saved_;
 };
 
 }  // namespace understudy::toolpath

@@ -61,46 +61,46 @@ constexpr WithoutEffect kWithoutEffect[] = {
     {'G', 80, "ABCEFHIJKLNOPQRSTUVWXYZ"},  // canned cycles off; Prusa's levelling
     {'M', 0, "PS"},                        // a stop for the operator
     {'M', 1, "PS"},
-    {'M', 5, ""},               // spindle off
-    {'M', 9, ""},               // coolant off
-    {'M', 17, "XYZEABCDUVWS"},  // motors on
-    {'M', 18, "XYZESABCUVW"},   // motors off
-    {'M', 73, "PRQSCDTL"},      // progress shown
-    {'M', 75, ""},              // print timer
-    {'M', 76, ""},              //
-    {'M', 77, ""},              //
-    {'M', 84, "XYZESABCUVW"},   // motors off
-    {'M', 105, "T"},            // temperature asked for
-    {'M', 110, "N"},            // line number
-    {'M', 114, "DER"},          // position asked for
-    {'M', 115, "UVP"},          // firmware asked for
-    {'M', 119, ""},             // end switches asked for
-    {'M', 140, "STP"},          // bed temperature
-    {'M', 141, "SP"},           // chamber temperature
-    {'M', 142, "PROSUV"},       // chamber cooling
-    {'M', 150, "RUBWPIKS"},     // lights
-    {'M', 155, "S"},            // reports of temperature
-    {'M', 190, "SRTP"},         // bed temperature, and wait
-    {'M', 191, "SR"},           // chamber temperature, and wait
-    {'M', 201, "XYZETFPS"},     // largest accelerations
-    {'M', 203, "XYZET"},        // largest feeds
-    {'M', 204, "SPRT"},         // accelerations
-    {'M', 205, "XYZEBSTJ"},     // jerk, junction deviation, least feeds
-    {'M', 300, "SP"},           // a beep
-    {'M', 302, "SP"},           // cold extrusion
-    {'M', 400, "SPU"},          // wait for the moves before
-    {'M', 412, "SHRD"},         // filament sensor
-    {'M', 413, "S"},            // power-loss recovery
-    {'M', 420, "SZVLTC"},       // levelling on or off
-    {'M', 501, ""},             // stored settings
-    {'M', 593, "XYFD"},         // input shaping
-    {'M', 862.1, "PQT"},        // checks of nozzle, model, firmware
-    {'M', 862.2, "PQ"},         //
-    {'M', 862.3, "PQ"},         //
-    {'M', 862.4, "PQ"},         //
-    {'M', 862.5, "PQ"},         //
-    {'M', 862.6, "PQ"},         //
-    {'M', 900, "KLTMSCR"},      // pressure advance
+    {'M', 5, ""},                // spindle off
+    {'M', 9, ""},                // coolant off
+    {'M', 17, "XYZEABCDRUVWS"},  // motors on
+    {'M', 18, "XYZESABCUVW"},    // motors off
+    {'M', 73, "PRQSCDTL"},       // progress shown
+    {'M', 75, ""},               // print timer
+    {'M', 76, ""},               //
+    {'M', 77, ""},               //
+    {'M', 84, "XYZESABCUVW"},    // motors off
+    {'M', 105, "T"},             // temperature asked for
+    {'M', 110, "N"},             // line number
+    {'M', 114, "DER"},           // position asked for
+    {'M', 115, "UVP"},           // firmware asked for
+    {'M', 119, ""},              // end switches asked for
+    {'M', 140, "STP"},           // bed temperature
+    {'M', 141, "SP"},            // chamber temperature
+    {'M', 142, "PROSUV"},        // chamber cooling
+    {'M', 150, "RUBWPIKS"},      // lights
+    {'M', 155, "S"},             // reports of temperature
+    {'M', 190, "SRTP"},          // bed temperature, and wait
+    {'M', 191, "SR"},            // chamber temperature, and wait
+    {'M', 201, "XYZETFPS"},      // largest accelerations
+    {'M', 203, "XYZET"},         // largest feeds
+    {'M', 204, "SPRT"},          // accelerations
+    {'M', 205, "XYZEBSTJ"},      // jerk, junction deviation, least feeds
+    {'M', 300, "SP"},            // a beep
+    {'M', 302, "SP"},            // cold extrusion
+    {'M', 400, "SPU"},           // wait for the moves before
+    {'M', 412, "SHRD"},          // filament sensor
+    {'M', 413, "S"},             // power-loss recovery
+    {'M', 420, "SZVLTC"},        // levelling on or off
+    {'M', 501, ""},              // stored settings
+    {'M', 593, "XYFD"},          // input shaping
+    {'M', 862.1, "PQT"},         // checks of nozzle, model, firmware
+    {'M', 862.2, "PQ"},          //
+    {'M', 862.3, "PQ"},          //
+    {'M', 862.4, "PQ"},          //
+    {'M', 862.5, "PQ"},          //
+    {'M', 862.6, "PQ"},          //
+    {'M', 900, "KLTMSCR"},       // pressure advance
 };
 
 /// Of Klipper and its macros, for all that begin so.

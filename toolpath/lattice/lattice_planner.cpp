@@ -5,7 +5,6 @@
 
 #include "core/units.h"
 #include "toolpath/bead.h"
-#include "toolpath/lattice/tool_envelope.h"
 #include "toolpath/planners/plan_checks.h"
 #include "toolpath/program_builder.h"
 
@@ -26,82 +25,68 @@ void check(const LatticePlan& plan) {
 class LatticePrint {
  public:
   LatticePrint(const Lattice& lattice, const LatticePlan& plan)
-      : lattice_(lattice),
-        plan_(plan),
-        tool_radius_(ToolEnvelope(plan.limits.tool).radius()),
-        builder_(plan.filament_diameter) {}
+      : lattice_(lattice), plan_(plan), builder_(plan.filament_diameter) {}
 
   void add(const StrutPrint& print) {
-    const bool goes_on = last_ && last_->to == print.from && (last_->axis - print.axis).norm() < kSameAxis;
+    const bool goes_on = last_ && last_->to == print.from && (last_->axis - print.axis).norm() < kSameAxis &&
+                         (last_->tip_to - print.tip_from).norm() < kMicrometre;
     if (!goes_on) {
       come_to(print);
-      const Pose start = tool(print.from, print.axis);
-      builder_.travel(tool(print.from, print.axis, std::min(plan_.approach, print.out_from)));
-      builder_.move(start, plan_.approach_feed);
+      builder_.travel(tool_at(print.tip_from, print.axis, std::min(plan_.approach, print.out_from)));
+      builder_.move(tool_at(print.tip_from, print.axis), plan_.approach_feed);
     }
-    const double length = lattice_.length(print.strut);
-    builder_.print(tool(print.to, print.axis), plan_.feed, strand_area(plan_.limits.strut_diameter) * length);
+    const double length = lattice_.length(static_cast<std::size_t>(print.strut));
+    builder_.print(tool_at(print.tip_to, print.axis), plan_.feed,
+                   strand_area(plan_.limits.strut_diameter) * length);
     builder_.dwell(plan_.dwell);
-    for (const int node : {print.from, print.to}) top_ = std::max(top_, lattice_.nodes[node].position.z());
     printed_ += length;
     last_ = &print;
   }
 
   Program finish() {
-    leave();
+    travel_along(last_->departure);
     return builder_.take();
   }
   double printed() const { return printed_; }
 
  private:
-  Pose tool(int node, const Vec3& axis, double out = 0) const {
-    const LatticeNode& n = lattice_.nodes[node];
-    return tool_at(tip_at(n, axis, plan_.limits.strut_diameter, plan_.limits.ground_gap), axis, out);
-  }
-
-  void leave() { builder_.travel(tool(last_->to, last_->axis, last_->out_to)); }
-
+  // From above what is built to above what is built, the tool upright; or straight over, where it stays so.
   void come_to(const StrutPrint& print) {
-    const Pose outside = tool(print.from, print.axis, print.out_from);
     if (!last_) {
-      builder_.begin(above(outside, print.axis), plan_.temperature, plan_.fan);
-      if (print.axis.z() < 1 - kSameAxis) builder_.travel(above(outside, print.axis));
+      builder_.begin(print.arrival.front(), plan_.temperature, plan_.fan);
+    } else if (upright(*last_) && upright(print)) {
+      travel_level(tool_at(last_->tip_to, last_->axis, last_->out_to),
+                   tool_at(print.tip_from, print.axis, print.out_from));
+      return;
     } else {
-      leave();
-      if ((last_->axis - print.axis).norm() >= kSameAxis) {
-        builder_.travel(above(builder_.tool(), last_->axis));
-        builder_.travel(above(outside, print.axis));
-      } else {
-        travel_level(outside, print.axis);
-      }
+      travel_along(last_->departure);
     }
-    builder_.travel(outside);
+    travel_along(print.arrival);
   }
 
-  // With one axis the path leads along the plane across it that is farther out.
-  void travel_level(const Pose& to, const Vec3& axis) {
-    const double up = axis.dot(to.translation() - builder_.tool().translation());
-    if (std::abs(up) < kMicrometre) return;
-    Pose corner = up > 0 ? builder_.tool() : to;
-    corner.translation() += std::abs(up) * axis;
-    builder_.travel(corner);
+  static bool upright(const StrutPrint& print) { return print.axis.z() > 1 - kSameAxis; }
+
+  // Along the level of the higher one: what is built lies below both.
+  void travel_level(const Pose& from, const Pose& to) {
+    const double level = std::max(from.translation().z(), to.translation().z());
+    Pose above_from = from, above_to = to;
+    above_from.translation().z() = above_to.translation().z() = level;
+    travel_along({from, above_from, above_to, to});
   }
 
-  // High enough for the tool to turn from vertical to `axis` without any body of it coming down to the
-  // struts.
-  Pose above(Pose X_WT, const Vec3& axis) const {
-    const double dips = tool_radius_ * std::sqrt(std::max(0.0, 1 - axis.z() * axis.z()));
-    const double level = top_ + plan_.limits.lift + dips;
-    X_WT.translation().z() = std::max(X_WT.translation().z(), level);
-    return X_WT;
+  void travel_along(const std::vector<Pose>& way) {
+    for (const Pose& X_WT : way) travel(X_WT);
+  }
+
+  void travel(const Pose& X_WT) {
+    const bool there = !builder_.empty() && builder_.tool().isApprox(X_WT, 1e-12);
+    if (!there) builder_.travel(X_WT);
   }
 
   const Lattice& lattice_;
   const LatticePlan& plan_;
-  double tool_radius_;
   ProgramBuilder builder_;
   const StrutPrint* last_ = nullptr;
-  double top_ = 0;  // [m], of what is printed
   double printed_ = 0;
 };
 

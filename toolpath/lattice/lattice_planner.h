@@ -25,8 +25,9 @@ struct LatticeProgram {
 
 /// Each strut: travel to where the tool is clear of what is built, in along the tool's axis, the strut in one
 /// move with pi d^2 / 4 of it as volume, a dwell, out along the axis. Two struts in a row with one axis, the
-/// second from the first one's end, are printed without leaving. Between axes the tool travels and turns
-/// above everything built. Throws InputError as sequence_struts does and for values out of range.
+/// second from the first one's end, are printed without leaving. Else the tool travels above everything
+/// built, upright, on the ways that sequence_struts has checked. Throws InputError as sequence_struts does
+/// and for values out of range.
 LatticeProgram plan_lattice(const Lattice& lattice, const LatticePlan& plan);
 
 }  // namespace understudy::toolpath

@@ -8,176 +8,145 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "toolpath/lattice/disassembly.h"
 #include "toolpath/lattice/lattice_access.h"
 #include "toolpath/planners/plan_checks.h"
 
 namespace understudy::toolpath {
 namespace {
 
-constexpr int kLookedAt = 16;  // candidates that an error chooses from
+constexpr std::size_t kLookedAt = 16;  // removals that an error chooses from
 
-// The frame while it is taken apart.
-class Disassembly {
+class Sequence {
  public:
-  Disassembly(const Lattice& lattice, const SequenceLimits& limits)
-      : lattice_(lattice), limits_(limits), access_(lattice, limits), touching_(lattice.nodes.size()) {
-    for (int s = 0; s < static_cast<int>(lattice.struts.size()); ++s) {
-      standing_.push_back(s);
-      for (const int node : lattice.struts[s]) touching_[node].push_back(s);
-    }
-    is_standing_.assign(standing_.size(), true);
-  }
+  Sequence(const Lattice& lattice, const SequenceLimits& limits)
+      : lattice_(lattice), limits_(limits), access_(lattice, limits), prints_(lattice.struts.size()) {}
 
   StrutSequence run() {
-    StrutSequence sequence;
-    while (!standing_.empty()) {
-      const std::vector<Candidate> candidates = last_ones();
+    require_each_alone();
+    DisassemblyRules rules;
+    rules.removable = [this](const Removal& removal, const std::vector<char>& standing) {
       StrutPrint print;
-      if (!take_clear(candidates, print)) print = take_clearest(candidates, sequence.warnings);
-      sequence.prints.push_back(print);
-      next_from_ = print.from;
-    }
-    std::reverse(sequence.prints.begin(), sequence.prints.end());
-    std::reverse(sequence.warnings.begin(), sequence.warnings.end());
+      if (!access_.find(removal, standing, print)) return false;
+      prints_[static_cast<std::size_t>(removal.strut)] = std::move(print);
+      return true;
+    };
+    rules.put_back = [this] { access_.put_back(); };
+    if (limits_.accept_interference)
+      rules.force = [this](const auto& removals, const auto& standing, Removal& forced) {
+        return force(removals, standing, forced);
+      };
+    rules.out_of_time = limits_.out_of_time;
+    rules.steps_max = limits_.steps_max;
+    const Disassembly found = take_apart(lattice_, rules);
+    if (found.end != DisassemblyEnd::found) throw InputError(refusal(found));
+    StrutSequence sequence;
+    sequence.steps = found.steps;
+    for (auto it = found.removals.rbegin(); it != found.removals.rend(); ++it)
+      sequence.prints.push_back(std::move(prints_[static_cast<std::size_t>(it->strut)]));
+    sequence.warnings.assign(warnings_.rbegin(), warnings_.rend());
     return sequence;
   }
 
  private:
-  struct Candidate {
-    int strut, from, to;
-    long top, bottom;  // [um]: heights are equal where they are to a drive
-    double travel;     // [m], from its end to where the print goes on after it
+  struct Nearest {
+    Removal removal;
+    StrutPrint print;
+    StrutAccess::Obstacle obstacle;
   };
 
-  // Highest first; of equals the one that lies highest as a whole, then the one nearest to what comes after.
-  std::vector<Candidate> last_ones() const {
-    std::vector<Candidate> candidates;
-    for (const int s : standing_) {
-      const auto& [a, b] = lattice_.struts[s];
-      const double z_a = lattice_.nodes[a].position.z(), z_b = lattice_.nodes[b].position.z();
-      for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
-        if (!anchored(from, s)) continue;
-        const double travel =
-            next_from_ < 0 ? 0 : (lattice_.nodes[to].position - lattice_.nodes[next_from_].position).norm();
-        candidates.push_back({s, from, to, std::lround(to_um(std::max(z_a, z_b))),
-                              std::lround(to_um(std::min(z_a, z_b))), travel});
-      }
+  // What no order can help is told before the search.
+  void require_each_alone() const {
+    std::string why;
+    for (int s = 0; s < static_cast<int>(lattice_.struts.size()); ++s) {
+      if (limits_.out_of_time && limits_.out_of_time())
+        throw InputError("the time allowed (--time-limit) is over before the search for an order began");
+      if (access_.never(s, why)) throw InputError(name(s) + no_axis() + "can print it: " + why);
     }
-    std::sort(candidates.begin(), candidates.end(), [](const Candidate& l, const Candidate& r) {
-      if (l.top != r.top) return l.top > r.top;
-      if (l.bottom != r.bottom) return l.bottom > r.bottom;
-      const long travel_l = std::lround(to_um(l.travel)), travel_r = std::lround(to_um(r.travel));
-      if (travel_l != travel_r) return travel_l < travel_r;
-      return std::pair(l.strut, l.from) < std::pair(r.strut, r.from);
-    });
-    return candidates;
   }
 
-  bool anchored(int node, int without) const {
-    if (lattice_.nodes[node].grounded) return true;
-    return std::any_of(touching_[node].begin(), touching_[node].end(),
-                       [&](int s) { return s != without && is_standing_[s]; });
-  }
-
-  bool take_clear(const std::vector<Candidate>& candidates, StrutPrint& print) {
-    int bridge = -1;
-    for (const Candidate& c : candidates) {
-      if (c.strut == bridge) continue;
-      take(c.strut);
-      if (!connected())
-        bridge = c.strut;
-      else if (access_.find(c.strut, c.from, c.to, standing_, print))
-        return true;
-      put_back(c.strut);
+  // Of the first removals the one that the tool comes least near to.
+  std::optional<Nearest> nearest(const std::vector<Removal>& removals,
+                                 const std::vector<char>& standing) const {
+    std::optional<Nearest> best;
+    for (std::size_t i = 0; i < std::min(removals.size(), kLookedAt); ++i) {
+      std::vector<char> others = standing;
+      others[static_cast<std::size_t>(removals[i].strut)] = 0;
+      StrutPrint print;
+      StrutAccess::Obstacle obstacle = access_.clearest(removals[i], others, print);
+      if (!best || obstacle.lack < best->obstacle.lack)
+        best = {removals[i], std::move(print), std::move(obstacle)};
     }
-    return false;
+    return best;
   }
 
-  // Of the first candidates the one that the tool comes least near to; refused unless that is accepted.
-  StrutPrint take_clearest(const std::vector<Candidate>& candidates, std::vector<std::string>& warnings) {
-    std::optional<StrutPrint> best;
-    StrutAccess::Obstacle obstacle;
-    int looked_at = 0;
-    for (const Candidate& c : candidates) {
-      if (looked_at == kLookedAt) break;
-      take(c.strut);
-      if (connected()) {
-        ++looked_at;
-        StrutPrint print;
-        const auto nearest = access_.clearest(c.strut, c.from, c.to, standing_, print);
-        if (!best || nearest.distance > obstacle.distance) {
-          obstacle = nearest;
-          best = print;
-          best->strut = c.strut;
-        }
-      }
-      put_back(c.strut);
+  bool force(const std::vector<Removal>& removals, const std::vector<char>& standing, Removal& forced) {
+    std::optional<Nearest> best = nearest(removals, standing);
+    if (!best || best->obstacle.strut < 0) return false;
+    forced = best->removal;
+    access_.complete_anyhow(best->print);
+    warnings_.push_back(reason(*best));
+    prints_[static_cast<std::size_t>(forced.strut)] = std::move(best->print);
+    return true;
+  }
+
+  std::string refusal(const Disassembly& found) const {
+    std::vector<char> standing(lattice_.struts.size());
+    std::vector<Removal> removals;
+    for (const int s : found.left) {
+      standing[static_cast<std::size_t>(s)] = 1;
+      const auto& [a, b] = lattice_.struts[static_cast<std::size_t>(s)];
+      removals.push_back({s, a, b});
+      removals.push_back({s, b, a});
     }
-    if (!best) throw InputError("no strut can be taken off without the others losing their ground");
-    const std::string message = reason(best->strut, obstacle);
-    if (!std::isfinite(obstacle.distance) || !limits_.accept_interference) throw InputError(message);
-    warnings.push_back(message);
-    take(best->strut);
-    return *best;
-  }
-
-  std::string reason(int strut, const StrutAccess::Obstacle& obstacle) const {
-    const auto& [a, b] = lattice_.struts[strut];
-    const std::string which = fmt::format(
-        "strut {} from {} to {}: no tool axis within {:g} deg of vertical is ", strut,
-        in_mm(lattice_.nodes[a].position), in_mm(lattice_.nodes[b].position), to_deg(limits_.tilt_max));
-    if (!std::isfinite(obstacle.distance)) return which + "above the table and in reach";
-    const std::string near =
-        obstacle.strut == strut ? "the strand itself" : fmt::format("strut {}", obstacle.strut);
-    return which + fmt::format("clear; at best the tool comes to {:.2f} mm from {}, the limit is {:.2f} mm",
-                               to_mm(obstacle.distance), near, to_mm(limits_.margin));
-  }
-
-  void take(int strut) {
-    is_standing_[strut] = false;
-    standing_.erase(std::lower_bound(standing_.begin(), standing_.end(), strut));
-  }
-  void put_back(int strut) {
-    is_standing_[strut] = true;
-    standing_.insert(std::lower_bound(standing_.begin(), standing_.end(), strut), strut);
-  }
-
-  bool connected() const {
-    std::vector<bool> reached(standing_.empty() ? 0 : is_standing_.size());
-    std::vector<int> open;
-    std::size_t count = 0;
-    const auto reach = [&](int s) {
-      if (reached[s] || !is_standing_[s]) return;
-      reached[s] = true;
-      ++count;
-      open.push_back(s);
-    };
-    for (const int s : standing_)
-      for (const int node : lattice_.struts[s])
-        if (lattice_.nodes[node].grounded) reach(s);
-    while (!open.empty()) {
-      const int s = open.back();
-      open.pop_back();
-      for (const int node : lattice_.struts[s])
-        for (const int other : touching_[node]) reach(other);
+    const std::optional<Nearest> best = nearest(removals, standing);
+    const std::string strut = best ? reason(*best) : "";
+    const std::string left = fmt::format("; the longest attempt left {} of {} struts; of these ",
+                                         found.left.size(), lattice_.struts.size());
+    switch (found.end) {
+      case DisassemblyEnd::no_order:
+        return "no order keeps every strut supported and clear, all were tried" + left + strut;
+      case DisassemblyEnd::out_of_steps:
+        return fmt::format("no order was found within {} steps", limits_.steps_max) + left + strut;
+      case DisassemblyEnd::out_of_time:
+        return "no order was found in the time allowed (--time-limit)" + left + strut;
+      default:
+        return strut;
     }
-    return count == standing_.size();
+  }
+
+  std::string name(int strut) const {
+    const auto& [a, b] = lattice_.struts[static_cast<std::size_t>(strut)];
+    return fmt::format("strut {} from {} to {}: ", strut,
+                       in_mm(lattice_.nodes[static_cast<std::size_t>(a)].position),
+                       in_mm(lattice_.nodes[static_cast<std::size_t>(b)].position));
+  }
+  std::string no_axis() const {
+    return fmt::format("no tool axis within {:g} deg of vertical ", to_deg(limits_.tilt_max));
+  }
+  std::string reason(const Nearest& n) const {
+    if (n.obstacle.strut < 0 && n.obstacle.why.empty())
+      return name(n.removal.strut) + "it is the last support of others";
+    if (n.obstacle.strut < 0) return name(n.removal.strut) + no_axis() + "can print it: " + n.obstacle.why;
+    return name(n.removal.strut) + no_axis() +
+           fmt::format("is clear; at best the tool comes to {:.3f} mm from strut {}, the limit is {:.3f} mm",
+                       to_mm(n.obstacle.distance), n.obstacle.strut, to_mm(n.obstacle.limit));
   }
 
   const Lattice& lattice_;
   const SequenceLimits& limits_;
   StrutAccess access_;
-  std::vector<std::vector<int>> touching_;  // struts at each node
-  std::vector<int> standing_;               // sorted
-  std::vector<bool> is_standing_;
-  int next_from_ = -1;  // node at which the strut printed after begins
+  std::vector<StrutPrint> prints_;  // by strut: how it comes off
+  std::vector<std::string> warnings_;
 };
 
 void check(const Lattice& lattice, const SequenceLimits& limits) {
   check_positive("strut diameter", to_mm(limits.strut_diameter), "mm");
+  check_positive("nozzle flat", to_mm(limits.nozzle_flat), "mm");
   check_positive("gap at the ground", to_mm(limits.ground_gap), "mm");
   check_positive("margin", to_mm(limits.margin), "mm");
   check_positive("joint", to_mm(limits.joint), "mm");
+  check_within("press at joints", to_mm(limits.joint_press), 0, 10, "mm");
   check_positive("lift", to_mm(limits.lift), "mm");
   check_within("largest tilt", to_deg(limits.tilt_max), 0, 90 + 1e-9, "deg");
   if (lattice.struts.empty()) throw InputError("the lattice has 0 struts, it needs 1");
@@ -193,14 +162,9 @@ void check(const Lattice& lattice, const SequenceLimits& limits) {
 
 }  // namespace
 
-Vec3 tip_at(const LatticeNode& node, const Vec3& axis, double strut_diameter, double ground_gap) {
-  if (node.grounded) return node.position + (ground_gap - 0.5 * strut_diameter) * Vec3::UnitZ();
-  return node.position + 0.5 * strut_diameter * axis;
-}
-
 StrutSequence sequence_struts(const Lattice& lattice, const SequenceLimits& limits) {
   check(lattice, limits);
-  return Disassembly(lattice, limits).run();
+  return Sequence(lattice, limits).run();
 }
 
 }  // namespace understudy::toolpath

@@ -202,6 +202,20 @@ TEST(ConstraintCheck, PathThroughNoSolutionGivesFindingsAndGoesOn) {
   EXPECT_TRUE(std::is_sorted(report.findings.begin(), report.findings.end(),
                              [](const auto& a, const auto& b) { return a.line < b.line; }));
   EXPECT_NEAR(report.duration, 0.2 + 0.01, 2e-3);  // what can be planned: the first line
+  // The way there and the way from there.
+  EXPECT_EQ(report.impossible, (std::vector<std::size_t>{1, 2}));
+}
+
+// The first pose that is looked at behind the place may be one that axes reach again.
+TEST(ConstraintCheck, AMoveThatBeginsWhereNoAxesReachIsImpossible) {
+  const HexapodForTest hexapod;
+  const auto& g = hexapod.machine.hexapod().geometry;
+  const Pose X_WT =
+      hexapod.machine.X_WB * make_pose(Mat3(Mat3::Identity()), g.base_joint[2] - g.platform_joint[2]);
+  const auto report = check_constraints(
+      program_of({hexapod.print_to(X_WT, 0.01, 1), hexapod.print_to(hexapod.X_WT_home, 0.01, 2)}),
+      hexapod.machine, 10);
+  EXPECT_EQ(report.impossible, (std::vector<std::size_t>{0, 1}));
 }
 
 TEST(ConstraintCheck, LinesOnEndWithTheSameViolationAreOneFindingWithTheWorstOfThem) {

@@ -8,6 +8,7 @@
 #include "core/file/read_file.h"
 #include "machine/description.h"
 #include "machine/file/calibration_section.h"
+#include "tests/machine/arm_with_shapes.h"
 #include "tests/temporary_folder.h"
 
 namespace understudy::machine {
@@ -30,6 +31,22 @@ TEST(BesideMachine, TheUrdfGoesWithTheMachine) {
   EXPECT_NEAR(back.chain().kinematics.chain.X_OT_zero.translation().x(),
               machine.chain().kinematics.chain.X_OT_zero.translation().x(), 1e-9);
   EXPECT_FALSE(staged_urdf(machine.file, path)) << "it is there already";
+}
+
+TEST(BesideMachine, MeshesAndSrdfGoWithTheUrdf) {
+  const TemporaryFolder from, to;
+  const std::string file =
+      write_arm_with_shapes(from.path(), "arms/meshes/fore.obj", "  urdf:", "  srdf: arm.srdf\n  urdf:");
+  write_file(from / "arm.srdf", "<robot name='shapes'/>");
+  write_file(to / "m.yaml", read_file(file));
+  EXPECT_THROW(load_machine((to / "m.yaml").string()), InputError);
+  staged_urdf(file, to / "m.yaml")->commit();
+  const auto companions = staged_companions(file, to / "m.yaml");
+  EXPECT_EQ(companions.size(), 2u);
+  for (const auto& companion : companions) companion->commit();
+  EXPECT_EQ(load_machine((to / "m.yaml").string()).chain().links[1].bodies.size(), 2u);
+  EXPECT_TRUE(staged_companions(file, to / "m.yaml").empty()) << "they are there already";
+  EXPECT_TRUE(staged_companions(file, from / "m.yaml").empty());
 }
 
 TEST(BesideMachine, AnotherUrdfOfThatNameStays) {

@@ -53,9 +53,9 @@ TEST(Advice, ABeadOverNothingAsksForThePart) {
 }
 
 TEST(Advice, EveryKindOfFindingHasSome) {
-  for (const char* kind :
-       {"strut_length", "joint_angle", "joint_limit", "axis_velocity", "axis_acceleration", "singularity",
-        "unreachable", "collision", "near_collision", "accuracy", "gap", "adhesion", "sag", "flow"})
+  for (const char* kind : {"strut_length", "joint_angle", "joint_limit", "axis_velocity", "axis_acceleration",
+                           "singularity", "unreachable", "collision", "near_collision", "accuracy", "gap",
+                           "adhesion", "sag", "flow", "program", "placement", "assumption", "unchecked"})
     EXPECT_THAT(advice({kind, Severity::error, 1, 0, 0, 0, "", ""}, Record()), Not(IsEmpty())) << kind;
 }
 

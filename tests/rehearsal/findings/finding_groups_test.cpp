@@ -45,10 +45,13 @@ TEST(FindingGroups, TheWorstIsFarthestBeyondItsLimitEitherWay) {
 // A nozzle that ploughs is why the beads behind it do not stick, though these come first in the program.
 TEST(FindingGroups, CausesStandAheadOfWhatComesOfThem) {
   Record record;
-  record.findings = {
-      finding("sag", 3, 1, 0.2), finding("adhesion", 4, 0, 0, kTooLow), finding("gap", 5, 0.05, 0.1, kTooLow),
-      finding("collision", 30, -0.3, 0, "nozzle and part"), finding("joint_limit", 80, 230, 200, "axis z")};
-  EXPECT_THAT(kinds(record), ElementsAre("joint_limit", "collision", "gap", "adhesion", "sag"));
+  record.findings = {finding("sag", 3, 1, 0.2),
+                     finding("adhesion", 4, 0, 0, kTooLow),
+                     finding("gap", 5, 0.05, 0.1, kTooLow),
+                     finding("collision", 30, -0.3, 0, "nozzle and part"),
+                     finding("joint_limit", 80, 230, 200, "axis z"),
+                     finding("program", 90, 0.4, 0, "line that is passed over, 90")};
+  EXPECT_THAT(kinds(record), ElementsAre("program", "joint_limit", "collision", "gap", "adhesion", "sag"));
 }
 
 TEST(FindingGroups, WarningsFollowEveryError) {

@@ -1,5 +1,6 @@
 #include "rehearsal/findings/process_check.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -84,6 +85,78 @@ TEST(ProcessCheck, WhatARetractionTookBackIsNotCountedTwice) {
 TEST(ProcessCheck, FilamentDrawnOutOfTheHotEndIsRefused) {
   EXPECT_THAT(refusal("M104 S230\nG1 X10 E1 F300\nG1 X20 E-59\n"),
               HasSubstr("p.gcode:3: 60.00 mm of filament are drawn back, more than 50 mm"));
+}
+
+struct Mended {
+  toolpath::Program program;
+  std::vector<Finding> findings;
+};
+
+Mended mended(const std::string& text) {
+  const auto machine = machine::load_machine("hexapod");
+  toolpath::GcodeOptions options;
+  options.X_WT_home = machine.X_WB * machine.X_BT_home;
+  Mended result{toolpath::parse_gcode(text, "p.gcode", options), {}};
+  result.findings = mend_process(result.program, machine, machine::load_material("abs"));
+  return result;
+}
+
+std::vector<double> filament_mm(const toolpath::Program& program) {
+  std::vector<double> all;
+  for (const toolpath::Step& step : program.steps)
+    if (toolpath::moves(step)) all.push_back(std::round(1e6 * to_mm(step.filament)) / 1e6);
+  return all;
+}
+
+// 20 mm of filament on 10 mm are a bead of 4.81 mm2.
+TEST(MendProcess, OneThickBeadIsAFindingAndTheOthersStay) {
+  const Mended m = mended("M104 S230\nM83\nG1 X10 E1 F300\nG1 X20 E20\nG1 X30 E1\n");
+  ASSERT_EQ(m.findings.size(), 1u);
+  EXPECT_EQ(m.findings[0].kind, "program");
+  EXPECT_EQ(m.findings[0].severity, Severity::error);
+  EXPECT_EQ(m.findings[0].gcode_line, 4);
+  EXPECT_NEAR(m.findings[0].value, 20 * 2.405 / 10, 0.001);
+  EXPECT_NEAR(m.findings[0].limit, 4, 1e-9);
+  EXPECT_EQ(m.findings[0].unit, "mm2");
+  EXPECT_THAT(m.findings[0].message, testing::EndsWith("; simulated without this filament"));
+  EXPECT_EQ(filament_mm(m.program), (std::vector<double>{1, 0, 1}));
+  EXPECT_EQ(m.program.steps[2].kind, toolpath::StepKind::move);
+}
+
+TEST(MendProcess, WhatWasDrawnBackIsStillPushedBack) {
+  const Mended m = mended("M104 S230\nM83\nG1 X10 E1 F300\nG1 E-2\nG1 X20 E22\nG1 X30 E1\n");
+  EXPECT_EQ(m.findings.size(), 1u);
+  EXPECT_EQ(filament_mm(m.program), (std::vector<double>{1, -2, 2, 1}));
+}
+
+TEST(MendProcess, OfALongRetractionOnlyWhatTheHotEndHoldsIsMade) {
+  const Mended m = mended("M104 S230\nM83\nG1 X10 E1 F300\nG1 E-60\nG1 E60\nG1 X20 E1\n");
+  ASSERT_EQ(m.findings.size(), 1u);
+  EXPECT_EQ(m.findings[0].gcode_line, 4);
+  EXPECT_EQ(filament_mm(m.program), (std::vector<double>{1, -50, 50, 1}));
+}
+
+TEST(MendProcess, SolidFilamentIsNotFed) {
+  const Mended m =
+      mended("M104 S230\nM83\nG1 X10 E1 F300\nM104 S90\nG1 X20 E1\nG1 X30 E1\nM104 S230\nG1 X40 E1\n");
+  ASSERT_EQ(m.findings.size(), 1u);
+  EXPECT_EQ(m.findings[0].gcode_line, 5);
+  EXPECT_EQ(m.findings[0].last_line, 6);
+  EXPECT_EQ(m.findings[0].unit, "C");
+  EXPECT_EQ(filament_mm(m.program), (std::vector<double>{1, 0, 0, 1}));
+}
+
+TEST(MendProcess, WhatLeavesNothingOrIsEverywhereIsRefusedAsAWhole) {
+  EXPECT_THROW(mended("M104 S230\nG1 X10 E20 F300\n"), InputError);
+  EXPECT_THROW(mended("G1 X5 E0.2 F300\n"), InputError) << "no temperature";
+  std::string text = "M104 S230\nM83\nG1 X1 E.01 F300\n";
+  for (int i = 0; i <= static_cast<int>(kMostFaults); ++i)
+    text += "G1 X" + std::to_string(i % 2) + " E9\n" + std::string(9, '\n');
+  EXPECT_THROW(mended(text), InputError);
+  EXPECT_THAT(
+      refusal("M104 S230\nM83\nG1 X9 E1 F300\nG1 X19 E20\n\n\n\n\nG1 X29 E30\n"),
+      HasSubstr("p.gcode:4: feeds 20.000 mm of filament over 10.000 mm: a bead of 4.81 mm2, more than "
+                "4.00 mm2 (5 bores of 0.4 mm wide and high); line 9: feeds 30.000 mm"));
 }
 
 class Fixture : public testing::Test {

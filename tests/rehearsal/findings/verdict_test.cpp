@@ -34,6 +34,17 @@ TEST(VerdictSentence, NamesTheCauseAndCountsTheRest) {
             "The bead is laid at a gap of 0.412 mm, above 0.200 mm: it does not stick (line 14).");
 }
 
+TEST(VerdictSentence, SaysWhichLinesTheFiguresAreWithout) {
+  Record record = printed(false);
+  record.findings = {
+      {"program", Severity::error, 12, 0, 0.4, 0, "mm", "line 12 cannot be read; passed over"}};
+  record.passed_over = {{12, 12}};
+  EXPECT_EQ(verdict_sentence(record),
+            "Line 12 cannot be read; passed over (line 12). All figures are of the program without line 12.");
+  record.passed_over = {{12, 12}, {40, 44}};
+  EXPECT_THAT(verdict_sentence(record), testing::EndsWith("of the program without lines 12 and 40 to 44."));
+}
+
 // 537 rows below their limit, though only warnings, are not "no limit is broken".
 TEST(VerdictSentence, DoesNotSayThatNoLimitIsBrokenBesideWarnings) {
   Record record = printed(true);

@@ -42,7 +42,8 @@ TEST_F(Inspect, AProgramOfAnotherTablesCornerIsPutOnThisOne) {
   EXPECT_EQ(
       rehearse_command(found.request, "out"),
       "understudy rehearse " + program +
-          " --machine hexapod --place -110,-105,0 --ignore START_PRINT,M428 --temperature 215 --out out");
+          " --machine hexapod --place -110,-105,0 --ignore START_PRINT,M428 --temperature 215 --nozzle 0.6 "
+          "--out out");
 }
 
 TEST_F(Inspect, MacrosAreReadAndStayInTheCommand) {
@@ -54,6 +55,26 @@ TEST_F(Inspect, MacrosAreReadAndStayInTheCommand) {
   EXPECT_NEAR(found.summary.temperatures.at(0), 215 + kCelsiusZero, 1e-9);
   EXPECT_EQ(rehearse_command(found.request, "out"),
             "understudy rehearse " + program + " --machine hexapod --macros " + macros + " --out out");
+}
+
+TEST_F(Inspect, WhatTheUserTellsComesAheadOfComments) {
+  const std::string program =
+      file("M83\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n; temperature = 215\n; nozzle_diameter = 0.6\n");
+  DialectRequest told;
+  told.nozzle_mm = 0.8;
+  told.layer_mm = 0.3;
+  told.temperature_c = 200;
+  EXPECT_EQ(
+      rehearse_command(inspect(program, "arm", {}, told).request, "p"),
+      "understudy rehearse " + program + " --machine arm --temperature 200 --nozzle 0.8 --layer 0.3 --out p");
+}
+
+TEST_F(Inspect, LinesThatCannotBeReadAreToldAndTheRestIsRead) {
+  const std::string program = file("M104 S200\nM83\nG0 X-5 Y0 Z0.3\nM106 S300\nG1 X5 E1 F600\n");
+  const Inspection found = inspect(program, "arm");
+  ASSERT_EQ(found.passed_over.size(), 1u);
+  EXPECT_EQ(found.passed_over[0].line, 4);
+  EXPECT_EQ(found.summary.prints, 1);
 }
 
 TEST_F(Inspect, WhatNeedsNothingIsRehearsedAsItIs) {

@@ -65,8 +65,19 @@ TEST_F(InputDigest, EveryInputCounts) {
       [](auto& r) { r.dialect.c_sign = -1; },
       [](auto& r) { r.dialect.coordinates = "machine"; },
       [](auto& r) { r.dialect.ignored = {"G29"}; },
-      [](auto& r) { r.dialect.macros = r.program; },
+      [&](auto& r) { r.dialect.macros = file("a.cfg", "[gcode_macro A]\ngcode: G28\n"); },
+      [&](auto& r) {
+        file("part.cfg", "[gcode_macro B]\ngcode: G28\n");
+        r.dialect.macros = file("b.cfg", "[gcode_macro A]\ngcode: G28\n[include part.cfg]\n");
+      },
+      [](auto& r) { r.dialect.nozzle_mm = 0.6; },
+      [](auto& r) { r.dialect.layer_mm = 0.3; },
       [](auto& r) { r.dialect.temperature_c = 200; },
+      [](auto& r) { r.dialect.strict = true; },
+      [](auto& r) { r.dialect.place_auto = true; },
+      [](auto& r) { r.dialect.turn_deg = 1e-9; },
+      [](auto& r) { r.dialect.spin_deg = 1e-9; },
+      [](auto& r) { r.home_axes = {1}; },
       [](auto& r) { r.surface.intended = "bottle"; },
       [](auto& r) { r.surface.profile_mm[3] = 2; },
       [](auto& r) {
@@ -99,6 +110,14 @@ TEST_F(InputDigest, NamesAndOutputsDoNotCount) {
 TEST_F(InputDigest, WhatCannotBeReadIsAnError) {
   request.program = (folder / "none.gcode").string();
   EXPECT_THROW(inputs_sha256(request), InputError);
+}
+
+TEST_F(InputDigest, BytesOfIncludedMacrosCount) {
+  file("part.cfg", "[gcode_macro B]\ngcode: G28\n");
+  request.dialect.macros = file("b.cfg", "[include part.cfg]\n");
+  const std::string before = inputs_sha256(request);
+  file("part.cfg", "[gcode_macro B]\ngcode: G29\n");
+  EXPECT_NE(inputs_sha256(request), before);
 }
 
 }  // namespace

@@ -159,7 +159,8 @@ TEST(GcodeDialect, FlowScalesFilamentFromThereOn) {
   EXPECT_NEAR(steps[0].filament, 1e-3, kRounding);
   EXPECT_NEAR(steps[1].filament, 0.95e-3, kRounding);
   EXPECT_NEAR(steps[2].filament, 1e-3, kRounding);
-  const auto kept = parse("M83\nM221 S50\nM221\nM221 S; push\nM221 X0 Y0 Z0\nT1000\nG1 X1 E2 F60\n");
+  const auto kept =
+      parse("M83\nM221 S50\nM221\nM221 S; push\nM221 X0 Y0 Z0\nM221 R; pop\nT1000\nG1 X1 E2 F60\n");
   EXPECT_NEAR(kept.at(0).filament, 1e-3, kRounding) << "nothing but S sets it";
   EXPECT_THAT(rejection("M221 S0"), HasSubstr("outside 1 to 1000 %"));
 }

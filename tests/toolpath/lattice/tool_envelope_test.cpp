@@ -60,5 +60,50 @@ TEST(ToolEnvelope, SweepsAgreeWithSampling) {
   }
 }
 
+TEST(ToolEnvelope, LiftedItHoldsWhatItSweepsOnItsWayOut) {
+  Random random(11, "lifted");
+  const ToolEnvelope tool(tool_bodies()), lifted = tool.lifted();
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 p = 0.05 * uniform_vec3(random, 1) + Vec3(0, 0, 0.02);
+    double least = tool.distance(p);
+    for (int k = 1; k <= 2000; ++k) least = std::min(least, tool.distance(p - Vec3(0, 0, k * 0.1e-3)));
+    if (least > 0)
+      EXPECT_NEAR(lifted.distance(p), least, 0.05e-3) << trial;
+    else
+      EXPECT_LE(lifted.distance(p), 0) << trial;
+  }
+}
+
+TEST(ToolEnvelope, PressCountsToTheNozzleAlone) {
+  const ToolEnvelope plain(tool_bodies()), pressing(tool_bodies(), 0.1e-3);
+  EXPECT_NEAR(pressing.distance(Vec3(0, 0, -2e-3)), 2.1e-3, 1e-12);
+  EXPECT_NEAR(pressing.distance(Vec3(0, 20e-3, 17e-3)), plain.distance(Vec3(0, 20e-3, 17e-3)), 1e-15);
+}
+
+TEST(ToolEnvelope, TurnsAgreeWithSampling) {
+  Random random(13, "turns");
+  const ToolEnvelope tool(tool_bodies());
+  int clear = 0, near = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 from = uniform_vec3(random, 1).normalized(), to = uniform_vec3(random, 1).normalized();
+    const StrutBody strut{0.08 * uniform_vec3(random, 1), 0.08 * uniform_vec3(random, 1), 0.24e-3};
+    double sampled = 1;
+    for (int k = 0; k <= 200; ++k) {
+      const Quat turned = Quat::Identity().slerp(k / 200.0, Quat::FromTwoVectors(from, to));
+      const Mat3 R_TW = shortest_arc_from_z(turned * from).toRotationMatrix().transpose();
+      for (int i = 0; i <= 100; ++i)
+        sampled = std::min(
+            sampled, tool.distance(R_TW * (strut.from + (strut.to - strut.from) * i / 100)) - strut.radius);
+    }
+    const bool clears = tool.clears_turn(strut, Vec3::Zero(), from, to, 0.1e-3);
+    EXPECT_TRUE(!clears || sampled > 0.1e-3) << trial << ": " << sampled;
+    // A degree of the far end, 99 mm from the tip, is 1.7 mm; 0.8 mm of the strut between two samples.
+    EXPECT_TRUE(clears || sampled < 0.1e-3 + 2 * 1.75e-3 + 0.8e-3) << trial << ": " << sampled;
+    (clears ? clear : near)++;
+  }
+  EXPECT_GT(clear, 20);
+  EXPECT_GT(near, 20);
+}
+
 }  // namespace
 }  // namespace understudy::toolpath

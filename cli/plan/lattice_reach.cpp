@@ -1,0 +1,89 @@
+#include "cli/plan/lattice_reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "control/motion/path_kinematics.h"
+#include "core/units.h"
+
+namespace understudy::cli {
+namespace {
+
+using kinematics::SolveStatus;
+
+struct Spacing {
+  double path, turn;  // [m], [rad]
+};
+constexpr Spacing kFine{2e-3, 2 * kDegree}, kCoarse{8e-3, 6 * kDegree};
+
+class LatticeReach {
+ public:
+  explicit LatticeReach(const machine::MachineDescription& machine)
+      : mechanism_(machine.make_mechanism()),
+        X_BW_(machine.X_WB.inverse()),
+        axes_(static_cast<std::size_t>(mechanism_->axis_count())) {}
+
+  std::string walk(const std::vector<Pose>& way, bool fine) const {
+    const Spacing spacing = fine ? kFine : kCoarse;
+    kinematics::AxisVector storage{};
+    const std::span<double> axes = std::span(storage).first(axes_);
+    if (std::string why = step_to(way.front(), {}, axes); !why.empty()) return why;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      const double path = (way[i].translation() - way[i - 1].translation()).norm(),
+                   turn = angle_between(way[i - 1].linear(), way[i].linear());
+      const int parts =
+          std::max(1, static_cast<int>(std::ceil(std::max(path / spacing.path, turn / spacing.turn))));
+      for (int k = 1; k <= parts; ++k) {
+        const kinematics::AxisVector before = storage;
+        if (std::string why = step_to(interpolate(way[i - 1], way[i], double(k) / parts), before, axes);
+            !why.empty())
+          return why;
+        if (std::string why = leap(before, storage); !why.empty()) return why;
+      }
+    }
+    return "";
+  }
+
+ private:
+  std::string step_to(const Pose& X_WT, std::span<const double> near, std::span<double> axes) const {
+    const Pose X_BT = X_BW_ * X_WT;
+    const SolveStatus status = mechanism_->inverse(X_BT, near.first(std::min(near.size(), axes_)), axes);
+    std::vector<kinematics::LimitViolation> violations;
+    mechanism_->check(X_BT,
+                      status == SolveStatus::ok ? std::span<const double>(axes) : std::span<const double>(),
+                      violations);
+    if (!violations.empty()) return to_string(violations.front());
+    return status == SolveStatus::ok ? "" : std::string("the pose is ") + to_string(status);
+  }
+
+  // Machines that leave the spin free turn an axis at rest where they would have to leap.
+  std::string leap(const kinematics::AxisVector& before, const kinematics::AxisVector& after) const {
+    if (!mechanism_->follows_spin()) return "";
+    for (std::size_t i = 0; i < axes_; ++i) {
+      const int axis = static_cast<int>(i);
+      const double turn = std::abs(after[i] - before[i]);
+      if (mechanism_->axis_is_angle(axis) && turn > control::kMaxAxisJump)
+        return fmt::format("axis {} would leap by {:.0f} deg: the way passes too near a singular pose",
+                           mechanism_->axis_name(axis), to_deg(turn));
+    }
+    return "";
+  }
+
+  std::shared_ptr<const kinematics::Mechanism> mechanism_;
+  Pose X_BW_;
+  std::size_t axes_;
+};
+
+}  // namespace
+
+toolpath::WayCheck lattice_reach(const machine::MachineDescription& machine) {
+  return [reach = LatticeReach(machine)](const std::vector<Pose>& way, bool fine) {
+    return reach.walk(way, fine);
+  };
+}
+
+}  // namespace understudy::cli

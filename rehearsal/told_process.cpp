@@ -1,0 +1,64 @@
+#include "rehearsal/told_process.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/units.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+constexpr double kSameNozzle = 0.05;  // of the bore; sizes differ by a quarter
+constexpr double kSameLayer = 0.3;    // of its height, which lines side by side make uneven
+constexpr double kThickest = 10;      // [mm], of layers that comments tell
+
+Finding warning(double value, double limit, std::string message, const char* about) {
+  return {"program", Severity::warning, 0, 0, value, limit, "mm", std::move(message), 0, about};
+}
+
+}  // namespace
+
+std::optional<double> fact_number(const std::map<std::string, std::string>& facts, const std::string& key) {
+  const auto found = facts.find(key);
+  if (found == facts.end()) return std::nullopt;
+  double value = 0;
+  const std::string& text = found->second;
+  return std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc() &&
+                 std::isfinite(value)
+             ? std::optional(value)
+             : std::nullopt;
+}
+
+void mount_nozzle(machine::Tool& tool, double bore) {
+  tool.flat_diameter += bore - tool.nozzle_diameter;
+  tool.nozzle_diameter = bore;
+}
+
+double told_layer(const DialectRequest& dialect, const std::map<std::string, std::string>& facts) {
+  if (dialect.layer_mm) return from_mm(*dialect.layer_mm);
+  const auto said = fact_number(facts, "layer_height");
+  return said && *said > 0 && *said < kThickest ? from_mm(*said) : 0;
+}
+
+std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,
+                                      const std::map<std::string, std::string>& facts, double typical_layer) {
+  std::vector<Finding> findings;
+  const double bore = to_mm(tool.nozzle_diameter);
+  const auto sliced = fact_number(facts, "nozzle_diameter");
+  if (tool.prints() && sliced && *sliced > 0 && std::abs(*sliced - bore) > kSameNozzle * bore)
+    findings.push_back(
+        warning(*sliced, bore,
+                fmt::format("sliced for a nozzle of {:g} mm, rehearsed with one of {:g} mm", *sliced, bore),
+                kOtherNozzle));
+  const double layer = to_mm(typical_layer);
+  if (dialect.layer_mm && layer > 0 && std::abs(layer - *dialect.layer_mm) > kSameLayer * *dialect.layer_mm)
+    findings.push_back(warning(layer, *dialect.layer_mm,
+                               fmt::format("most of the path lies {:.3f} mm over what is below, not {:g} mm",
+                                           layer, *dialect.layer_mm),
+                               kOtherLayer));
+  return findings;
+}
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,29 @@
+// Nozzle and layers as an option or the slicer's comments tell them.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "machine/description.h"
+#include "rehearsal/findings/finding.h"
+#include "rehearsal/request/request.h"
+
+namespace understudy::rehearsal {
+
+/// The number that a slicer's comment begins with, of toolpath::slicer_facts(); several extruders are a list.
+std::optional<double> fact_number(const std::map<std::string, std::string>& facts, const std::string& key);
+
+/// A nozzle of this bore [m] takes the place of the described one: the flat around it is as wide as before.
+void mount_nozzle(machine::Tool& tool, double bore);
+
+/// [m], of the request or the comments; 0: neither tells.
+double told_layer(const DialectRequest& dialect, const std::map<std::string, std::string>& facts);
+
+/// Warnings: the slicer worked for another nozzle than the one that is there; the request's layer is not the
+/// one [m] that most of the path has (0: none).
+std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,
+                                      const std::map<std::string, std::string>& facts, double typical_layer);
+
+}  // namespace understudy::rehearsal

@@ -1,0 +1,16 @@
+// Bytes as a program in RAPID.
+#include "tests/fuzz/reader.h"
+#include "tests/fuzz/robot_programs.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace understudy;
+  const std::string text(fuzz::text_of(data, size));
+  std::vector<toolpath::UnknownWordCount> unknown;
+  toolpath::RobotFacts facts;
+  for (const toolpath::RobotOptions& options : fuzz::robot_readings(unknown, facts)) {
+    toolpath::Program program;
+    if (fuzz::accepts(size, "a.mod", [&] { program = toolpath::parse_rapid(text, "a.mod", options); }))
+      fuzz::check_robot_program(program, options);
+  }
+  return 0;
+}

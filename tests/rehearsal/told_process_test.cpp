@@ -1,0 +1,58 @@
+#include "rehearsal/told_process.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+using Facts = std::map<std::string, std::string>;
+
+machine::Tool nozzle_of(double bore_mm) {
+  machine::Tool tool;
+  tool.nozzle_diameter = from_mm(bore_mm);
+  tool.flat_diameter = from_mm(bore_mm + 0.6);
+  tool.filament_diameter = 1.75e-3;
+  return tool;
+}
+
+TEST(ToldProcess, ANozzleThatIsMountedKeepsTheWidthOfTheFlatRing) {
+  machine::Tool tool = nozzle_of(0.4);
+  mount_nozzle(tool, 0.8e-3);
+  EXPECT_DOUBLE_EQ(tool.nozzle_diameter, 0.8e-3);
+  EXPECT_NEAR(tool.flat_diameter, 1.4e-3, 1e-15);
+}
+
+TEST(ToldProcess, AnotherNozzleThanTheSlicersIsAWarning) {
+  const auto warnings = process_warnings({}, nozzle_of(0.4), {{"nozzle_diameter", "0.8,0.8"}}, 0);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].severity, Severity::warning);
+  EXPECT_EQ(warnings[0].value, 0.8);
+  EXPECT_NEAR(warnings[0].limit, 0.4, 1e-12);
+  EXPECT_THAT(warnings[0].message, HasSubstr("sliced for a nozzle of 0.8 mm, rehearsed with one of 0.4 mm"));
+  EXPECT_THAT(process_warnings({}, nozzle_of(0.4), {{"nozzle_diameter", "0.4"}}, 0), IsEmpty());
+  EXPECT_THAT(process_warnings({}, nozzle_of(0.4), {{"nozzle_diameter", "wide"}}, 0), IsEmpty());
+  EXPECT_THAT(process_warnings({}, nozzle_of(0.4), {}, 0), IsEmpty());
+}
+
+TEST(ToldProcess, TheLayerIsTheRequestsElseTheComments) {
+  DialectRequest dialect;
+  EXPECT_EQ(told_layer(dialect, {}), 0);
+  EXPECT_EQ(told_layer(dialect, {{"layer_height", "-1"}}), 0);
+  EXPECT_NEAR(told_layer(dialect, {{"layer_height", "0.28"}}), 0.28e-3, 1e-12);
+  dialect.layer_mm = 0.3;
+  EXPECT_NEAR(told_layer(dialect, {{"layer_height", "0.28"}}), 0.3e-3, 1e-12);
+  EXPECT_THAT(process_warnings(dialect, nozzle_of(0.4), {}, 0.31e-3), IsEmpty());
+  const auto warnings = process_warnings(dialect, nozzle_of(0.4), {}, 0.45e-3);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0].message,
+              HasSubstr("most of the path lies 0.450 mm over what is below, not 0.3 mm"));
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal
