@@ -30,7 +30,7 @@ struct KrlUnknown {
   std::string name;
 };
 
-/// Numbers (of BOOL 1 and 0), structures, #NAMES and texts.
+/// Numbers (of BOOL 1 and 0), structures, words of enumerations, and texts.
 using KrlValue = std::variant<KrlUnknown, double, KrlStructure, std::string>;
 
 class KrlVariables {

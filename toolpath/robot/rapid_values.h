@@ -37,7 +37,7 @@ struct RapidValue {
 /// What follows the name of an instruction or function.
 struct RapidArguments {
   std::vector<RapidValue> positional;
-  std::vector<std::pair<std::string, RapidValue>> optional;  ///< \NAME:=value; without a value unknown
+  std::vector<std::pair<std::string, RapidValue>> optional;  ///< named, after a backslash; no value: unknown
 
   const RapidValue* find(std::string_view name) const;
 };

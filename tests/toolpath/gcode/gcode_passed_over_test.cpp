@@ -131,7 +131,8 @@ TEST(LinesPassedOver, FeedAndMotionOfTheLineGoOn) {
 }
 
 TEST(LinesPassedOver, TemperaturesFansAndDwellsAreAsIfTheyWereNotThere) {
-  const Read bad = read("M104 S200\nM109 S2.2.0\nM106 S300\nG4 S-1\nM104\n" + std::string("G1 X10 E1 F600\n"));
+  const Read bad =
+      read("M104 S200\nM109 S2.2.0\nM106 S300\nG4 S-1\nM104\n" + std::string("G1 X10 E1 F600\n"));
   EXPECT_THAT(bad.steps, ElementsAre(StartsWith("1: temperature"), "6: print 10,0,0 e1"));
   EXPECT_EQ(bad.lines.size(), 4u);
 }
