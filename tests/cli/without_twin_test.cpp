@@ -19,13 +19,14 @@ const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 TEST(WithoutTwin, SaysWhatItLeavesOut) {
   EXPECT_THAT(
       understudy("--help").out,
-      AllOf(HasSubstr("without the twin: it leaves out rehearse, inspect, pose, verify, register, scenario"),
+      AllOf(HasSubstr(
+                "without the twin: it leaves out rehearse, inspect, pose, place, verify, register, scenario"),
             HasSubstr("calibrate")));
   const Outcome doctor = understudy("doctor");
   EXPECT_EQ(doctor.status, 0) << doctor.err;
   EXPECT_THAT(doctor.out, AllOf(HasSubstr("left out of this build"), HasSubstr("benchmark")));
-  for (const char* word : {"rehearse x.gcode", "inspect x.gcode", "pose X0", "verify x", "register",
-                           "benchmark calibration", "sample-poses -o x.csv", "render scene"}) {
+  for (const char* word : {"rehearse x.gcode", "inspect x.gcode", "pose X0", "place x.gcode", "verify x",
+                           "register", "benchmark calibration", "sample-poses -o x.csv", "render scene"}) {
     const Outcome refused = understudy(word);
     EXPECT_EQ(refused.status, 2) << word;
     EXPECT_THAT(refused.err, HasSubstr("this build is without the twin: ")) << word;
