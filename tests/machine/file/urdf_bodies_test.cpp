@@ -57,8 +57,8 @@ TEST(UrdfBodies, PackagesAreLookedForBesideTheFileInTheKeysFolderAndAbove) {
                                        {"meshes/fore.obj", "", ""},
                                        {"lib/arms/meshes/fore.obj", "  urdf:", "  packages: lib\n  urdf:"}}) {
     const TemporaryFolder folder;
-    EXPECT_EQ(complaint([&] { load_machine(write_arm_with_shapes(folder.path(), mesh, from, to)); }), "none")
-        << mesh;
+    const std::string file = write_arm_with_shapes(folder.path(), mesh, from, to);
+    EXPECT_EQ(complaint([&] { load_machine(file); }), "none") << mesh;
   }
   const TemporaryFolder folder;  // a ROS package: urdf/ beside meshes/
   fs::create_directories(folder / "arms/meshes");
