@@ -59,10 +59,9 @@ ExpandedXacro::ExpandedXacro(const fs::path& file, const std::vector<std::string
   if (std::error_code error; !fs::is_regular_file(file, error))
     throw InputError({file.string(), 0, 0}, "is no file");
   if (!is_installed())
-    throw InputError(
-        {file.string(), 0, 0},
-        "is a xacro file, and xacro is not installed: install it (`apt install xacro`, or with ROS), or "
-        "expand the file where it is (`xacro FILE -o arm.urdf`)");
+    throw InputError({file.string(), 0, 0},
+                     "is a xacro file, and xacro is not installed: install it, which ROS brings, or "
+                     "expand the file where it is (`xacro FILE -o arm.urdf`)");
   const std::string urdf = expand(file, arguments);
   std::string name = (fs::temp_directory_path() / "understudy-xacro-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include "report/picture/picture_text.h"
 #include "report/picture/workspace_drawing.h"
 
 namespace understudy::report {
@@ -14,20 +15,6 @@ namespace {
 using rehearsal::PlacementMap;
 
 constexpr int kWidth = 1000, kHeight = 940, kLeft = 120, kTop = 130, kSide = 720;
-const cv::Scalar kInk(40, 36, 32), kFaint(120, 116, 112), kPaper(255, 255, 255);
-
-enum class Align { left, centre, right };
-
-/// `at` is on the base line. OpenCV's strokes know ASCII only.
-void write(cv::Mat& canvas, const std::string& text, cv::Point at, double size,
-           const cv::Scalar& colour = kInk, Align align = Align::left) {
-  constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-  int base = 0;
-  const int width = cv::getTextSize(text, kFont, size, 1, &base).width;
-  if (align == Align::centre) at.x -= width / 2;
-  if (align == Align::right) at.x -= width;
-  cv::putText(canvas, text, at, kFont, size, colour, 1, cv::LINE_AA);
-}
 
 /// From pale to strong red: a little and far beyond a limit.
 Rgb broken_colour(double margin) {

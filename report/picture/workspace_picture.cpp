@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/units.h"
+#include "report/picture/picture_text.h"
 #include "report/picture/workspace_drawing.h"
 
 namespace understudy::report {
@@ -20,23 +21,8 @@ constexpr int kWidth = 1600, kHeight = 1186;
 constexpr int kViewTop = 96, kViewWidth = 900, kViewHeight = 660;
 constexpr int kSlicesTop = 786, kSlice = 300, kSlicePitch = 394, kSliceLeft = 76;
 constexpr int kLabelWidth = 170;
-const cv::Scalar kInk(40, 36, 32), kFaint(120, 116, 112), kPaper(255, 255, 255);
 
 cv::Scalar bgr(const Rgb& colour) { return {double(colour[2]), double(colour[1]), double(colour[0])}; }
-
-enum class Align { left, centre, right };
-
-/// `at` is on the base line. OpenCV's strokes know ASCII only.
-void write(cv::Mat& canvas, const std::string& text, cv::Point at, double size,
-           const cv::Scalar& colour = kInk, Align align = Align::left) {
-  constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-  const int thickness = size > 0.8 ? 2 : 1;
-  int base = 0;
-  const int width = cv::getTextSize(text, kFont, size, thickness, &base).width;
-  if (align == Align::centre) at.x -= width / 2;
-  if (align == Align::right) at.x -= width;
-  cv::putText(canvas, text, at, kFont, size, colour, thickness, cv::LINE_AA);
-}
 
 Rgb colour_of(const Workspace& w, int x, int y, int z) {
   const std::size_t i = w.index(x, y, z);

@@ -131,7 +131,8 @@ TEST_F(FakeXacro, WhereThereIsNoneTheErrorSaysWhatToInstall) {
   ::setenv("PATH", "/nowhere", 1);
   const Outcome made = make();
   expect_one_line(made);
-  EXPECT_THAT(made.err, AllOf(HasSubstr("xacro is not installed"), HasSubstr("apt install xacro")));
+  EXPECT_THAT(made.err, AllOf(HasSubstr("xacro is not installed"),
+                              HasSubstr("which ROS brings, or expand the file where it is")));
 }
 
 }  // namespace

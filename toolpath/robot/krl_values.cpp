@@ -103,23 +103,13 @@ KrlValue frame(Scanner& scanner, const KrlVariables& variables) {
 }
 
 KrlValue product(Scanner& scanner, const KrlVariables& variables) {
-  KrlValue value = frame(scanner, variables);
-  while (scanner.peek() == '*' || scanner.peek() == '/') {
-    const char operation = scanner.take('*') ? '*' : '/';
-    if (operation == '/') scanner.expect('/');
-    value = calculated(operation, value, frame(scanner, variables));
-  }
-  return value;
+  return scan_row(
+      scanner, "*/", [&] { return frame(scanner, variables); }, calculated);
 }
 
 KrlValue sum(Scanner& scanner, const KrlVariables& variables) {
-  KrlValue value = product(scanner, variables);
-  while (scanner.peek() == '+' || scanner.peek() == '-') {
-    const char operation = scanner.take('+') ? '+' : '-';
-    if (operation == '-') scanner.expect('-');
-    value = calculated(operation, value, product(scanner, variables));
-  }
-  return value;
+  return scan_row(
+      scanner, "+-", [&] { return product(scanner, variables); }, calculated);
 }
 
 }  // namespace

@@ -148,23 +148,13 @@ RapidValue primary(Scanner& scanner, const RapidVariables& variables) {
 }
 
 RapidValue product(Scanner& scanner, const RapidVariables& variables) {
-  RapidValue value = primary(scanner, variables);
-  while (scanner.peek() == '*' || scanner.peek() == '/') {
-    const char operation = scanner.take('*') ? '*' : '/';
-    if (operation == '/') scanner.expect('/');
-    value = calculated(operation, value, primary(scanner, variables));
-  }
-  return value;
+  return scan_row(
+      scanner, "*/", [&] { return primary(scanner, variables); }, calculated);
 }
 
 RapidValue sum(Scanner& scanner, const RapidVariables& variables) {
-  RapidValue value = product(scanner, variables);
-  while (scanner.peek() == '+' || scanner.peek() == '-') {
-    const char operation = scanner.take('+') ? '+' : '-';
-    if (operation == '-') scanner.expect('-');
-    value = calculated(operation, value, product(scanner, variables));
-  }
-  return value;
+  return scan_row(
+      scanner, "+-", [&] { return product(scanner, variables); }, calculated);
 }
 
 }  // namespace

@@ -59,4 +59,18 @@ class StatementScanner {
   std::string spelled_;
 };
 
+/// Operands of equal rank between `operations`, from the left: `operand()` reads one, `calculate(operation,
+/// a, b)` joins two.
+template <class Operand, class Calculate>
+auto scan_row(StatementScanner& scanner, std::string_view operations, const Operand& operand,
+              const Calculate& calculate) {
+  auto value = operand();
+  for (std::size_t i = operations.find(scanner.peek()); i != std::string_view::npos;
+       i = operations.find(scanner.peek())) {
+    scanner.expect(operations[i]);
+    value = calculate(operations[i], value, operand());
+  }
+  return value;
+}
+
 }  // namespace understudy::toolpath
