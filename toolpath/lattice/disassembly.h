@@ -29,8 +29,11 @@ struct DisassemblyRules {
 
 enum class DisassemblyEnd {
   found,
-  blocked,   ///< proven: of what is left none can come off, whatever else were supported
-  no_order,  ///< proven by trying every order
+  // Both proven where taking struts away never blocks another. Struts that begin on top of a grounded one,
+  // and travel that was not found, which is tried again only once the highest strut is gone, are rare
+  // exceptions.
+  blocked,   ///< of what is left none can come off, whatever else were supported
+  no_order,  ///< every order was tried
   out_of_steps,
   out_of_time,
 };
