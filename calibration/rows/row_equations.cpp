@@ -22,6 +22,9 @@ class RowWriter {
   void distance(const MeasurementRow& row, std::size_t anchor, Index first);
   void point(std::size_t place, Index first);
   void plane(std::size_t place, Index first);
+  void put_machine(Index first, const MatrixXd& block) {
+    if (block.cols() > 0) out_.machine.middleRows(first, block.rows()) = block;
+  }
   /// Three numbers, or their product with `by`, of G's position.
   void move_target(const MatrixXd& by, Index first);
   void put(Index first, Index column, const MatrixXd& block) {
@@ -64,7 +67,7 @@ void RowWriter::write(const MeasurementRow& row, const SurroundingsLayout::Use& 
 }
 
 void RowWriter::move_target(const MatrixXd& by, Index first) {
-  out_.machine.middleRows(first, by.rows()) = by * tip_;
+  put_machine(first, by * tip_);
   put(first, target_->position, by * X_ST_.linear());
 }
 
@@ -84,7 +87,7 @@ void RowWriter::measured_in_frame(const MeasurementRow& row, const SurroundingsL
   }
   if (row.kind == RowKind::position) return;
   out_.error.segment<3>(first) = error.tail<3>();
-  out_.machine.middleRows(first, 3) = R_MS * turn_;
+  put_machine(first, R_MS * turn_);
   put(first, target_->turn, X_MG.linear());
   put(first, layout_.frames[frame].turn, Mat3::Identity());
 }

@@ -72,6 +72,15 @@ RowFit RowLikelihood::fit(const RowState& start, const AddedNoise& noise, bool m
   const VectorXd prior = prior_.head(machine);
   VectorXd by = VectorXd::Zero(unknowns);
   Linear at = linear(found.state, noise, machine_too);
+  if (unknowns == 0) {  // Eigen's reductions over no columns are undefined
+    found.settled = true;
+    found.covariance.resize(0, 0);
+    found.moved = by;
+    found.chi_square = at.e.squaredNorm();
+    found.error = at.error;
+    found.fitted = VectorXd::Zero(at.error.size());
+    return found;
+  }
   double cost = cost_of(at.e, by, prior), damping = 1e-6;
   VectorXd weight = VectorXd::Zero(unknowns);
   weight.head(machine) = prior.cwiseAbs2().cwiseInverse();

@@ -105,8 +105,8 @@ void whiten(const RowProblem& problem, const AddedNoise& added, RowEquations& eq
   for (std::size_t k = 0; k < problem.distances.size(); ++k) {
     const Index row = first.back() + static_cast<Index>(k);
     equations.error[row] /= problem.distances[k].sigma;
-    equations.machine.row(row) /= problem.distances[k].sigma;
-    equations.around.row(row) /= problem.distances[k].sigma;
+    if (equations.machine.cols() > 0) equations.machine.row(row) /= problem.distances[k].sigma;
+    if (equations.around.cols() > 0) equations.around.row(row) /= problem.distances[k].sigma;
   }
 }
 
