@@ -92,6 +92,12 @@ stage_clang() {
   changed_sources | scripts/affected_sources.py | scripts/clang_syntax.py build/clang
 }
 
+# Of one source: its findings, or how clang-tidy died.
+tidy_one='
+  lines=$(clang-tidy -p build/clang --quiet --extra-arg=-Wno-unknown-warning-option "--warnings-as-errors=*" "$1" 2>&1) && exit 0
+  status=$?
+  grep -E " (error|warning): " <<<"$lines" || echo "$PWD/$1: error: clang-tidy ended with status $status: ${lines%%$'\''\n'\''*}"'
+
 stage_tidy() {
   clang_commands
   local sources found
@@ -100,9 +106,7 @@ stage_tidy() {
     say "tidy: looks at $tidy_limit of ${#sources[@]} sources; ./check --all tidy looks at every one"
     sources=("${sources[@]:0:tidy_limit}")
   fi
-  found=$(printf '%s\n' "${sources[@]}" |
-          xargs -r -P "$(nproc)" -n 1 clang-tidy -p build/clang --quiet --warnings-as-errors='*' 2>/dev/null |
-          grep -E ' (error|warning): ' | sort -u || true)
+  found=$(printf '%s\n' "${sources[@]}" | xargs -r -P "$(nproc)" -n 1 bash -c "$tidy_one" tidy | sort -u)
   [ -z "$found" ] || { sed "s|^$PWD/|tidy: |" <<<"$found" >&2; return 1; }
   say "tidy: ${#sources[@]} sources, nothing found"
 }
