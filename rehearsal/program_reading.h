@@ -10,6 +10,7 @@
 #include "rehearsal/findings/finding.h"
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
+#include "toolpath/inspection/feature_types.h"
 
 namespace understudy::rehearsal {
 
@@ -22,6 +23,7 @@ struct ReadProgram {
   bool of_robot = false;                          ///< KRL or RAPID
   std::vector<toolpath::PassedOver> passed_over;  ///< none where the request is strict
   std::map<std::string, std::string> facts;       ///< of the slicer's comments (toolpath::slicer_facts)
+  toolpath::FeatureTypes features;                ///< of the slicer's comments
 };
 
 /// With the temperature that the request asks for ahead of it. Throws InputError as read_gcode() and

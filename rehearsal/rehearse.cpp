@@ -18,6 +18,7 @@
 #include "machine/fixture_file.h"
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings/accuracy_findings.h"
+#include "rehearsal/findings/feature_findings.h"
 #include "rehearsal/findings/findings.h"
 #include "rehearsal/findings/machine_findings.h"
 #include "rehearsal/findings/process_check.h"
@@ -68,6 +69,7 @@ struct Mended {
   std::vector<Finding> findings;
   std::vector<std::pair<int, int>> passed_over;  // lines
   std::map<std::string, std::string> facts;      // that the slicer's comments state
+  toolpath::FeatureTypes features;               // likewise
 };
 
 void read_into(const RehearsalRequest& request, TwinSetup& setup, Mended& mended) {
@@ -77,6 +79,7 @@ void read_into(const RehearsalRequest& request, TwinSetup& setup, Mended& mended
       read.of_robot ? robot_program_findings(setup.program, request.machine) : findings_of(read.passed_over);
   for (const auto& lines : read.passed_over) mended.passed_over.emplace_back(lines.line, lines.last_line);
   mended.facts = std::move(read.facts);
+  mended.features = std::move(read.features);
 }
 
 /// What cannot be fed is refused, or left out.
@@ -353,6 +356,7 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
   }
   if (record.placement && !record.placement->refused.empty())
     record.findings.push_back(no_place(*record.placement));
+  tell_features(mended.features, record.findings);
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
   if (request.keep_scene) record.scene = scene_of(setup, record.trace, printed);

@@ -1,5 +1,10 @@
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,6 +50,22 @@ void print_beads(const toolpath::ProgramSummary& summary) {
                to_mm(toolpath::bead_width(summary.area_p50, height)), to_mm(height));
   }
   fmt::print("\n");
+}
+
+/// By their share of the printed path.
+void print_features(const std::map<std::string, double>& lengths) {
+  if (lengths.empty()) return;
+  double total = 0;
+  std::vector<std::pair<double, std::string>> features;
+  for (const auto& [type, length] : lengths) {
+    total += length;
+    features.emplace_back(length, type);
+  }
+  std::sort(features.rbegin(), features.rend());
+  std::vector<std::string> words;
+  for (const auto& [length, type] : features)
+    words.push_back(fmt::format("{} {:.1f} %", type, total > 0 ? 100 * length / total : 0));
+  fmt::print("  features, by the slicer's comments: {}\n", fmt::join(words, ", "));
 }
 
 void print_process(const rehearsal::Inspection& found) {
@@ -118,6 +139,8 @@ int inspect(const std::string& program, const std::string& machine, const rehear
                word.lines == 1 ? "" : "s", word.first_line);
   for (const auto& line : found.passed_over)
     fmt::print("  line {} cannot be read, and is passed over: {}\n", line.line, line.why);
+  if (const std::string& letter = found.request.dialect.extruder_letter; !letter.empty())
+    fmt::print("  it has no E: {} feeds the filament, as it grows evenly along the path\n", letter);
   if (found.summary.printed)
     fmt::print("  prints {} moves from {} to {} mm, {:.1f} mm of filament\n", found.summary.prints,
                place(found.summary.printed->lower), place(found.summary.printed->upper),
@@ -132,6 +155,7 @@ int inspect(const std::string& program, const std::string& machine, const rehear
         to_mm(printed->lower.z()));
   print_layers(found.summary);
   print_beads(found.summary);
+  print_features(found.feature_lengths);
   print_process(found);
   if (found.summary.tilt_max > 0.5 * kDegree)
     fmt::print("  the tool leans by up to {:.1f} deg\n", to_deg(found.summary.tilt_max));

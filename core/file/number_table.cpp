@@ -7,14 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "core/text/trimmed.h"
+
 namespace understudy {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 using Cell = TextRow::Cell;
 
@@ -23,7 +19,8 @@ std::vector<Cell> cells_of(const std::string& line) {
   std::size_t at = 0;
   while (true) {
     const auto comma = line.find(',', at);
-    cells.push_back({trimmed(line.substr(at, comma == std::string::npos ? comma : comma - at)),
+    cells.push_back({std::string(trimmed(
+                         std::string_view(line).substr(at, comma == std::string::npos ? comma : comma - at))),
                      static_cast<int>(at) + 1});
     if (comma == std::string::npos) return cells;
     at = comma + 1;
@@ -65,7 +62,7 @@ bool read_text_row(std::istream& in, TextRow& row) {
   std::string line;
   while (std::getline(in, line)) {
     ++row.line;
-    const std::string text = trimmed(line);
+    const std::string text(trimmed(line));
     if (text.empty() || text[0] == '#') continue;
     row.cells = cells_of(line);
     return true;

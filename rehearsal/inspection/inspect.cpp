@@ -15,9 +15,11 @@
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "rehearsal/inspection/extruder_letter.h"
 #include "rehearsal/inspection/inspect_robot.h"
 #include "rehearsal/rotary_words.h"
 #include "rehearsal/told_process.h"
+#include "toolpath/inspection/feature_types.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -91,6 +93,7 @@ class Inspector {
     result_.slicer_facts = toolpath::slicer_facts(text_);
     if (const auto nozzle = fact_number(result_.slicer_facts, "nozzle_diameter"))
       result_.nozzle = from_mm(*nozzle);
+    find_extruder_letter();
     const std::string turning = turning_letters(text_, options_.extruder_letter);
     if (!all_among(turning, options_.rotary ? options_.rotary->letters : "")) read_for_others(turning);
     const bool known = result_.foreign_words.empty() || !result_.machines_with_words.empty();
@@ -104,6 +107,16 @@ class Inspector {
   }
 
  private:
+  void find_extruder_letter() {
+    const std::set<char> letters = letters_of(text_);
+    if (letters.contains(options_.extruder_letter) || !(letters.contains('A') || letters.contains('B')))
+      return;
+    const auto found = extruder_letter_of(text_, file_, options_, filament_diameter());
+    if (!found) return;
+    options_.extruder_letter = *found;
+    result_.request.dialect.extruder_letter = *found;
+  }
+
   Vec3 start_W() const { return options_.X_WT_home.translation(); }
 
   /// A ready machine that has these words takes the place of the one that does not.
@@ -151,8 +164,9 @@ class Inspector {
   }
 
   void summarise_as(const toolpath::GcodeOptions& options) {
-    result_.summary =
-        toolpath::summarise(toolpath::parse_gcode(text_, file_, options), start_W(), filament_diameter());
+    const toolpath::Program program = toolpath::parse_gcode(text_, file_, options);
+    result_.summary = toolpath::summarise(program, start_W(), filament_diameter());
+    result_.feature_lengths = toolpath::feature_lengths(program, toolpath::FeatureTypes(text_), start_W());
   }
 
   double filament_diameter() const {
@@ -227,6 +241,7 @@ std::string rehearse_command(const RehearsalRequest& request, const std::string&
   if (!dialect.coordinates.empty()) command += " --coordinates " + dialect.coordinates;
   if (dialect.b_sign < 0) command += " --b-sign -1";
   if (dialect.c_sign < 0) command += " --c-sign -1";
+  if (!dialect.extruder_letter.empty()) command += " --extruder-letter " + dialect.extruder_letter;
   if (!dialect.ignored.empty())
     command += " --ignore " + quoted(fmt::format("{}", fmt::join(dialect.ignored, ",")));
   if (!dialect.macros.empty()) command += " --macros " + dialect.macros;

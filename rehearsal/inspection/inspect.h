@@ -21,6 +21,7 @@ struct Inspection {
   std::vector<toolpath::UnknownWordCount> unknown;  ///< their lines are passed over here
   std::vector<toolpath::PassedOver> passed_over;    ///< lines that cannot be read
   std::map<std::string, std::string> slicer_facts;  ///< from comments
+  std::map<std::string, double> feature_lengths;    ///< [m] printed, by the types that comments name
   toolpath::ProgramSummary summary;                 ///< under the first of `readings`, if there are any
   std::vector<RotaryReading> readings;              ///< the most likely first; none without rotary words
   std::string rotary_letters;                       ///< that `readings` are about

@@ -9,6 +9,7 @@
 #include "core/file/files_named.h"
 #include "core/file/outside.h"
 #include "core/file/read_file.h"
+#include "core/text/trimmed.h"
 #include "toolpath/gcode/gcode_macro_text.h"
 #include "toolpath/gcode/gcode_macros.h"
 

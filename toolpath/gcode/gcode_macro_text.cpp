@@ -15,12 +15,6 @@ std::string upper(std::string_view text) {
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 std::string shown(std::string_view text) {
   constexpr std::size_t kShown = 60;
   std::string plain(text.substr(0, kShown));

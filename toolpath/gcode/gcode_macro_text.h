@@ -9,7 +9,6 @@ namespace understudy::toolpath::macro_text {
 std::string upper(std::string_view text);
 bool is_blank(char c);
 bool is_name(char c);  ///< letters, digits and _
-std::string_view trimmed(std::string_view text);
 /// For messages: 60 characters at most, all of them printable.
 std::string shown(std::string_view text);
 

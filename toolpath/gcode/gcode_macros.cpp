@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text/trimmed.h"
 #include "toolpath/gcode/gcode_macro_text.h"
 
 namespace understudy::toolpath {

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <iterator>
 
+#include "core/text/trimmed.h"
+
 namespace understudy::toolpath {
 namespace {
 
@@ -112,11 +114,6 @@ constexpr std::string_view kWordsWithoutEffect[] = {"EXCLUDE_OBJECT",       "SET
 char upper(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-
-std::string_view trimmed(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t");
-  return first == std::string_view::npos ? "" : line.substr(first, line.find_last_not_of(" \t") + 1 - first);
-}
 
 /// A line number says nothing.
 std::string_view without_number(std::string_view line) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/text/trimmed.h"
 #include "core/units.h"
 
 namespace understudy::toolpath {
@@ -94,12 +95,6 @@ class Summary {
   std::map<std::int64_t, double> heights_;        // path at each, in steps of kSameHeight
   std::vector<std::pair<double, double>> areas_;  // with their lengths
 };
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string_view::npos ? ""
-                                         : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
-}
 
 }  // namespace
 

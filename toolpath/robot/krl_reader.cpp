@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/digest.h"
+#include "core/text/trimmed.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -30,9 +31,7 @@ std::string_view statement_of(std::string_view line) {
       break;
     }
   }
-  const std::size_t first = line.find_first_not_of(" \t\r");
-  return first == std::string_view::npos ? ""
-                                         : line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
+  return trimmed(line);
 }
 
 std::vector<std::string_view> statements_of(std::string_view text, const std::string& file) {

@@ -46,6 +46,24 @@ TEST_F(Inspect, AProgramOfAnotherTablesCornerIsPutOnThisOne) {
           "--out out");
 }
 
+TEST_F(Inspect, FilamentOnALetterOfItsOwnStaysInTheCommand) {
+  std::string program = "G21\nG90\nG1 X0 Y0 Z0.2 F1800\n";
+  for (int i = 1; i <= 16; ++i) program += fmt::format("G1 X{} A{:.3f}\n", 20 * (i % 2), 0.8 * i);
+  const Inspection found = inspect(file(program), "corexy");
+  EXPECT_TRUE(found.foreign_words.empty());
+  EXPECT_EQ(found.summary.prints, 16);
+  EXPECT_THAT(rehearse_command(found.request, "out"), HasSubstr(" --extruder-letter A "));
+  EXPECT_EQ(inspect(file("G1 E1 F60\n" + program), "corexy").request.dialect.extruder_letter, "");
+}
+
+TEST_F(Inspect, FeaturesOfCommentsAreMeasured) {
+  const Inspection found = inspect(
+      file("M83\nG0 X-5 Y0 Z0.3\n;TYPE:Skirt\nG1 X5 E1 F600\n;TYPE:Perimeter\nG1 Y30 E1\n"), "hexapod");
+  ASSERT_EQ(found.feature_lengths.size(), 2u);
+  EXPECT_NEAR(found.feature_lengths.at("Skirt"), 10e-3, 1e-12);
+  EXPECT_NEAR(found.feature_lengths.at("Perimeter"), 30e-3, 1e-12);
+}
+
 TEST_F(Inspect, MacrosAreReadAndStayInTheCommand) {
   const std::string program = file("M83\nSTART_PRINT T=215\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n");
   const std::string macros = (folder / "printer.cfg").string();

@@ -1,0 +1,66 @@
+#include "toolpath/inspection/feature_types.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "core/text/trimmed.h"
+
+namespace understudy::toolpath {
+namespace {
+
+std::string_view after(std::string_view comment, std::string_view key) {
+  return comment.starts_with(key) ? trimmed(comment.substr(key.size())) : "";
+}
+
+/// Empty where the comment names none.
+std::string_view type_of(std::string_view comment) {
+  for (const char* key : {"TYPE:", "FEATURE:", "feature "})
+    if (const auto type = after(comment, key); !type.empty()) return type;
+  constexpr std::string_view kKisslicerEnd = " Path'";
+  const std::size_t end = comment.find(kKisslicerEnd);
+  return comment.starts_with('\'') && end != std::string_view::npos ? comment.substr(1, end - 1) : "";
+}
+
+}  // namespace
+
+FeatureTypes::FeatureTypes(std::string_view text) {
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view words = trimmed(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!words.starts_with(';')) continue;
+    const std::string_view type = type_of(trimmed(words.substr(1)));
+    if (!type.empty() && (from_.empty() || from_.back().second != type)) from_.emplace_back(line, type);
+  }
+}
+
+std::string_view FeatureTypes::at(int line) const {
+  const auto next = std::upper_bound(from_.begin(), from_.end(), line,
+                                     [](int l, const auto& from) { return l < from.first; });
+  return next == from_.begin() ? std::string_view() : std::string_view(std::prev(next)->second);
+}
+
+bool is_beside_part(std::string_view type) {
+  std::string lower;
+  for (const char c : type) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  // "Custom" is PrusaSlicer's word for the start and end blocks of a printer, which draw its purge line.
+  constexpr std::array kWords{"skirt", "brim", "custom", "wipe tower", "prime", "purge", "ooze shield"};
+  return std::ranges::any_of(kWords, [&](const char* word) { return lower.find(word) != std::string::npos; });
+}
+
+std::map<std::string, double> feature_lengths(const Program& program, const FeatureTypes& types,
+                                              const Vec3& start_W) {
+  std::map<std::string, double> lengths;
+  Vec3 tip = start_W;
+  for (const Step& step : program.steps) {
+    if (!moves(step)) continue;
+    const Vec3 end = step.X_WT.translation();
+    const std::string_view type = types.at(step.line);
+    if (step.kind == StepKind::print && !type.empty()) lengths[std::string(type)] += (end - tip).norm();
+    tip = end;
+  }
+  return lengths;
+}
+
+}  // namespace understudy::toolpath
