@@ -11,4 +11,12 @@ bool operator==(const KeySchema& a, const KeySchema& b) {
   return values(a) == values(b);
 }
 
+KeySchema key_schema(const std::string& key, KeySchema::Type type, const char* about) {
+  KeySchema schema;
+  schema.key = key;
+  schema.type = type;
+  schema.about = about;
+  return schema;
+}
+
 }  // namespace understudy

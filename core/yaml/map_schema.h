@@ -30,6 +30,7 @@ struct KeySchema {
   std::vector<MapSchema> maps;     ///< of a map: itself; of a list: one for all items, or one for each
 };
 bool operator==(const KeySchema& a, const KeySchema& b);
+KeySchema key_schema(const std::string& key, KeySchema::Type type, const char* about);
 
 /// A key whose presence or word decides which other keys follow.
 struct Condition {
