@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rehearsal/programmed_areas.h"
+#include "rehearsal/program/programmed_areas.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -13,7 +13,7 @@
 #include "machine/material.h"
 #include "rehearsal/fill_watch.h"
 #include "rehearsal/flow_watch.h"
-#include "rehearsal/programmed_layers.h"
+#include "rehearsal/program/programmed_layers.h"
 #include "rehearsal/record.h"
 #include "rehearsal/registration.h"
 #include "rehearsal/trace_observer.h"

@@ -17,8 +17,8 @@
 #include "machine/description.h"
 #include "rehearsal/inspection/extruder_letter.h"
 #include "rehearsal/inspection/inspect_robot.h"
-#include "rehearsal/rotary_words.h"
-#include "rehearsal/told_process.h"
+#include "rehearsal/program/rotary_words.h"
+#include "rehearsal/program/told_process.h"
 #include "toolpath/inspection/feature_types.h"
 
 namespace understudy::rehearsal {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rehearsal/readings.h"
+#include "rehearsal/program/readings.h"
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/inspection/program_summary.h"

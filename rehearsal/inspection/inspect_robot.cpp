@@ -9,8 +9,8 @@
 #include "core/quantile.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "rehearsal/program_reading.h"
-#include "rehearsal/robot_reading.h"
+#include "rehearsal/program/program_reading.h"
+#include "rehearsal/program/robot_reading.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "rehearsal/program_reading.h"
+#include "rehearsal/program/program_reading.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/body_set.h"
 

@@ -19,7 +19,7 @@
 #include "rehearsal/placement/home_posture.h"
 #include "rehearsal/placement/placement_search.h"
 #include "rehearsal/placement/placement_task.h"
-#include "rehearsal/program_reading.h"
+#include "rehearsal/program/program_reading.h"
 
 namespace understudy::rehearsal {
 namespace {

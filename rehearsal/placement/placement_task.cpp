@@ -10,7 +10,7 @@
 #include "rehearsal/fixture.h"
 #include "rehearsal/placement/home_posture.h"
 #include "rehearsal/placement/program_place.h"
-#include "rehearsal/program_reading.h"
+#include "rehearsal/program/program_reading.h"
 
 namespace understudy::rehearsal {
 namespace {

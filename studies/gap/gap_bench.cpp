@@ -10,7 +10,7 @@
 #include "core/units.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/fixture.h"
-#include "rehearsal/rotary_words.h"
+#include "rehearsal/program/rotary_words.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::studies {

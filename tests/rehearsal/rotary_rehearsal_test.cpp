@@ -11,8 +11,8 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
+#include "rehearsal/program/rotary_words.h"
 #include "rehearsal/rehearse.h"
-#include "rehearsal/rotary_words.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "machine/description.h"
-#include "rehearsal/rotary_words.h"
+#include "rehearsal/program/rotary_words.h"
 
 namespace understudy::rehearsal {
 namespace {

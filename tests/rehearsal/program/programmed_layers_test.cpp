@@ -1,4 +1,4 @@
-#include "rehearsal/programmed_layers.h"
+#include "rehearsal/program/programmed_layers.h"
 
 #include <cmath>
 #include <numbers>

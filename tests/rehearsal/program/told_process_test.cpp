@@ -1,4 +1,4 @@
-#include "rehearsal/told_process.h"
+#include "rehearsal/program/told_process.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Programs of rotary words that were written for a machine of another kind: a ring printed square to its
 // surface, told as the slides of several machines. The slides are worked out here, rotation by rotation.
-#include "rehearsal/readings.h"
+#include "rehearsal/program/readings.h"
 
 #include <filesystem>
 #include <fstream>
@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "rehearsal/program_reading.h"
+#include "rehearsal/program/program_reading.h"
 #include "rehearsal/rehearse.h"
 #include "tests/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "rehearsal/programmed_areas.h"
+#include "rehearsal/program/programmed_areas.h"
 
 #include <algorithm>
 #include <numbers>

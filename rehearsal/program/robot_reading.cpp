@@ -1,4 +1,4 @@
-#include "rehearsal/robot_reading.h"
+#include "rehearsal/program/robot_reading.h"
 
 #include <algorithm>
 

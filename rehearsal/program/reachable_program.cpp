@@ -1,4 +1,4 @@
-#include "rehearsal/reachable_program.h"
+#include "rehearsal/program/reachable_program.h"
 
 #include <algorithm>
 #include <optional>

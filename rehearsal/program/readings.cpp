@@ -1,4 +1,4 @@
-#include "rehearsal/readings.h"
+#include "rehearsal/program/readings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/quantile.h"
 #include "core/units.h"
-#include "rehearsal/rotary_words.h"
+#include "rehearsal/program/rotary_words.h"
 
 namespace understudy::rehearsal {
 namespace {

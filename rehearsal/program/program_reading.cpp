@@ -1,4 +1,4 @@
-#include "rehearsal/program_reading.h"
+#include "rehearsal/program/program_reading.h"
 
 #include <algorithm>
 #include <iterator>
@@ -11,9 +11,9 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
-#include "rehearsal/readings.h"
-#include "rehearsal/robot_reading.h"
-#include "rehearsal/rotary_words.h"
+#include "rehearsal/program/readings.h"
+#include "rehearsal/program/robot_reading.h"
+#include "rehearsal/program/rotary_words.h"
 #include "toolpath/gcode/turned_program.h"
 #include "toolpath/inspection/program_summary.h"
 

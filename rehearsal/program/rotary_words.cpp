@@ -1,4 +1,4 @@
-#include "rehearsal/rotary_words.h"
+#include "rehearsal/program/rotary_words.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "rehearsal/program_reading.h"
+#include "rehearsal/program/program_reading.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "rehearsal/programmed_layers.h"
+#include "rehearsal/program/programmed_layers.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "geometry/printed_clearance.h"
-#include "rehearsal/programmed_areas.h"
+#include "rehearsal/program/programmed_areas.h"
 #include "sim/deposition/bead_section.h"
 #include "sim/deposition/workpiece.h"
 
