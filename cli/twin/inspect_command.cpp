@@ -19,6 +19,7 @@
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "rehearsal/inspection/inspect.h"
+#include "rehearsal/inspection/place_on_table.h"
 #include "rehearsal/placement/misfit.h"
 
 namespace understudy::cli {

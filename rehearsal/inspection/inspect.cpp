@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <set>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "machine/description.h"
 #include "rehearsal/inspection/extruder_letter.h"
 #include "rehearsal/inspection/inspect_robot.h"
+#include "rehearsal/inspection/place_on_table.h"
 #include "rehearsal/program/rotary_words.h"
 #include "rehearsal/program/told_process.h"
 #include "toolpath/inspection/feature_types.h"
@@ -24,7 +24,6 @@
 namespace understudy::rehearsal {
 namespace {
 
-constexpr double kMostOffTable = 0.2e-3;  // [m], by which the first layer may lie under the table
 constexpr double kDefaultLayer = 0.2e-3;  // [m], where a program does not tell
 constexpr double kSameNozzle = 0.05;      // of the bore
 constexpr double kWarmest = 450;          // [C]
@@ -194,20 +193,10 @@ class Inspector {
   void request_place() {
     const auto& printed = result_.summary.printed;
     if (!printed || coordinates_ == "machine") return;
-    auto& place = result_.request.dialect.place_mm;
-    const double lowest = printed->lower.z();
+    const auto& heights = result_.summary.layer_heights;
     // High above the table it may print on a part; a program of rotary words counts from its table's pivots.
-    if (lowest < -kMostOffTable || (lowest > kFarAbove && !result_.readings.empty())) {
-      const auto& heights = result_.summary.layer_heights;
-      place[2] = std::round(1e3 * to_mm((heights.empty() ? kDefaultLayer : heights.front()) - lowest)) / 1e3;
-    }
-    const Vec3 centre = (printed->lower + printed->upper) / 2;
-    const auto* table = std::get_if<geometry::Box>(&machine_.table.form);
-    const Vec3 half = table ? Vec3(table->size / 2) : Vec3::Constant(std::numeric_limits<double>::infinity());
-    const Vec3 middle = machine_.table.X_FS.translation();
-    for (int i = 0; i < 2; ++i)
-      if (printed->lower[i] < middle[i] - half[i] || printed->upper[i] > middle[i] + half[i])
-        place[static_cast<std::size_t>(i)] = std::round(1e3 * to_mm(middle[i] - centre[i])) / 1e3;
+    result_.request.dialect.place_mm = place_on_table(
+        *printed, machine_, heights.empty() ? kDefaultLayer : heights.front(), !result_.readings.empty());
   }
 
   std::string file_, text_;

@@ -14,8 +14,6 @@
 
 namespace understudy::rehearsal {
 
-constexpr double kFarAbove = 2e-3;  ///< [m] above the table, where no first layer begins
-
 struct Inspection {
   int lines = 0;
   std::vector<toolpath::UnknownWordCount> unknown;  ///< their lines are passed over here

@@ -3,38 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
-#include <variant>
 
 #include "core/error.h"
 #include "core/quantile.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "rehearsal/inspection/place_on_table.h"
 #include "rehearsal/program/program_reading.h"
 #include "rehearsal/program/robot_reading.h"
 
 namespace understudy::rehearsal {
 namespace {
 
-constexpr double kMostOffTable = 0.2e-3;  // [m], by which the first layer may lie under the table
-constexpr double kBeadWidth = 1.2;        // nozzle diameters, where a program does not tell
+constexpr double kBeadWidth = 1.2;  // nozzle diameters, where a program does not tell
 constexpr double kBeadHeight = 0.5;
 
 double hundredths(double metres) { return std::round(1e2 * to_mm(metres)) / 1e2; }
-
-/// Onto the table, and to its middle where it does not lie on it.
-void request_place(const toolpath::ProgramSummary& summary, const machine::MachineDescription& machine,
-                   DialectRequest& dialect) {
-  if (!summary.printed) return;
-  const auto& [lower, upper] = *summary.printed;
-  if (lower.z() < -kMostOffTable || lower.z() > kFarAbove)
-    dialect.place_mm[2] = dialect.robot.bead_mm[1] - hundredths(lower.z());
-  const auto* table = std::get_if<geometry::Box>(&machine.table.form);
-  if (table == nullptr) return;
-  const Vec3 half = table->size / 2, middle = machine.table.X_FS.translation(), centre = (lower + upper) / 2;
-  for (int i = 0; i < 2; ++i)
-    if (lower[i] < middle[i] - half[i] || upper[i] > middle[i] + half[i])
-      dialect.place_mm[static_cast<std::size_t>(i)] = hundredths(middle[i] - centre[i]);
-}
 
 }  // namespace
 
@@ -74,7 +58,8 @@ Inspection inspect_robot(const std::string& program, const std::string& text, co
   if (result.robot->signal.size() < result.robot->outputs.size())
     dialect.robot.signals = result.robot->signal;
   if (result.robot->signal.empty()) dialect.robot.bead_mm = {0, 0};
-  request_place(result.summary, description, dialect);
+  if (const auto& printed = result.summary.printed)
+    dialect.place_mm = place_on_table(*printed, description, from_mm(dialect.robot.bead_mm[1]), true);
   try {
     read(true);
   } catch (const InputError& error) {

@@ -1,0 +1,32 @@
+#include "rehearsal/inspection/place_on_table.h"
+
+#include <cmath>
+#include <variant>
+
+#include "core/units.h"
+
+namespace understudy::rehearsal {
+namespace {
+
+constexpr double kMostOffTable = 0.2e-3;  // [m], by which the first layer may lie under the table
+
+double thousandths(double metres) { return std::round(1e3 * to_mm(metres)) / 1e3; }
+
+}  // namespace
+
+std::array<double, 3> place_on_table(const toolpath::Extent& printed,
+                                     const machine::MachineDescription& machine, double layer, bool lowered) {
+  std::array<double, 3> place{0, 0, 0};
+  const auto& [lower, upper] = printed;
+  if (lower.z() < -kMostOffTable || (lowered && lower.z() > kFarAbove))
+    place[2] = thousandths(layer - lower.z());
+  const auto* table = std::get_if<geometry::Box>(&machine.table.form);
+  if (table == nullptr) return place;
+  const Vec3 half = table->size / 2, middle = machine.table.X_FS.translation(), centre = (lower + upper) / 2;
+  for (int i = 0; i < 2; ++i)
+    if (lower[i] < middle[i] - half[i] || upper[i] > middle[i] + half[i])
+      place[static_cast<std::size_t>(i)] = thousandths(middle[i] - centre[i]);
+  return place;
+}
+
+}  // namespace understudy::rehearsal
