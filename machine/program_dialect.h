@@ -20,6 +20,12 @@ struct ProgramDialect {
   char extruder_letter = 'E';
   /// Commands that switch to `tip` and to `machine`.
   std::vector<std::string> tip_control_on{"G43.4"}, tip_control_off{"G49"};
+
+  /// What a program of tips and tool axes has to begin with.
+  std::vector<std::string> commands_for_tips() const {
+    if (coordinates == "tip" || tip_control_on.empty()) return {};
+    return {tip_control_on.front()};
+  }
 };
 
 }  // namespace understudy::machine

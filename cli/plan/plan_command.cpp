@@ -10,6 +10,7 @@ void add_plan(CLI::App& app, Action& action) {
   add_plan_waypoints(*plan, action);
   add_plan_lattice(*plan, action);
   add_plan_spiral(*plan, action);
+  add_plan_support_free(*plan, action);
 }
 
 }  // namespace understudy::cli

@@ -126,7 +126,7 @@ int plan_lattice(const LatticeRequest& r) {
   const auto result = toolpath::plan_lattice(lattice, plan_of(r, machine));
   warn_of_lengths(lattice);
   for (const std::string& warning : result.sequence.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  write_program(result.program, r.options, result.sequence.warnings);
+  write_program(result.program, machine, r.options, result.sequence.warnings);
   const auto tilted = std::count_if(result.sequence.prints.begin(), result.sequence.prints.end(),
                                     [](const toolpath::StrutPrint& p) { return p.axis.z() < 1 - 1e-9; });
   fmt::print("{}: {} struts, {:.1f} mm, {} with the tool tilted\n", r.options.output, lattice.struts.size(),

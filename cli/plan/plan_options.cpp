@@ -79,11 +79,13 @@ double bead_height(const PlanOptions& options, const machine::MachineDescription
   return options.bead_height_mm > 0 ? from_mm(options.bead_height_mm) : machine.gap.aim;
 }
 
-void write_program(const toolpath::Program& program, const PlanOptions& options,
-                   const std::vector<std::string>& notes) {
+void write_program(const toolpath::Program& program, const machine::MachineDescription& machine,
+                   const PlanOptions& options, const std::vector<std::string>& notes) {
   std::vector<std::string> header = {"planned by: " + command_line()};
   header.insert(header.end(), notes.begin(), notes.end());
-  write_file(options.output, toolpath::write_gcode(program, header));
+  write_file(options.output,
+             toolpath::write_gcode(program, header,
+                                   {machine.dialect.extruder_letter, machine.dialect.commands_for_tips()}));
 }
 
 }  // namespace understudy::cli

@@ -40,14 +40,16 @@ machine::MachineDescription printing_machine(const std::string& name);
 /// [m]: the height asked for, or the machine's gap.
 double bead_height(const PlanOptions& options, const machine::MachineDescription& machine);
 
-/// Writes the program under the name asked for, with the command that made it and further `notes` at its top.
-void write_program(const toolpath::Program& program, const PlanOptions& options,
-                   const std::vector<std::string>& notes = {});
+/// Writes the program under the name asked for, as the machine's dialect has it, with the command that made
+/// it and further `notes` at its top.
+void write_program(const toolpath::Program& program, const machine::MachineDescription& machine,
+                   const PlanOptions& options, const std::vector<std::string>& notes = {});
 
 void add_plan_surface(CLI::App& plan, Action& action);
 void add_plan_planar(CLI::App& plan, Action& action);
 void add_plan_waypoints(CLI::App& plan, Action& action);
 void add_plan_lattice(CLI::App& plan, Action& action);
 void add_plan_spiral(CLI::App& plan, Action& action);
+void add_plan_support_free(CLI::App& plan, Action& action);
 
 }  // namespace understudy::cli

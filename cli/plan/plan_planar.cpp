@@ -39,7 +39,7 @@ int plan_planar(const PlanarRequest& r) {
   plan.temperature = r.options.temperature_c + kCelsiusZero;
   plan.fan = r.options.fan;
   const auto result = toolpath::plan_planar(*part, core.get(), plan);
-  write_program(result.program, r.options);
+  write_program(result.program, machine, r.options);
   fmt::print("{}: {} layers of {:g} mm, {} strokes, {:.1f} mm of bead\n", r.options.output, result.layers,
              r.layer_mm, result.strokes, to_mm(result.printed));
   return kGood;

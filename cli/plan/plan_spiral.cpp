@@ -42,7 +42,7 @@ int plan_spiral(const SpiralRequest& r) {
   plan.temperature = r.options.temperature_c + kCelsiusZero;
   plan.fan = r.options.fan;
   const auto program = toolpath::plan_spiral(plan);
-  write_program(program, r.options);
+  write_program(program, machine, r.options);
   fmt::print("{}: a helix of {:.1f} mm, {} steps\n", r.options.output, to_mm(toolpath::spiral_length(plan)),
              program.steps.size());
   return kGood;

@@ -71,7 +71,7 @@ int plan_surface(const SurfaceRequest& r) {
   plan.fan = r.options.fan;
   plan.tilt_max = from_deg(30);
   const auto program = toolpath::plan_surface(*mesh, curves_on(*mesh, r, plan), r.layers, plan);
-  write_program(program, r.options);
+  write_program(program, machine, r.options);
   fmt::print("{}: {} steps on {}\n", r.options.output, program.steps.size(), r.part);
   return kGood;
 }

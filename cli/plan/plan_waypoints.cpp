@@ -49,7 +49,7 @@ int plan_waypoints(const WaypointRequest& r) {
   plan.temperature = r.options.temperature_c + kCelsiusZero;
   plan.fan = r.options.fan;
   const auto result = toolpath::plan_waypoints(layers, plan);
-  write_program(result.program, r.options);
+  write_program(result.program, machine, r.options);
   if (result.single_points > 0)
     fmt::print(stderr,
                "warning: {} waypoints are more than {:g} mm from both neighbours; nothing is printed there\n",

@@ -10,6 +10,7 @@
 #include "core/file/output_file.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
+#include "models/parts/swept_part.h"
 
 namespace understudy {
 namespace {
@@ -167,6 +168,16 @@ void make_parts(const std::filesystem::path& folder) {
              geometry::write_stl(crown(3 * kLayer), "the crown less a shell of 0.39 mm, millimetres"));
   write_file(folder / "crown_base.stl",
              geometry::write_stl(crown_base(), "the block under the crown, top at 18.2 mm, millimetres"));
+  constexpr double kRings = 2e-3;  // [m]; outside of a bend a chord is 20 um off
+  const std::vector<Vec2> round = circle_mm(6, 60);
+  write_file(folder / "bent_cylinder.stl",
+             geometry::write_stl(*swept_part(round, one_bend(), kRings),
+                                 "12 mm round, 46 mm high, bent by 60 degrees, millimetres"));
+  write_file(folder / "bent_bar.stl",
+             geometry::write_stl(*swept_part(rectangle_mm(16, 10), one_bend(), kRings),
+                                 "16 by 10 mm, bent by 60 degrees, millimetres"));
+  write_file(folder / "s_tube.stl", geometry::write_stl(*swept_part(round, s_bend(), kRings),
+                                                        "12 mm round, bent like an S, millimetres"));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "machine/file/gap_sensor_section.h"
 #include "machine/file/section_text.h"
 #include "machine/fixture_file.h"
+#include "rehearsal/program/program_reading.h"
 #include "studies/faults/drawn_print.h"
 #include "studies/gap/lab_machine.h"
 #include "toolpath/gcode/gcode.h"
@@ -54,11 +55,12 @@ bool draw_once(Random& random, const fs::path& folder, PoolPrint& print) {
   print.duration = report.duration;
   print.approaches = count_approaches(drawn->program);
   write_file(folder / print.program,
-             toolpath::write_gcode(drawn->program, {fmt::format("{}, drawn at random", drawn->what)}));
+             toolpath::write_gcode(
+                 drawn->program, {fmt::format("{}, drawn at random", drawn->what)},
+                 {print.machine.dialect.extruder_letter, print.machine.dialect.commands_for_tips()}));
   const auto part =
       print.fixture.empty() ? nullptr : geometry::read_stl(machine::find_fixture(print.fixture));
-  toolpath::GcodeOptions gcode;
-  gcode.X_WT_home = print.machine.X_WB * print.machine.X_BT_home;
+  const toolpath::GcodeOptions gcode = rehearsal::gcode_options({}, print.machine);
   print.intended.emplace(toolpath::read_gcode(folder / print.program, gcode), part.get(),
                          tolerances_of(print.machine.file.string()));
   return true;

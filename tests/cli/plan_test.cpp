@@ -109,6 +109,46 @@ TEST(PlanSpiral, MakesTheShippedSpiralAgain) {
             without_comments(read_file(kSource + "/scenarios/spiral-in-air/spiral.gcode")));
 }
 
+/// Han 2024, 4.2: 12 mm round, 46 mm high, overhanging by more than 45 degrees. Volume by Pappus: 51.07 mm of
+/// axis.
+TEST(PlanSupportFree, LaysABentCylinderInOnePathThatTheMachinePrints) {
+  const Folder folder;
+  const Outcome outcome = understudy(
+      "plan support-free bent_cylinder --layer 0.3 --layer-range 0.2,0.45 -o " + (folder / "bent.gcode"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("170 layers of 0.2"));
+  EXPECT_THAT(outcome.out, HasSubstr(", 0 travels; the tool leans by up to 59."));
+  const Outcome rehearsal =
+      understudy("rehearse " + (folder / "bent.gcode") +
+                 " --machine five-axis --engine quasistatic --no-pictures --out " + (folder / "bent"));
+  EXPECT_EQ(rehearsal.status, 0) << rehearsal.out << rehearsal.err;
+  EXPECT_THAT(rehearsal.out, HasSubstr(": GO"));
+}
+
+TEST(PlanSupportFree, NamesTheTiltThatTheMachineCannotFollow) {
+  const Folder folder;
+  const std::string plan =
+      "plan support-free bent_cylinder --layer 0.3 --layer-range 0.2,0.45 -o " + (folder / "b.gcode");
+  // A printer that does not tilt at all, and the hexapod, which tilts by some degrees.
+  const Outcome level = understudy(plan + " --machine corexy");
+  EXPECT_EQ(level.status, 2);
+  EXPECT_THAT(level.err, HasSubstr("the part leans by 0."));
+  EXPECT_THAT(level.err, HasSubstr("deg, which corexy cannot follow: "));
+  EXPECT_EQ(understudy(plan + " --machine hexapod").status, 2);
+  EXPECT_EQ(understudy(plan + " --machine corexy --ignore-reach").status, 0);
+}
+
+/// Programs have tips and tool axes; open5x takes X Y Z for its slides unless a program says otherwise.
+TEST(Plan, WritesForTheMachineWhatItsControllerReads) {
+  const Folder folder;
+  ASSERT_EQ(understudy("plan spiral --machine open5x -o " + (folder / "s.gcode")).status, 0);
+  EXPECT_THAT(read_file(folder / "s.gcode"), HasSubstr("\nG43.4\n"));
+  const Outcome outcome =
+      understudy("rehearse " + (folder / "s.gcode") +
+                 " --machine open5x --engine quasistatic --no-pictures --out " + (folder / "s"));
+  EXPECT_NE(outcome.status, 2) << outcome.err;
+}
+
 TEST(PlanLattice, FillsABoxWithThePapersCubes) {
   const Folder folder;
   const Outcome outcome = understudy("plan lattice box:20x20x15 --strut 5 -o " + (folder / "lattice.gcode"));

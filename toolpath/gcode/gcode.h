@@ -96,10 +96,17 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
 /// Throws InputError that tells all of these lines, of which there is one at least.
 [[noreturn]] void refuse_passed_over(const std::string& file, const std::vector<PassedOver>& lines);
 
+/// How a machine wants its programs written.
+struct GcodeStyle {
+  char extruder_letter = 'E';
+  std::vector<std::string> commands = {};  ///< before the first step, such as "G43.4"
+};
+
 /// Text that read_gcode turns into the same program: lengths within 0.5e-6 mm, quaternion components within
 /// 0.5e-9, orientation within 2e-9 rad. Turning axes are left out: the poses say where the tool goes, not by
 /// which turns of the table. `header` lines become comments at the top.
 /// Throws InputError for a step that G-code cannot say: a print or move without feed, a value not finite.
-std::string write_gcode(const Program& program, const std::vector<std::string>& header);
+std::string write_gcode(const Program& program, const std::vector<std::string>& header,
+                        const GcodeStyle& style = {});
 
 }  // namespace understudy::toolpath

@@ -24,6 +24,8 @@ std::string millimetres(double metres) { return number(to_mm(metres), 6); }
 
 class Writer {
  public:
+  explicit Writer(const GcodeStyle& style) : style_(style) {}
+
   std::string run(const Program& program, const std::vector<std::string>& header) {
     for (std::string line : header) {
       for (char& c : line)
@@ -31,6 +33,7 @@ class Writer {
       out_ += "; " + line + "\n";
     }
     out_ += "G21\nG90\nM82\nG94\n";
+    for (const std::string& command : style_.commands) out_ += command + "\n";
     for (const Step& step : program.steps) write(step);
     return std::move(out_);
   }
@@ -71,7 +74,7 @@ class Writer {
       if (std::abs(extruder_) > kLargestExtruder)
         throw InputError(fmt::format("step {}: {:.6g} mm of filament cannot be written, beyond {:.6g} mm",
                                      steps_ + 1, to_mm(extruder_), to_mm(kLargestExtruder)));
-      text += " E" + millimetres(extruder_);
+      text += fmt::format(" {}{}", style_.extruder_letter, millimetres(extruder_));
     }
     if (timed || feed != feed_) text += " F" + feed;
     feed_ = timed ? "" : feed;
@@ -109,6 +112,7 @@ class Writer {
     ++steps_;
   }
 
+  const GcodeStyle& style_;
   std::string out_;
   double extruder_ = 0;  // [m]
   bool timed_ = false;
@@ -118,8 +122,9 @@ class Writer {
 
 }  // namespace
 
-std::string write_gcode(const Program& program, const std::vector<std::string>& header) {
-  return Writer().run(program, header);
+std::string write_gcode(const Program& program, const std::vector<std::string>& header,
+                        const GcodeStyle& style) {
+  return Writer(style).run(program, header);
 }
 
 }  // namespace understudy::toolpath

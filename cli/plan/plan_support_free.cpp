@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/plan/lattice_reach.h"
+#include "cli/plan/plan_options.h"
+#include "core/error.h"
+#include "core/units.h"
+#include "machine/fixture_file.h"
+#include "toolpath/planners/curve_csv.h"
+#include "toolpath/support_free/support_free_planner.h"
+
+namespace understudy::cli {
+namespace {
+
+struct SupportFreeRequest {
+  PlanOptions options;
+  std::string part, line;
+  double layer_mm = 0.2, step_mm = 1, lag_deg = 20;
+  std::vector<double> range_mm{0.08, 0.32};
+  int walls = 1;
+  bool ignore_reach = false;
+};
+
+/// Which bead the machine cannot lay, and how far it would have to lean there.
+void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine) {
+  const toolpath::WayCheck reach = lattice_reach(machine);
+  std::vector<Pose> way;
+  for (const toolpath::Step& step : program.steps) {
+    if (!toolpath::moves(step)) continue;
+    way.push_back(step.X_WT);
+    if (way.size() < 2) continue;
+    if (const std::string why = reach(way, false); !why.empty()) {
+      const Vec3 p = step.X_WT.translation();
+      throw InputError(fmt::format(
+          "at ({:.2f}, {:.2f}, {:.2f}) mm the part leans by {:.1f} deg, which {} cannot follow: {}; lay the "
+          "part "
+          "otherwise, or --ignore-reach",
+          to_mm(p.x()), to_mm(p.y()), to_mm(p.z()),
+          to_deg(std::acos(std::clamp(step.X_WT.linear().col(2).z(), -1.0, 1.0))), machine.name, why));
+    }
+    way.erase(way.begin());
+  }
+}
+
+int plan_support_free(const SupportFreeRequest& r) {
+  check_options(r.options);
+  check_option("--layer", r.layer_mm, 10);
+  check_option("--step", r.step_mm, 100);
+  check_option("--lag", r.lag_deg, 60);
+  const auto machine = printing_machine(r.options.machine);
+  const auto part = geometry::read_stl(machine::find_fixture(r.part));
+  const auto line = r.line.empty() ? toolpath::find_structural_line(*part, from_mm(r.step_mm))
+                                   : toolpath::StructuralLine(toolpath::read_curve_csv(r.line));
+  toolpath::SupportFreePlan plan;
+  plan.range = {from_mm(r.layer_mm), from_mm(r.range_mm.at(0)), from_mm(r.range_mm.at(1)),
+                from_deg(r.lag_deg)};
+  plan.bead_width = from_mm(r.options.bead_width_mm);
+  plan.walls = r.walls;
+  plan.feed = from_mm(r.options.feed_mm_per_s);
+  plan.approach_feed = from_mm(r.options.approach_mm_per_s);
+  plan.clearance = from_mm(r.options.clearance_mm);
+  plan.filament_diameter = machine.tool.filament_diameter;
+  plan.temperature = r.options.temperature_c + kCelsiusZero;
+  plan.fan = r.options.fan;
+  const auto result = toolpath::plan_support_free(*part, line, plan);
+  if (!r.ignore_reach) check_reach(result.program, machine);
+  const std::string notes = fmt::format(
+      "{} layers of {:.3f} to {:.3f} mm, {:.1f} mm of bead, {:.1f} mm3, {} travels; the tool leans by up to "
+      "{:.1f} "
+      "deg, layers by up to {:.1f} deg against the plane across the line",
+      result.layers, to_mm(result.thinnest), to_mm(result.thickest), to_mm(result.printed),
+      1e9 * result.volume, result.travels, to_deg(result.tilt_max), to_deg(result.lag_max));
+  write_program(result.program, machine, r.options, {notes});
+  fmt::print("{}: {}\n", r.options.output, notes);
+  return kGood;
+}
+
+}  // namespace
+
+void add_plan_support_free(CLI::App& plan, Action& action) {
+  auto request = std::make_shared<SupportFreeRequest>();
+  request->options.machine = "five-axis";
+  request->options.feed_mm_per_s = 12;
+  request->options.clearance_mm = 2;
+  request->options.approach_mm_per_s = 3;
+  request->options.bead_width_mm = 0.6;
+  request->options.temperature_c = 205;
+  request->options.fan = 1;
+  auto* command =
+      plan.add_subcommand("support-free", "Layers across a bent part's line, so that nothing overhangs");
+  command->add_option("part", request->part, "STL in mm that stands on z = 0, or a name under models/parts")
+      ->required();
+  command->add_option("--line", request->line,
+                      "CSV x_mm,y_mm,z_mm of the structural line, from the foot; without it, it is found");
+  command->add_option("--step", request->step_mm, "mm, along the line, in which it is found")
+      ->capture_default_str();
+  add_machine_option(*command, request->options);
+  command->add_option("--layer", request->layer_mm, "mm, height of the layers along the line")
+      ->capture_default_str();
+  command
+      ->add_option("--layer-range", request->range_mm,
+                   "mm, thinnest,thickest anywhere in a layer, inside and outside of a bend")
+      ->expected(2)
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      ->add_option("--lag", request->lag_deg,
+                   "degrees that a layer may lean against the plane across the line")
+      ->capture_default_str();
+  command->add_option("--walls", request->walls, "contours from the outline inwards")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--ignore-reach", request->ignore_reach, "do not ask the machine whether it gets there");
+  add_motion_options(*command, request->options);
+  command->add_option("--width", request->options.bead_width_mm, "mm, width of the bead")
+      ->capture_default_str();
+  add_nozzle_options(*command, request->options);
+  add_output_option(*command, request->options);
+  command->callback([=, &action] { action = [=] { return plan_support_free(*request); }; });
+}
+
+}  // namespace understudy::cli

@@ -1,0 +1,101 @@
+#include "toolpath/support_free/structural_line.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "models/parts/swept_part.h"
+
+namespace understudy::toolpath {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(const geometry::Mesh& part, double step = 1e-3) {
+  try {
+    find_structural_line(part, step);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The farthest that the line is off the axis along which the part was swept.
+double farthest_off(const StructuralLine& line, const std::vector<SweptPiece>& pieces) {
+  double farthest = 0;
+  for (int i = 0; i <= 200; ++i) {
+    const Vec3 p = line.at(line.length() * i / 200);
+    double nearest = 1;
+    for (int k = 0; k <= 4000; ++k)
+      nearest =
+          std::min(nearest, (swept_pose(pieces, swept_length(pieces) * k / 4000).translation() - p).norm());
+    farthest = std::max(farthest, nearest);
+  }
+  return farthest;
+}
+
+struct Bent {
+  const char* name;
+  std::vector<Vec2> outline;
+  std::vector<SweptPiece> pieces;
+};
+
+class FoundLine : public testing::TestWithParam<Bent> {};
+
+/// A section across the axis of a swept part has its middle on the axis; a step of the test's own axis is 15
+/// um.
+TEST_P(FoundLine, IsTheAxisAlongWhichThePartWasSwept) {
+  const auto& [name, outline, pieces] = GetParam();
+  const auto part = swept_part(outline, pieces);
+  const StructuralLine line = find_structural_line(*part, 1e-3);
+  EXPECT_LT(farthest_off(line, pieces), 60e-6);
+  EXPECT_NEAR(line.length(), swept_length(pieces), 0.1e-3);
+  EXPECT_NEAR(line.at(0).norm(), 0, 20e-6);
+  EXPECT_LT((line.at(line.length()) - swept_pose(pieces, swept_length(pieces)).translation()).norm(), 60e-6);
+  for (const double share : {0.0, 0.3, 0.5, 0.8, 1.0}) {
+    const Vec3 axis = swept_pose(pieces, share * swept_length(pieces)).linear().col(2);
+    EXPECT_LT(turn_between(line.tangent(share * line.length()), axis), 1.5 * kDegree) << share;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(StructuralLine, FoundLine,
+                         testing::Values(Bent{"straight", circle_mm(6), {straight_mm(20)}},
+                                         Bent{"bend", circle_mm(6), one_bend()},
+                                         Bent{"rectangle", rectangle_mm(16, 10), one_bend()},
+                                         Bent{"s", circle_mm(6), s_bend()},
+                                         Bent{"twoplanes", circle_mm(6), bends_in_two_planes()}),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+TEST(StructuralLine, RunsThroughItsPointsAndAlongAnArc) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 30; ++i) {
+    const double a = i * 3 * kDegree;
+    points.emplace_back(0.03 * (1 - std::cos(a)), 0, 0.03 * std::sin(a));
+  }
+  const StructuralLine line(points);
+  for (int i = 0; i <= 100; ++i) {
+    const double s = line.length() * i / 100;
+    const Vec3 p = line.at(s);
+    EXPECT_NEAR((p - Vec3(0.03, 0, 0)).norm(), 0.03, 2e-6) << i;
+    const double a = std::atan2(p.z(), 0.03 - p.x());
+    EXPECT_LT(turn_between(line.tangent(s), Vec3(std::sin(a), 0, std::cos(a))), 0.1 * kDegree) << i;
+  }
+}
+
+TEST(StructuralLine, RefusesPointsThatMakeNone) {
+  EXPECT_THROW(StructuralLine({Vec3(0, 0, 0)}), InputError);
+  EXPECT_THROW(StructuralLine({Vec3(0, 0, 0), Vec3(0, 0, 0)}), InputError);
+}
+
+TEST(StructuralLine, RefusesPartsThatHaveNone) {
+  const auto tube = swept_part(circle_mm(6), one_bend());
+  EXPECT_THAT(refusal(*tube, 0), HasSubstr("step of the structural line"));
+  EXPECT_THAT(refusal(*swept_part(circle_mm(6), {straight_mm(1.5)}), 1e-3),
+              HasSubstr("shorter than three steps"));
+  auto triangles = tube->triangles();
+  triangles.pop_back();
+  EXPECT_THAT(refusal(geometry::Mesh(tube->vertices(), triangles)), HasSubstr("open edges"));
+}
+
+}  // namespace
+}  // namespace understudy::toolpath
