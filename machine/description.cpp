@@ -32,6 +32,8 @@ ToleranceSet read_tolerance_set(YamlMap& map, bool chain) {
         map.quantity("axis_direction_deg", {0, 5}, "tilt of an axis, about both directions across it");
     set.zero_length = map.quantity("zero_mm", {0, 20}, "zero of a sliding axis");
     set.zero_angle = map.quantity("zero_deg", {0, 5}, "zero of a turning axis");
+    if (map.has("rod_length_mm"))
+      set.rod_length = map.quantity("rod_length_mm", {0, 20}, "of a rod, where the tool hangs on rods");
   } else {
     set.joint_position = map.quantity("joint_position_mm", {0, 20}, "each coordinate of a joint");
     set.length_offset = map.quantity("length_offset_mm", {0, 20}, "of a strut");

@@ -82,11 +82,21 @@ struct Link {
   std::vector<geometry::Shape> bodies;  ///< poses in O
 };
 
+/// Of a chain whose tool hangs on rods (kinematics/chain/rods.h), in parallel pairs.
+struct Rods {
+  double mass = 0;         ///< [kg], of a pair
+  double radius = 0;       ///< [m], of one rod
+  double spacing = 0;      ///< [m], between the two of a pair
+  double tool_offset = 0;  ///< [m], of a pair's joints on the tool, from its middle towards the pair's slide
+  double carried = 0;      ///< [kg], what hangs on all of them, tool included
+};
+
 /// An open chain: arm, five-axis table, finishing stage, or any other tree of axes. Its frame O stands still
 /// and upright: gravity is along -z.
 struct ChainModel {
   kinematics::ChainDescription kinematics;
   std::vector<Link> links;                    ///< one an axis; the tool belongs to the last of its branch
+  Rods rods;                                  ///< where kinematics.chain has them; the tool hangs on those
   kinematics::AxisVector play{};              ///< [m] or [rad], total free travel of each axis; nominal
   kinematics::AxisVector friction{};          ///< [N] or [N m], below which an axis stays within its play
   std::vector<geometry::Shape> frame_bodies;  ///< what stands still; poses in O
@@ -136,10 +146,12 @@ struct ToleranceSet {
   double joint_position = 0;  ///< [m], each coordinate of b_i and a_i
   double length_offset = 0;   ///< [m], l_i0
   // Open chain.
-  double axis_position = 0;   ///< [m], each coordinate of a point of a turning axis, and of the tool's mount
+  double axis_position =
+      0;  ///< [m], each coordinate of a point of an axis (turning, or with a rod), and of the tool's mount
   double axis_direction = 0;  ///< [rad], tilt of each axis about both directions across it
   double zero_length = 0;     ///< [m], zero of a sliding axis
   double zero_angle = 0;      ///< [rad], zero of a turning axis
+  double rod_length = 0;      ///< [m], each rod of a chain with rods
 };
 
 /// 1 sigma of how laser and microscope sit on a built machine about their drawing.

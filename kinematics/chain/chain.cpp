@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "kinematics/chain/rods.h"
+
 namespace understudy::kinematics {
 namespace {
 
@@ -9,6 +11,19 @@ using LinkPoses = PerAxis<Pose>;
 
 const Pose& carrier(const LinkPoses& poses, int axis, const Pose& frame) {
   return axis < 0 ? frame : poses[axis];
+}
+
+/// Of the tool, where `joint` is where the rods of a chain with rods meet.
+Pose tool_at(const Chain& chain, const LinkPoses& poses, const Vec3& joint) {
+  if (!chain.rods.empty()) return Eigen::Translation3d(joint) * chain.X_OT_zero;
+  return carrier(poses, chain.tool_axis, Pose::Identity()) * chain.X_OT_zero;
+}
+
+Vec3 joint_of_rods(const Chain& chain, std::span<const double> axes) {
+  Vec3 joint = Vec3::Zero();
+  // Where they do not meet, a mechanism says so; here the nearest will do.
+  if (!chain.rods.empty()) static_cast<void>(rods_meet(chain, axes, joint));
+  return joint;
 }
 
 /// Velocity of the chain's axis, told at point p_O of what it carries.
@@ -63,7 +78,7 @@ Pose forward(const Chain& chain, std::span<const double> axes) {
   LinkPoses poses;
   link_poses(chain, axes, poses);
   const Pose frame = Pose::Identity();
-  const Pose X_OT = carrier(poses, chain.tool_axis, frame) * chain.X_OT_zero;
+  const Pose X_OT = tool_at(chain, poses, joint_of_rods(chain, axes));
   if (chain.work_axis < 0) return chain.X_OS_zero.inverse() * X_OT;
   return (carrier(poses, chain.work_axis, frame) * chain.X_OS_zero).inverse() * X_OT;
 }
@@ -72,10 +87,13 @@ Pose forward(const Chain& chain, std::span<const double> axes, ChainJacobian& ja
   LinkPoses poses;
   link_poses(chain, axes, poses);
   const Pose frame = Pose::Identity();
-  const Pose X_OT = carrier(poses, chain.tool_axis, frame) * chain.X_OT_zero;
+  const Vec3 joint = joint_of_rods(chain, axes);
+  const Pose X_OT = tool_at(chain, poses, joint);
   const Pose X_OS = carrier(poses, chain.work_axis, frame) * chain.X_OS_zero;
   const Mat3 R_SO = X_OS.linear().transpose();
   jacobian.setZero(6, chain.size());
+  if (!chain.rods.empty())
+    jacobian.topRows<3>() = R_SO * rod_jacobian(chain, rod_vectors(chain, axes, joint));
   // What carries the tool moves it forwards, what carries the work moves it backwards; what carries both
   // moves nothing.
   const auto add_branch = [&](int last, double sign) {

@@ -22,7 +22,7 @@ struct ChainAxis {
   std::string name;                ///< "j1", "x"
   bool angle = true;               ///< turns about its line; else slides along it
   Vec3 direction = Vec3::UnitZ();  ///< unit, in O
-  Vec3 point = Vec3::Zero();       ///< [m], on the line, in O; without meaning for a slide
+  Vec3 point = Vec3::Zero();       ///< [m], on the line, in O; of a slide, only where it has a rod
   int parent = -1;                 ///< axis that carries this one; -1: the frame
   double lower = -kEndless;        ///< [m] or [rad]
   double upper = kEndless;
@@ -34,6 +34,9 @@ struct Chain {
   int work_axis = -1;           ///< axis that carries the work; -1: the frame
   Pose X_OT_zero = Pose::Identity();
   Pose X_OS_zero = Pose::Identity();
+  /// [m]: the lengths of three rods, by which three slides on the frame carry the tool (rods.h), X_OT_zero
+  /// from where they meet; no axis carries the tool then. Empty: a tree.
+  std::vector<double> rods = {};
   int size() const { return static_cast<int>(axes.size()); }
 };
 

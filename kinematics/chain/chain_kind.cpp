@@ -5,7 +5,7 @@
 namespace understudy::kinematics {
 
 const std::vector<ChainKind>& chain_kinds() {
-  static const std::vector<ChainKind> kinds{arm_kind(), five_axis_kind(), finishing_kind(),
+  static const std::vector<ChainKind> kinds{arm_kind(), five_axis_kind(), finishing_kind(), delta_kind(),
                                             open_chain_kind()};
   return kinds;
 }

@@ -36,6 +36,7 @@ const ChainKind* find_chain_kind(const std::string& name);
 ChainKind arm_kind();         ///< "arm": six axes with a spherical wrist, closed form (arm.cpp)
 ChainKind five_axis_kind();   ///< "five-axis": three slides and a tilting, turning table (five_axis.cpp)
 ChainKind finishing_kind();   ///< "finishing": redundant stage (finishing.cpp)
+ChainKind delta_kind();       ///< "delta": three carriages and rods, closed form (delta.cpp)
 ChainKind open_chain_kind();  ///< "chain": axes listed in the file, or read from a URDF; numeric inverse
 
 }  // namespace understudy::kinematics

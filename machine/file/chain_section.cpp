@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "kinematics/chain/chain_kind.h"
+#include "machine/file/rods_section.h"
 #include "machine/file/tool_section.h"
 #include "machine/file/urdf_section.h"
 
@@ -248,6 +249,7 @@ void read_chain(YamlMap& root, MachineDescription& machine, MachineNotes& notes)
             });
   if (root.has("frame"))
     root.section("frame", "what stands still", [&](YamlMap& map) { read_bodies(map, model.frame_bodies); });
+  read_rods(root, model);
   if (!root.complete()) return;
   if (count < chain.axes.size())
     throw InputError(root.place("axes"), fmt::format("axes lists {}, '{}' has {}", count,
@@ -256,6 +258,7 @@ void read_chain(YamlMap& root, MachineDescription& machine, MachineNotes& notes)
     chain.tool_axis = find_axis(chain, tool);
     chain.work_axis = find_axis(chain, work);
   }
+  check_rods(root, model);
   if (chain.work_axis >= 0 && based)
     throw InputError(
         base, "geometry.base_mm is given, but axes carry the work: the world stands on it, not on the frame");

@@ -136,6 +136,27 @@ TEST(ReadyMachinesWithoutTurns, CoreXyMovesItsTipOverABedThatSinks) {
   EXPECT_LE((kinematics::forward(chain, axes).translation() - Vec3(-0.034, 0.012, 0.056)).norm(), kFar);
 }
 
+// Anycubic Kossel Linear Plus: the tip at the crossing of three rods of 267 mm, whose joints hang 134.4 mm
+// from the middle at 210, 330 and 90 degrees; the joints on the tool are 40 mm above the tip.
+TEST(ReadyMachinesWithoutTurns, DeltaHangsItsTipOnThreeRods) {
+  const MachineDescription machine = load_machine("delta");
+  const kinematics::Chain& chain = machine.chain().kinematics.chain;
+  ASSERT_EQ(chain.size(), 3);
+  Random random(64, "delta");
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 tip_mm(random.uniform(-80, 80), random.uniform(-80, 80), random.uniform(0, 250));
+    std::array<double, 3> axes{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 joint_mm = about_z(std::array{210, 330, 90}[i], {134.4, 0, 0});
+      const double away = (tip_mm - joint_mm).head<2>().norm();
+      axes[i] = from_mm(tip_mm.z() + 40 + std::sqrt(267 * 267 - away * away));
+    }
+    const Pose X_WT = machine.X_WB * kinematics::forward(chain, axes);
+    EXPECT_LE((X_WT.translation() - from_mm(1) * tip_mm).norm(), kFar) << n;
+    EXPECT_LE((tool_axis(X_WT) - Vec3::UnitZ()).norm(), kFar) << n;
+  }
+}
+
 /// A row of Denavit and Hartenberg's table: Rz(theta) Tz(d) Tx(a) Rx(alpha). [mm], quarter turns
 struct Row {
   double d_mm, a_mm;
