@@ -13,6 +13,10 @@ std::string urdf_of(const machine::MachineDescription& machine) {
         machine.name +
         ": URDF holds open chains only, and the struts of a hexapod close loops; see export mjcf");
   const auto& chain = machine.chain().kinematics.chain;
+  if (!chain.rods.empty())
+    throw InputError(
+        machine.name +
+        ": URDF holds open chains only, and rods that carry the tool close loops; see export mjcf");
   std::vector<machine::LinkMass> links;
   std::vector<machine::AxisDrive> drives;
   for (std::size_t i = 0; i < chain.axes.size(); ++i) {

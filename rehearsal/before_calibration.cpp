@@ -38,8 +38,9 @@ bool same(const kinematics::Chain& a, const kinematics::Chain& b) {
     return p.name == q.name && p.angle == q.angle && p.parent == q.parent &&
            same(p.direction, q.direction, kSameTurn) && same(p.point, q.point, kSameLength);
   };
-  return std::ranges::equal(a.axes, b.axes, axes_agree) && same(a.X_OT_zero, b.X_OT_zero) &&
-         same(a.X_OS_zero, b.X_OS_zero);
+  const auto rods_agree = [](double p, double q) { return std::abs(p - q) <= kSameLength; };
+  return std::ranges::equal(a.axes, b.axes, axes_agree) && std::ranges::equal(a.rods, b.rods, rods_agree) &&
+         same(a.X_OT_zero, b.X_OT_zero) && same(a.X_OS_zero, b.X_OS_zero);
 }
 
 const kinematics::Chain& drawn_chain(const MachineDescription& machine) {

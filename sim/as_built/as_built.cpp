@@ -31,6 +31,7 @@ void add_axis_errors(const machine::ToleranceSet& tolerance, AsBuilt& built) {
         (exp_rotation(tolerance.axis_direction * normal_vec3(random)) * axis.direction).normalized();
     axis.point += tolerance.axis_position * normal_vec3(random);
     built.axis_zero[i] = (axis.angle ? tolerance.zero_angle : tolerance.zero_length) * random.normal();
+    if (!built.chain.rods.empty()) built.chain.rods[i] += tolerance.rod_length * random.normal();
   }
   Random random(built.seed, fmt::format("as-built/{}/tool", built.source));
   built.chain.X_OT_zero.translation() += tolerance.axis_position * normal_vec3(random);

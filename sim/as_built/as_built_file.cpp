@@ -65,6 +65,8 @@ void read_axis(YamlMap& map, Told& told, AsBuilt& built) {
     read_if_given(map, "zero_mm", kPlaceBounds, kZero, built.axis_zero[i]);
     read_if_given(map, "play_um", kPlay, kFree, built.axis_play[i]);
   }
+  if (!built.chain.rods.empty())
+    read_if_given(map, "rod_mm", {1, 10'000}, "length of the rods of this axis", built.chain.rods[i]);
 }
 
 void read_geometry(YamlMap& root, AsBuilt& built) {
@@ -110,6 +112,7 @@ std::string geometry_text(const AsBuilt& built) {
     const kinematics::ChainAxis& axis = built.chain.axes[i];
     out += fmt::format("  - {{axis: {}, direction: {}, point_mm: {}, ", machine::quoted_text(axis.name),
                        vector_text(axis.direction, 1), vector_text(axis.point, kMillimetre));
+    if (!built.chain.rods.empty()) out += fmt::format("rod_mm: {}, ", to_mm(built.chain.rods[i]));
     out += axis.angle ? fmt::format("zero_deg: {}, play_arcmin: {}}}\n", to_deg(built.axis_zero[i]),
                                     60 * to_deg(built.axis_play[i]))
                       : fmt::format("zero_mm: {}, play_um: {}}}\n", to_mm(built.axis_zero[i]),
@@ -130,6 +133,7 @@ void read_as_built(const std::string& file, AsBuilt& built) {
 MapSchema as_built_schema() {
   AsBuilt built;
   built.chain.axes.resize(1);
+  built.chain.rods.resize(1);
   return YamlMap::schema([&built](YamlMap& root) { read_built(root, built); });
 }
 

@@ -70,6 +70,10 @@ std::unique_ptr<Plant> make_bullet_chain(const machine::MachineDescription& mach
 std::unique_ptr<Plant> make_bullet_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const BulletOptions& options) {
   if (!machine.is_chain()) return make_bullet_hexapod(machine, as_built, options);
+  if (!as_built.chain.rods.empty())
+    throw InputError(
+        fmt::format("{}: bullet plays hexapods and arms; here rods carry the tool: use mujoco or quasistatic",
+                    machine.name));
   if (as_built.chain.work_axis >= 0)
     throw InputError(fmt::format(
         "{}: bullet plays hexapods and arms; here axis '{}' carries the work: use mujoco or quasistatic",

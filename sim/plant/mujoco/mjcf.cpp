@@ -84,14 +84,20 @@ std::string write_mjcf(const machine::MachineDescription& machine, const AsBuilt
                        const MujocoOptions& options) {
   return machine.visit(
       [&](const machine::HexapodModel&) { return write_hexapod_mjcf(machine, as_built, X_WT, options); },
-      [&](const machine::ChainModel&) { return write_chain_mjcf(machine, as_built, options); });
+      [&](const machine::ChainModel&) {
+        return as_built.chain.rods.empty() ? write_chain_mjcf(machine, as_built, options)
+                                           : write_rod_mjcf(machine, as_built, X_WT, options);
+      });
 }
 
 std::unique_ptr<Plant> make_mujoco_plant(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const MujocoOptions& options) {
   return machine.visit(
       [&](const machine::HexapodModel&) { return make_mujoco_hexapod(machine, as_built, options); },
-      [&](const machine::ChainModel&) { return make_mujoco_chain(machine, as_built, options); });
+      [&](const machine::ChainModel&) {
+        return as_built.chain.rods.empty() ? make_mujoco_chain(machine, as_built, options)
+                                           : make_mujoco_rods(machine, as_built, options);
+      });
 }
 
 }  // namespace understudy::sim

@@ -59,11 +59,17 @@ std::string write_hexapod_mjcf(const machine::MachineDescription& machine, const
 /// All axes at 0; gravity along -z of the chain's frame, which is the model's world.
 std::string write_chain_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built,
                              const MujocoOptions& options);
+/// Of a chain whose tool hangs on rods, assembled at X_WT; the chain's frame is the model's world.
+std::string write_rod_mjcf(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                           const Pose& X_WT, const MujocoOptions& options);
+std::string rod_name(const std::string& axis);    ///< of its body, and of the equality that closes it
 std::string chain_play(const std::string& axis);  ///< name of the axis' play joint
 
 std::unique_ptr<Plant> make_mujoco_hexapod(const machine::MachineDescription& machine,
                                            const AsBuilt& as_built, const MujocoOptions& options);
 std::unique_ptr<Plant> make_mujoco_chain(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                          const MujocoOptions& options);
+std::unique_ptr<Plant> make_mujoco_rods(const machine::MachineDescription& machine, const AsBuilt& as_built,
+                                        const MujocoOptions& options);
 
 }  // namespace understudy::sim

@@ -45,5 +45,8 @@ std::unique_ptr<AxisMechanics> make_hexapod_mechanics(const machine::MachineDesc
 std::unique_ptr<AxisMechanics> make_chain_mechanics(const machine::MachineDescription& machine,
                                                     const AsBuilt& as_built,
                                                     const QuasistaticOptions& options);
+/// Of a chain whose tool hangs on rods.
+std::unique_ptr<AxisMechanics> make_rod_mechanics(const machine::MachineDescription& machine,
+                                                  const AsBuilt& as_built, const QuasistaticOptions& options);
 
 }  // namespace understudy::sim

@@ -175,6 +175,7 @@ void ChainMechanics::mass_matrix(AxisMatrix& mass) const {
 std::unique_ptr<AxisMechanics> make_chain_mechanics(const machine::MachineDescription& machine,
                                                     const AsBuilt& as_built,
                                                     const QuasistaticOptions& options) {
+  if (!as_built.chain.rods.empty()) return make_rod_mechanics(machine, as_built, options);
   return std::make_unique<ChainMechanics>(machine, as_built, options);
 }
 

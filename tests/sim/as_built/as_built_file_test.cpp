@@ -90,6 +90,17 @@ TEST_F(AsBuiltFile, AFileWrittenFromWhatWasReadIsTheSameFile) {
   EXPECT_EQ(write_as_built(make_as_built(five_axis_, write(text), 1)), text);
 }
 
+TEST_F(AsBuiltFile, RodsAreToldWithTheirAxes) {
+  const auto machine = machine::load_machine("delta");
+  const AsBuilt drawn = make_as_built(machine, "manufactured", 4);
+  const AsBuilt back = make_as_built(machine, write(write_as_built(drawn)), 1);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.chain.rods[i], drawn.chain.rods[i], kLength);
+  const AsBuilt one = make_as_built(machine, write("axes:\n  - {axis: b, rod_mm: 267.5}\n"), 1);
+  EXPECT_NEAR(one.chain.rods[1], 267.5e-3, kLength);
+  EXPECT_EQ(one.chain.rods[0], machine.chain().kinematics.chain.rods[0]);
+  EXPECT_THAT(error_of(five_axis_, "axes:\n  - {axis: b, rod_mm: 100}\n"), HasSubstr("rod_mm"));
+}
+
 TEST_F(AsBuiltFile, AHexapodChangesOnlyWhatTheFileNames) {
   const AsBuilt nominal = make_as_built(hexapod_, "nominal", 1);
   AsBuilt built = make_as_built(hexapod_, write("struts:\n  - {strut: 3, length_offset_mm: 170.5}\n"), 1);

@@ -35,7 +35,7 @@ class SampledChain : public testing::TestWithParam<const char*> {
 TEST_P(SampledChain, ErrorsSpreadAsTheToleranceSetStates) {
   for (const auto& [set, tolerance] : {std::pair{"sampled", machine_.tolerances.after_calibration},
                                        std::pair{"manufactured", machine_.tolerances.manufactured}}) {
-    Spread position, tilt, length, angle, tip;
+    Spread position, tilt, length, angle, tip, rod;
     for (std::uint64_t seed = 1; seed <= kMachines; ++seed) {
       const AsBuilt built = make_as_built(machine_, set, seed);
       for (std::size_t i = 0; i < nominal_.axes.size(); ++i) {
@@ -47,6 +47,7 @@ TEST_P(SampledChain, ErrorsSpreadAsTheToleranceSetStates) {
         for (int k = 0; k < 3; ++k) position.add(is.point[k] - should.point[k]);
         (should.angle ? angle : length).add(built.axis_zero[i]);
       }
+      for (std::size_t i = 0; i < nominal_.rods.size(); ++i) rod.add(built.chain.rods[i] - nominal_.rods[i]);
       for (int k = 0; k < 3; ++k)
         tip.add((built.chain.X_OT_zero.translation() - nominal_.X_OT_zero.translation())[k]);
     }
@@ -55,6 +56,7 @@ TEST_P(SampledChain, ErrorsSpreadAsTheToleranceSetStates) {
     length.expect(tolerance.zero_length, "zero of a slide");
     angle.expect(tolerance.zero_angle, "zero of a turn");
     tip.expect(tolerance.axis_position, "the tool's mount");
+    rod.expect(tolerance.rod_length, "length of a rod");
   }
 }
 
@@ -93,7 +95,7 @@ TEST_P(SampledChain, NominalIsTheDescription) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Machines, SampledChain, testing::Values("arm", "five-axis", "finishing"),
+INSTANTIATE_TEST_SUITE_P(Machines, SampledChain, testing::Values("arm", "five-axis", "finishing", "delta"),
                          [](const auto& one) {
                            std::string name = one.param;
                            for (char& c : name) c = c == '-' ? '_' : c;
