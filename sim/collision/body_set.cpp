@@ -96,8 +96,14 @@ int BodySet::axis_of(const Body& body) const {
 bool BodySet::joined(const Body& a, const Body& b, double strut_radius) const {
   if (is_chain_)
     return (a.owner == Owner::link || b.owner == Owner::link) &&
-           (links_.joined(axis_of(a), axis_of(b)) || kept_apart(a, b));
+           (links_.joined(axis_of(a), axis_of(b)) || kept_apart(a, b) || hangs_on_rod(a, b) ||
+            hangs_on_rod(b, a));
   return b.owner == Owner::tool && carries_joint(b, a.index, strut_radius);
+}
+
+bool BodySet::hangs_on_rod(const Body& tool, const Body& rod) const {
+  return tool.owner == Owner::tool && tool.shape.name == "platform" && rod.owner == Owner::link &&
+         links_.items()[rod.index].rod >= 0;
 }
 
 bool BodySet::kept_apart(const Body& a, const Body& b) const {
@@ -137,7 +143,7 @@ double BodySet::motion(const BodyPair& pair, const Travel& travel) const {
   for (const std::size_t i : {pair.body, pair.obstacle}) {
     const Body& body = bodies_[i];
     if (body.owner == Owner::link)
-      sum += links_.motion(body.index, travel.axes);
+      sum += links_.motion(body.index, travel.axes, travel.path);
     else if (body.owner != Owner::world)
       sum += travel.path + travel.turn * body.lever;
   }

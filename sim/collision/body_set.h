@@ -77,6 +77,7 @@ class BodySet {
   void add_bead_pairs(std::size_t table);
   bool carries_joint(const Body& tool, std::size_t strut, double strut_radius) const;
   bool joined(const Body& a, const Body& b, double strut_radius) const;
+  bool hangs_on_rod(const Body& tool, const Body& rod) const;
   bool kept_apart(const Body& a, const Body& b) const;
   int axis_of(const Body& body) const;
   Pose place(Body& body, const Pose& X_WT);

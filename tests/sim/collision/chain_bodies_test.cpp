@@ -148,5 +148,63 @@ TEST(ChainCollision, AnElbowThatMeetsTheTableIsSeenWhereTheArmReallyIs) {
   EXPECT_TRUE(link);
 }
 
+// The ends of both rods of a pair: at the carriage's height and the tool's, both as far out as the joints on
+// the tool are, and to either side.
+TEST(ChainBodies, RodsReachFromTheirCarriageToTheTool) {
+  const auto machine = machine::load_machine("delta");
+  ChainBodies bodies(machine, make_as_built(machine, "nominal", 1));
+  const double height = 0.040, radius = 0.1344, rod = 0.267, out = 0.031, side = 0.023;
+  const Vec3 tip(0.03, -0.05, 0.02), tower(0, radius, 0);  // c, behind the middle
+  const Pose X_WT = machine.X_WB * make_pose(Quat::Identity(), tip);
+  AxisVector axes{};
+  ASSERT_EQ(machine.make_mechanism()->inverse(X_WT, {}, axes), kinematics::SolveStatus::ok);
+  EXPECT_NEAR(axes[2], tip.z() + height + std::sqrt(rod * rod - (tip - tower).head<2>().squaredNorm()),
+              1e-12);
+  bodies.pose(axes);
+  int found = 0;
+  for (std::size_t i = 0; i < bodies.items().size(); ++i) {
+    const auto& item = bodies.items()[i];
+    if (item.shape.name != "rod c") continue;
+    const auto& capsule = std::get<geometry::Capsule>(item.shape.form);
+    EXPECT_NEAR(capsule.length, rod, 1e-15);
+    const Vec3 low = bodies.place(i) * Vec3(0, 0, -rod / 2), high = bodies.place(i) * Vec3(0, 0, rod / 2);
+    const Vec3 to_side(found == 0 ? side : -side, 0, 0);
+    EXPECT_LE((low - (tip + Vec3(0, out, height) + to_side)).norm(), 1e-11);
+    EXPECT_LE((high - (tower + Vec3(0, out, axes[2]) + to_side)).norm(), 1e-11);
+    ++found;
+  }
+  EXPECT_EQ(found, 2);
+}
+
+TEST(ChainBodies, NoPointOfARodMovesFartherThanItsSlideAndTheTipTogether) {
+  const auto machine = machine::load_machine("delta");
+  const auto mechanism = machine.make_mechanism();
+  ChainBodies bodies(machine, make_as_built(machine, "nominal", 1));
+  Random random(9, "rods");
+  double tightest = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const Vec3 from(random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08), random.uniform(0, 0.2));
+    const Vec3 to = from + Vec3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), 0);
+    AxisVector a{}, b{}, travel{};
+    ASSERT_EQ(mechanism->inverse(make_pose(Quat::Identity(), from), {}, a), kinematics::SolveStatus::ok);
+    ASSERT_EQ(mechanism->inverse(make_pose(Quat::Identity(), to), {}, b), kinematics::SolveStatus::ok);
+    for (std::size_t i = 0; i < 3; ++i) travel[i] = std::abs(a[i] - b[i]);
+    for (std::size_t i = 0; i < bodies.items().size(); ++i) {
+      if (bodies.items()[i].rod < 0) continue;
+      bodies.pose(a);
+      const Pose X_from = bodies.place(i);
+      bodies.pose(b);
+      const Pose X_to = bodies.place(i);
+      const double bound = bodies.motion(i, travel, (to - from).norm());
+      for (const double end : {-0.1335, 0.1335}) {
+        const double motion = (X_to * Vec3(0, 0, end) - X_from * Vec3(0, 0, end)).norm();
+        ASSERT_LE(motion, bound + 1e-12);
+        tightest = std::max(tightest, motion / bound);
+      }
+    }
+  }
+  EXPECT_GT(tightest, 0.5);
+}
+
 }  // namespace
 }  // namespace understudy::sim
