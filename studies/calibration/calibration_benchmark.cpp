@@ -230,6 +230,8 @@ void check_engine(const CalibrationBenchmarkRequest& request, const machine::Mac
 CalibrationBenchmark run_benchmark(const CalibrationBenchmarkRequest& request, const Progress& progress) {
   const machine::MachineDescription machine = machine::load_machine(request.machine);
   const bool chain = machine.is_chain(), pixels = request.from == MeasuredFrom::pixels;
+  if (chain && !machine.chain().kinematics.chain.rods.empty())
+    throw InputError(machine.name + ": the estimators know trees of axes, and here rods carry the tool");
   check_engine(request, machine);
   CalibrationBenchmark benchmark{request, machine.name, machine.sha256, entrants_of(request, chain), {}, {}};
   const std::vector<Condition> conditions = conditions_of(request, chain);

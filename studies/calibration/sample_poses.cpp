@@ -109,6 +109,8 @@ bool true_pose(const MachineDescription& machine, const sim::AsBuilt& built, con
 }
 
 void check(const SamplePosesRequest& request, const MachineDescription& machine) {
+  if (machine.is_chain() && !machine.chain().kinematics.chain.rods.empty())
+    throw InputError(machine.name + ": the estimators know trees of axes, and here rods carry the tool");
   if (request.from_pixels && machine.is_chain())
     throw InputError("pictures of the targets are taken of a hexapod only");
   if (request.from_pixels && !request.as_built)

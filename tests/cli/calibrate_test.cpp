@@ -140,6 +140,7 @@ TEST(Calibrate, RefusesInOneLineAndWritesNothing) {
       {"calibrate " + kSample + " -o " + (folder / "m.txt"), ".yaml"},
       {"sample-poses --count 0 -o " + (folder / "s.csv"), "--count 0"},
       {"sample-poses --design best -o " + (folder / "s.csv"), "--design best"},
+      {"sample-poses --machine delta -o " + (folder / "s.csv"), "rods carry the tool"},
       {"sample-poses --from pixels -o " + (folder / "s.csv"), "--as-built"},
   };
   for (const auto& [words, part] : calls) {

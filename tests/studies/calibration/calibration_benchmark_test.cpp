@@ -198,6 +198,9 @@ TEST(CalibrationBenchmark, RefusesWhatAMachineCannotHave) {
   request.machine = "arm";
   request.disturbances = {Disturbance::deviation};
   EXPECT_THAT(message(request), HasSubstr("no screw struts"));
+  request = small();
+  request.machine = "delta";
+  EXPECT_THAT(message(request), HasSubstr("rods carry the tool"));
   request.disturbances = {Disturbance::none};
   request.estimators = {"whitened"};
   EXPECT_THAT(message(request), HasSubstr("calibrates hexapods"));
