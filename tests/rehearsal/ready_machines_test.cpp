@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "core/units.h"
 #include "machine/description.h"
 #include "rehearsal/rehearse.h"
@@ -99,13 +100,33 @@ INSTANTIATE_TEST_SUITE_P(
                     Example{"head-head", {" B10 C30", " B-5 C90"}},
                     Example{"open5x", {" U10 V30", " U-5 V90"}},
                     Example{"tilted-nozzle", {" A30", " A-45"}, {" A0", " A90", " A180", " A270"}},
-                    Example{"corexy", {"", ""}}, Example{"arm-positioner", {" A10 C30", " A-5 C90"}},
+                    Example{"corexy", {"", ""}}, Example{"delta", {"", ""}},
+                    Example{"arm-positioner", {" A10 C30", " A-5 C90"}},
                     Example{"arm-rail", {" I0.087155743 J0 K0.996194698", " I0 J0 K1"}}),
     [](const auto& one) {
       std::string name = one.param.machine;
       std::erase(name, '-');
       return name;
     });
+
+// A printer that cannot turn its tool says so of a program that asks for it.
+TEST(ReadyMachinesWithoutTurns, RefuseRotaryWords) {
+  const TemporaryFolder folder;
+  for (const char* machine : {"delta", "corexy"}) {
+    RehearsalRequest request;
+    request.program = (folder.path() / "p.gcode").string();
+    request.machine = machine;
+    request.engine = "quasistatic";
+    std::ofstream(request.program) << kStart << "G1 X10 Y0 Z5 B10 F600\n";
+    try {
+      static_cast<void>(rehearse(request));
+      ADD_FAILURE() << machine << " took it";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("'B10': this machine has no rotary axes"), std::string::npos)
+          << error.what();
+    }
+  }
+}
 
 }  // namespace
 }  // namespace understudy::rehearsal
