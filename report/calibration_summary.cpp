@@ -75,6 +75,14 @@ std::string part_lines(const std::vector<PartReport>& parts, const char* of) {
   return out;
 }
 
+/// "tracker.csv:17: position 5.02 mm, 98.1 sigma"
+std::string spoiled_text(const SpoiledLine& row) {
+  std::string off;
+  if (row.length > 0) off += fmt::format(" {:.3f} mm,", to_mm(row.length));
+  if (row.turn > 0) off += fmt::format(" {:.3f} deg,", to_deg(row.turn));
+  return fmt::format("{}:{}: {}{} {:.1f} sigma", row.file, row.line, row.kind, off, row.sigmas);
+}
+
 /// Of rows of any kind.
 std::string rows_text(const MachineCalibration& result) {
   std::string out = part_lines(result.parts, "") + part_lines(result.compared, "not fitted: ");
@@ -90,6 +98,10 @@ std::string rows_text(const MachineCalibration& result) {
   out += fmt::format("  {} redundant parameters were left as they are\n", result.redundant.size());
   for (const std::string& name : result.untold)
     out += fmt::format("  hardly told by these rows, and left near its drawing: {}\n", name);
+  for (const std::string& names : result.untold_together)
+    out += fmt::format("  hardly told together, and left near their drawing: {}\n", names);
+  for (const SpoiledLine& row : result.spoiled)
+    out += fmt::format("  left out, off from what the other rows say: {}\n", spoiled_text(row));
   for (const std::string& note : result.notes) out += "  " + note + "\n";
   for (const std::string& warning : result.warnings) out += "  warning: " + warning + "\n";
   return out;
@@ -184,6 +196,15 @@ std::string calibration_json(const MachineCalibration& result) {
   if (!result.redundant.empty()) value["redundant"] = result.redundant;
   if (!result.parts.empty()) {
     value["untold"] = result.untold;
+    value["untold_together"] = result.untold_together;
+    value["spoiled"] = ordered_json::array();
+    for (const SpoiledLine& row : result.spoiled)
+      value["spoiled"].push_back({{"file", row.file},
+                                  {"line", row.line},
+                                  {"kind", row.kind},
+                                  {"off_mm", number(to_mm(row.length))},
+                                  {"off_deg", number(to_deg(row.turn))},
+                                  {"sigmas", number(row.sigmas)}});
     value["parts"] = part_values(result.parts);
     if (!result.compared.empty()) value["not_fitted"] = part_values(result.compared);
     value["found"] = ordered_json::array();

@@ -57,18 +57,6 @@ std::vector<ParameterLine> parameter_lines(const Problem& problem, const Calibra
   return lines;
 }
 
-void check_model(const machine::MachineDescription& machine, const Measurements& measurements,
-                 MachineCalibration& result) {
-  if (machine.hexapod().screw_rotation == machine::ScrewRotation::compensated)
-    throw InputError(
-        {measurements.file, 0, 0},
-        "struts of a machine with screw_rotation compensated turn in their nuts: their drives do "
-        "not tell lengths, which the estimators need");
-  if (machine.hexapod().screw_rotation == machine::ScrewRotation::free)
-    result.warnings.emplace_back(
-        "screw_rotation is free: turning screws change the lengths, which no estimator models");
-}
-
 TipCovariance tip_covariance(const MachineCalibration& result, const Calibration& found,
                              const Unknowns& unknowns, const Measurements& measurements) {
   if (found.covariance.size() == 0) return {};
@@ -79,9 +67,21 @@ TipCovariance tip_covariance(const MachineCalibration& result, const Calibration
 
 }  // namespace
 
+void check_hexapod_model(const machine::MachineDescription& machine, const std::string& file,
+                         MachineCalibration& result) {
+  if (machine.hexapod().screw_rotation == machine::ScrewRotation::compensated)
+    throw InputError(
+        {file, 0, 0},
+        "struts of a machine with screw_rotation compensated turn in their nuts: their drives do "
+        "not tell lengths, which the estimators need");
+  if (machine.hexapod().screw_rotation == machine::ScrewRotation::free)
+    result.warnings.emplace_back(
+        "screw_rotation is free: turning screws change the lengths, which no estimator models");
+}
+
 void calibrate_hexapod(const Measurements& measurements, const machine::MachineDescription& nominal,
                        const Estimator& estimator, MachineCalibration& result) {
-  check_model(nominal, measurements, result);
+  check_hexapod_model(nominal, measurements.file, result);
   const Unknowns unknowns = estimator.unknowns();
   if (unknowns.play && !measurements.approach_told)
     throw InputError(

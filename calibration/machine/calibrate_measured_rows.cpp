@@ -9,14 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "calibration/absorb_zeros.h"
-#include "calibration/machine/estimation_report.h"
+#include "calibration/machine/machine_of_rows.h"
 #include "calibration/machine/measurement_columns.h"
-#include "calibration/machine/stored_parameters.h"
 #include "calibration/table/measured_rows.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "machine/file/calibration_section.h"
 
 namespace understudy::calibration {
 namespace {
@@ -39,18 +36,6 @@ Twist as_pose(RowKind kind, const Eigen::VectorXd& numbers) {
   Twist pose = Twist::Constant(std::numeric_limits<double>::quiet_NaN());
   pose.segment(kind == RowKind::orientation ? 3 : 0, numbers.size()) = numbers;
   return pose;
-}
-
-std::vector<ParameterLine> parameter_lines(const RowCalibration& found, const ChainParameters& drawn) {
-  std::vector<ParameterLine> lines;
-  for (std::size_t k = 0; k < found.estimated.size(); ++k) {
-    const bool angle = is_angle(found.estimated[k], drawn.chain);
-    const double unit = angle ? kDegree : kMillimetre;
-    lines.push_back({found.estimated[k], angle ? "deg" : "mm", 0,
-                     found.changes[static_cast<Eigen::Index>(k)] / unit,
-                     sigma_of(found.covariance, k) / unit});
-  }
-  return lines;
 }
 
 void check_explained(const RowCalibration& found, const std::string& file, const std::string& machine) {
@@ -80,6 +65,7 @@ void take_rows(const MeasuredRows& rows, const RowCalibration& found, MachineCal
     const MeasurementRow& row = rows.problem.rows[j];
     PoseResidual residual;
     residual.line = row.line;
+    residual.used = found.used[j];
     residual.before = as_pose(row.kind, found.before[j]);
     residual.after = as_pose(row.kind, found.after[j]);
     residual.whitened = as_pose(row.kind, found.whitened[j]);
@@ -90,8 +76,20 @@ void take_rows(const MeasuredRows& rows, const RowCalibration& found, MachineCal
   result.parts = found.parts;
   result.found = found.found;
   result.untold = found.untold;
+  result.untold_together = found.untold_together;
+  for (const SpoiledRow& spoiled : found.spoiled) {
+    const MeasurementRow& row = rows.problem.rows[spoiled.row];
+    result.spoiled.push_back({rows.files[static_cast<std::size_t>(row.table)], row.line, to_string(row.kind),
+                              spoiled.sigmas, spoiled.length, spoiled.turn});
+  }
   result.redundant = found.redundant;
   result.notes = rows.notes;
+}
+
+std::vector<std::string> spoiled_lines(const MachineCalibration& result) {
+  std::vector<std::string> places;
+  for (const SpoiledLine& row : result.spoiled) places.push_back(fmt::format("{}:{}", row.file, row.line));
+  return places;
 }
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -109,11 +107,8 @@ std::vector<std::string> cells_of(const std::string& line) {
 MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
   MachineCalibration result;
   const machine::MachineDescription nominal = machine::load_machine(request.machine);
-  if (!nominal.is_chain())
-    throw InputError(
-        nominal.name +
-        ": a hexapod is calibrated by whole poses only: columns x_mm to qz of docs/calibration-data.md");
-  machine::require_calibratable(nominal);
+  result.file = request.map.file;
+  require_row_model(nominal, result);
   MeasuredRows rows = read_measured_rows(request.map, request.measurements, nominal);
   assume_noise(request.noise, rows.problem);
   const RowCalibration found = calibrate_rows(rows.problem);
@@ -125,14 +120,11 @@ MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
   result.command = request.command;
   result.estimator = "rows";
   take_rows(rows, found, result);
-  kinematics::ChainDescription& known = result.machine.chain().kinematics;
-  if (known.design.axes.empty()) known.design = known.chain;
-  known.chain = absorb_zeros(found.parameters);
-  result.stored = stored_parameters(found, Measurements{}, result.machine);
-  result.machine.X_BT_home = kinematics::forward(known.chain, known.home);
-  result.parameters = parameter_lines(found, rows.problem.nominal);
-  report_estimation(found, found.covariance, result);
-  result.tip = tip_map(nominal, result.machine, chain_tip(result.machine, found));
+  take_machine(found, rows.problem, nominal, result);
+  if (!result.spoiled.empty())
+    result.warnings.push_back(fmt::format("{} of {} rows do not agree with the others and were left out: {}",
+                                          result.spoiled.size(), rows.problem.rows.size(),
+                                          fmt::join(spoiled_lines(result), ", ")));
   if (!request.compared.empty()) {
     MeasuredRows others = read_measured_rows(request.map, request.compared, nominal);
     assume_noise(request.noise, others.problem);
@@ -161,20 +153,19 @@ std::optional<ColumnMap> map_of_partial_poses(const std::string& text, const std
   if (position == orientation || (position ? any({"qw", "qx", "qy", "qz"}) : any({"x_mm", "y_mm", "z_mm"})))
     return std::nullopt;
   const machine::MachineDescription machine = machine::load_machine(machine_name);
-  if (!machine.is_chain()) return std::nullopt;
   std::vector<std::string> known{"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "sigma_um", "sigma_mrad"};
   TableMap table;
   table.read = {file, text};
   table.kind = position ? RowKind::position : RowKind::orientation;
   table.format = {',', '.', 1, "#", 0};
-  table.joints = {axis_columns(machine), kDegree, {}, 1};
+  table.joints = {axis_columns(machine), kDegree, true, {}, 1};  // lengths of struts and slides are in mm
   table.joint_unit_told = true;
   known.insert(known.end(), table.joints.columns.begin(), table.joints.columns.end());
   for (const std::string& name : header)
     if (std::find(known.begin(), known.end(), name) == known.end())
       return std::nullopt;  // read_measurements() says why
-  if (position) table.position = {{"x_mm", "y_mm", "z_mm"}, kMillimetre, {}, kMicrometre};
-  if (orientation) table.orientation = {{"qw", "qx", "qy", "qz"}, 1, {}, 1e-3};
+  if (position) table.position = {{"x_mm", "y_mm", "z_mm"}, kMillimetre, true, {}, kMicrometre};
+  if (orientation) table.orientation = {{"qw", "qx", "qy", "qz"}, 1, true, {}, 1e-3};
   if (position && has("sigma_um")) table.position->sigma = {"sigma_um"};
   if (orientation && has("sigma_mrad")) table.orientation->sigma = {"sigma_mrad"};
   ColumnMap map;

@@ -20,7 +20,7 @@ struct RowsRequest {
   std::string command;                    ///< for the record
 };
 
-/// Throws InputError, with file and line where one row is at fault, for a hexapod, for all that
+/// Throws InputError, with file and line where one row is at fault, for all that
 /// read_measured_rows() refuses, for rows that do not tell what they are to tell, and for rows that no
 /// calibration of this machine explains.
 MachineCalibration calibrate_measured_rows(const RowsRequest& request);

@@ -27,6 +27,15 @@ struct PoseResidual {
   std::vector<double> strut_sigma;  ///< [m] what the pose's noise alone makes of it
 };
 
+/// A row of any kind that was left out, for it does not agree with the others.
+struct SpoiledLine {
+  std::string file;
+  int line = 0;
+  std::string kind;
+  double sigmas = 0;            ///< from what the others say
+  double length = 0, turn = 0;  ///< [m], [rad], as far as its kind has them
+};
+
 struct ParameterLine {
   std::string name, unit;
   double before = 0, after = 0;  ///< in `unit`
@@ -50,10 +59,12 @@ struct MachineCalibration {
   TipMap tip;
   std::vector<std::string> warnings;
   // Of rows of any kind (calibration/rows); empty where whole poses in W were measured.
-  std::vector<PartReport> parts;         ///< of the fitted rows
-  std::vector<PartReport> compared;      ///< of rows that were not fitted
-  std::vector<FoundNumber> found;        ///< frames, targets, places
-  std::vector<std::string> untold;       ///< parameters that stay near their drawing
+  std::vector<PartReport> parts;             ///< of the fitted rows
+  std::vector<PartReport> compared;          ///< of rows that were not fitted
+  std::vector<FoundNumber> found;            ///< frames, targets, places
+  std::vector<std::string> untold;           ///< parameters that stay near their drawing
+  std::vector<std::string> untold_together;  ///< combinations of parameters that do
+  std::vector<SpoiledLine> spoiled;
   std::vector<std::string> notes;        ///< units that were recognised
   machine::CalibratedParameters stored;  ///< what the calibrated file keeps besides `machine`
 };

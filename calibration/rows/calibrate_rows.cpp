@@ -8,7 +8,6 @@
 
 #include "calibration/calibrated.h"
 #include "calibration/estimators/independent_columns.h"
-#include "calibration/rows/free_parameters.h"
 #include "calibration/rows/row_report.h"
 #include "calibration/rows/surroundings_start.h"
 
@@ -17,8 +16,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-constexpr double kUntold = 0.5;  // of the prior's sigma
 
 RowCalibration refused(RowCalibration result, Status status, const std::string& message) {
   result.status = status;
@@ -44,7 +41,7 @@ bool tells_tool(const MeasurementRow& row, const RowProblem& problem) {
 }
 
 Fault input_fault(const RowProblem& problem) {
-  const std::size_t axes = problem.nominal.chain.axes.size();
+  const std::size_t axes = problem.nominal.axes();
   for (std::size_t j = 0; j < problem.rows.size(); ++j) {
     const MeasurementRow& row = problem.rows[j];
     if (row.axes.size() != axes)
@@ -53,6 +50,9 @@ Fault input_fault(const RowProblem& problem) {
       return fault_of_pose(j, "an axis reading is not finite");
     if (!row.X_MG.matrix().allFinite() || !std::isfinite(row.distance) || !row.covariance.allFinite())
       return fault_of_pose(j, "a measured number is not finite");
+    if (!problem.nominal.forward(row.axes).matrix().allFinite())
+      return fault_of_pose(j,
+                           "no pose of this machine has these readings: another machine, or another unit?");
   }
   for (const KnownDistance& d : problem.distances)
     for (const std::string& name : {d.a, d.b})
@@ -65,9 +65,13 @@ Fault input_fault(const RowProblem& problem) {
 
 /// Numbers of the surroundings that rows cannot tell apart, whatever the machine.
 std::vector<std::string> untold_surroundings(const RowProblem& problem, const SurroundingsLayout& layout,
-                                             const RowState& at, const AddedNoise& noise) {
+                                             const RowState& at, const AddedNoise& noise,
+                                             const RowWeights& weights) {
   RowEquations equations = row_equations(problem, layout, at, false);
   whiten(problem, noise, equations);
+  const auto first = first_equations(problem);
+  for (std::size_t j = 0; j < weights.size(); ++j)
+    if (weights[j] == 0) equations.around.middleRows(first[j], first[j + 1] - first[j]).setZero();
   const auto kept = independent_columns(equations.around);
   std::vector<std::string> names;
   for (Index k = 0; k < layout.columns(); ++k)
@@ -117,19 +121,23 @@ Asked unknowns_of(const RowProblem& problem) {
                        [&](const MeasurementRow& row) { return tells(row, problem); });
   };
   Asked unknowns;
-  unknowns.machine = free_parameters(problem.nominal, !any(tells_base), !any(tells_tool));
-  const auto names = chain_parameter_names(problem.nominal.chain);
-  for (std::size_t k = 0; k < names.size(); ++k)
+  unknowns.machine = problem.nominal.free_parameters(!any(tells_base), !any(tells_tool));
+  const auto parameters = problem.nominal.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k)
     (std::binary_search(unknowns.machine.begin(), unknowns.machine.end(), static_cast<Index>(k))
          ? unknowns.estimated
          : unknowns.redundant)
-        .push_back(names[k]);
+        .push_back(parameters[k].name);
   return unknowns;
 }
 
 void fill(const RowProblem& problem, const SurroundingsLayout& layout, const RowFit& before,
-          const RowFit& after, const AddedNoise& noise, RowCalibration& result) {
-  result.parameters = after.state.machine;
+          const AgreeingFit& agreeing, RowCalibration& result) {
+  const RowFit& after = agreeing.fit;
+  const AddedNoise& noise = agreeing.noise;
+  for (std::size_t j = 0; j < agreeing.weights.size(); ++j) result.used[j] = agreeing.weights[j] > 0;
+  result.spoiled = spoiled_list(problem, after, agreeing.weights);
+  result.machine = after.state.machine;
   result.around = after.state.around;
   result.around_nominal = before.state.around;
   result.iterations = after.iterations;
@@ -138,7 +146,7 @@ void fill(const RowProblem& problem, const SurroundingsLayout& layout, const Row
   result.before = by_rows(problem, before.error);
   result.after = by_rows(problem, after.error);
   result.whitened = by_rows(problem, whitened(problem, noise, after.error));
-  result.parts = part_reports(problem, before.error, after.error, noise);
+  result.parts = part_reports(problem, before.error, after.error, noise, agreeing.weights);
   result.found = found_numbers(layout, after.state.around, after.covariance);
 }
 
@@ -146,7 +154,7 @@ void fill(const RowProblem& problem, const SurroundingsLayout& layout, const Row
 
 RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& options) {
   RowCalibration result;
-  result.parameters = problem.nominal;
+  result.machine = problem.nominal;
   result.used.assign(problem.rows.size(), true);
   if (const Fault fault = input_fault(problem); !fault.message.empty()) {
     result.pose = fault.pose;
@@ -164,33 +172,45 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
                     "of frames, targets and places): measure more",
                     problem.rows.size(), equations, numbers, numbers - layout.columns(), layout.columns()));
   const RowLikelihood likelihood(problem, layout, unknowns.machine);
-  AddedNoise noise = options.start;
-  const auto before = fitted_surroundings(likelihood, problem, layout, noise, options.max_iterations);
+  const auto before = fitted_surroundings(likelihood, problem, layout, options.start, options.max_iterations);
   if (!before)
     return refused(result, Status::not_converged, "no place of the measuring frames fits these rows");
-  if (const auto untold = untold_surroundings(problem, layout, before->state, noise); !untold.empty())
+  const auto untold = [&](const RowState& at, const AddedNoise& noise, const RowWeights& weights) {
+    const auto names = untold_surroundings(problem, layout, at, noise, weights);
+    if (names.empty()) return false;
+    result = refused(result, Status::rank_deficient,
+                     fmt::format("these rows do not tell {}: turn the tool about several directions and move "
+                                 "it between rows, or say where it is",
+                                 fmt::join(names, ", ")));
+    return true;
+  };
+  if (untold(before->fit.state, options.start, {})) return result;
+  const AgreeingFit agreeing = fit_agreeing(likelihood, problem, {problem.nominal, before->fit.state.around},
+                                            options.start, options.machine, options.max_iterations);
+  const RowFit& after = agreeing.fit;
+  if (const std::size_t spoiled = spoiled_rows(agreeing.weights);
+      static_cast<double>(spoiled) > kSpoiledShare * static_cast<double>(problem.rows.size()))
     return refused(
-        result, Status::rank_deficient,
-        fmt::format("these rows do not tell {}: turn the tool about several directions and move it "
-                    "between rows, or say where it is",
-                    fmt::join(untold, ", ")));
-  const RowFit after =
-      likelihood.fit_with_noise(before->state, noise, options.machine, options.max_iterations);
+        result, Status::not_converged,
+        fmt::format("{} of {} rows do not agree with the others, more than a quarter: readings and "
+                    "measurements of the same rows, of this machine, with one target each?",
+                    spoiled, problem.rows.size()));
+  if (untold(after.state, agreeing.noise, agreeing.weights)) return result;
   // What the nominal machine leaves, weighed as the found one is.
-  const RowFit compared = likelihood.fit(before->state, noise, false, options.max_iterations);
-  fill(problem, layout, compared, after, noise, result);
+  const RowFit compared = likelihood.fit({problem.nominal, before->fit.state.around}, agreeing.noise, false,
+                                         options.max_iterations, agreeing.weights);
+  fill(problem, layout, compared, agreeing, result);
   if (options.machine) result.estimated = unknowns.estimated;
   const Index machine = options.machine ? likelihood.prior().size() : 0;
   result.covariance = after.covariance.topLeftCorner(machine, machine);
   result.changes = after.moved.head(machine);
-  double by_prior = 0;  // unknowns that the prior tells
-  for (Index k = 0; k < machine; ++k) {
-    const double share = after.covariance(k, k) / std::pow(likelihood.prior()[k], 2);
-    by_prior += share;
-    if (share > kUntold * kUntold) result.untold.push_back(unknowns.estimated[static_cast<std::size_t>(k)]);
-  }
-  result.degrees_of_freedom =
-      static_cast<int>(std::lround(static_cast<double>(equations - numbers) + by_prior));
+  name_untold(result.estimated, result.covariance, likelihood.prior().head(machine), result);
+  // Unknowns that the prior tells count as none.
+  const double by_prior =
+      result.covariance.diagonal().cwiseQuotient(likelihood.prior().head(machine).cwiseAbs2()).sum();
+  Index used = equations;
+  for (const SpoiledRow& row : result.spoiled) used -= equations_of(problem.rows[row.row].kind);
+  result.degrees_of_freedom = static_cast<int>(std::lround(static_cast<double>(used - numbers) + by_prior));
   if (!after.settled)
     return refused(
         result, Status::not_converged,

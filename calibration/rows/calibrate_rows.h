@@ -1,11 +1,11 @@
-// Calibration of an open chain from rows of any kind, with the frames, targets and places that are unknown.
+// Calibration of a machine from rows of any kind, with the frames, targets and places that are unknown.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "calibration/rows/row_fit.h"
+#include "calibration/rows/row_outliers.h"
 
 namespace understudy::calibration {
 
@@ -26,16 +26,29 @@ struct FoundNumber {
   bool angle = false;
 };
 
-/// Of the base class: `estimated` are the machine's parameters alone and `covariance` is theirs; `residuals`
-/// are empty.
-struct RowCalibration : ChainCalibration {
-  Eigen::VectorXd changes;  ///< of `estimated`, from the drawing [m] or [rad]
+/// A row that was left out, since it does not agree with the others.
+struct SpoiledRow {
+  std::size_t row = 0;          ///< of the problem
+  double sigmas = 0;            ///< root of RowFit::apart
+  double length = 0, turn = 0;  ///< [m], [rad], of its residual, as far as its kind has them
+};
+
+/// Of the base class `residuals` are empty and `used` is false of spoiled rows.
+struct RowCalibration : Estimation {
+  RowMachine machine;                  ///< the nominal one unless ok or not converged
+  std::vector<std::string> estimated;  ///< names of the machine's parameters that were
+  std::vector<std::string> redundant;  ///< those that whole poses could not tell beside them either
+  Eigen::MatrixXd covariance;          ///< of `estimated`; [m], [rad]
+  Eigen::VectorXd changes;             ///< of `estimated`, from the drawing [m] or [rad]
   Surroundings around;
   Surroundings around_nominal;  ///< as the nominal machine has them
   std::vector<FoundNumber> found;
   std::vector<PartReport> parts;
   /// Parameters of which the rows tell less than the prior of row_fit.h: they stay near their drawing.
   std::vector<std::string> untold;
+  /// Combinations of parameters, likewise, in words: "length offset 1, with base joint 1 z (-0.97)".
+  std::vector<std::string> untold_together;
+  std::vector<SpoiledRow> spoiled;
   /// Of each row, in SI, as row_equations.h orders them; `before`: with the nominal machine.
   std::vector<Eigen::VectorXd> before, after;
   std::vector<Eigen::VectorXd> whitened;  ///< of `after`

@@ -35,13 +35,13 @@ RowProblem with_known(RowProblem problem, const SurroundingsLayout& layout, cons
   return problem;
 }
 
-Eigen::VectorXd left_by(const RowProblem& problem, const ChainParameters& machine, const AddedNoise& noise) {
+Eigen::VectorXd left_by(const RowProblem& problem, const RowMachine& machine, const AddedNoise& noise) {
   RowProblem by_machine = problem;
   by_machine.nominal = machine;
   const SurroundingsLayout layout(by_machine);
   const RowLikelihood likelihood(by_machine, layout, {});
   const auto fit = fitted_surroundings(likelihood, by_machine, layout, noise, RowOptions{}.max_iterations);
-  return fit ? fit->error : Eigen::VectorXd();
+  return fit ? fit->fit.error : Eigen::VectorXd();
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ std::vector<PartReport> compared_rows(const RowProblem& problem, const RowProble
   AddedNoise noise = fitted.added;
   for (double& sigma : noise) sigma = std::max(sigma, 1e-6);
   const Eigen::VectorXd nominal = left_by(before, from.nominal, noise),
-                        found = left_by(after, fitted.parameters, noise);
+                        found = left_by(after, fitted.machine, noise);
   if (nominal.size() == 0 || found.size() == 0) return {};
   return part_reports(problem, nominal, found, fitted.added);
 }

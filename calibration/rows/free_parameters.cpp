@@ -24,6 +24,25 @@ double drawn(const kinematics::ChainAxis& axis, Random& random) {
   return random.uniform(low, high);
 }
 
+/// Six coordinates of `joints` that no motion of them all as one rigid body leaves in place; number 3 i + k
+/// is coordinate k of joint i.
+std::vector<std::size_t> holding(const kinematics::PerStrut<Vec3>& joints) {
+  constexpr double kWellHeld = 0.2;  // of the longest lever
+  double longest = 0;
+  for (const Vec3& joint : joints) longest = std::max(longest, (joint - joints[0]).norm());
+  std::vector<std::size_t> held{0, 1, 2};  // joint 1; what is left turns about it
+  std::vector<Vec3> turns;                 // by which those held after it move, made orthonormal
+  for (const std::size_t i : {2, 4, 1, 3, 5})
+    for (const Index k : {2, 1, 0}) {
+      Vec3 by = (joints[i] - joints[0]).cross(Vec3::Unit(k));
+      for (const Vec3& turn : turns) by -= turn.dot(by) * turn;
+      if (turns.size() == 3 || by.norm() < kWellHeld * longest) continue;
+      turns.push_back(by.normalized());
+      held.push_back(3 * i + static_cast<std::size_t>(k));
+    }
+  return held;
+}
+
 }  // namespace
 
 std::vector<Index> free_parameters(const ChainParameters& nominal, bool base_free, bool tool_free) {
@@ -57,6 +76,19 @@ std::vector<Index> free_parameters(const ChainParameters& nominal, bool base_fre
       kept.push_back(column - around);
   std::sort(kept.begin(), kept.end());
   return kept;
+}
+
+std::vector<Index> free_parameters(const HexapodGeometry& nominal, bool base_free, bool tool_free) {
+  std::vector<bool> kept(kGeometryParameters, true);
+  const auto hold = [&kept](const kinematics::PerStrut<Vec3>& joints, std::size_t first) {
+    for (const std::size_t k : holding(joints)) kept[kStrutParameters * (k / 3) + first + k % 3] = false;
+  };
+  if (base_free) hold(nominal.base_joint, 0);
+  if (tool_free) hold(nominal.platform_joint, 3);
+  std::vector<Index> columns;
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (kept[k]) columns.push_back(static_cast<Index>(k));
+  return columns;
 }
 
 }  // namespace understudy::calibration

@@ -1,4 +1,4 @@
-// Which parameters of a chain mean anything, where the base is seen from nowhere or the tool by nothing.
+// Which parameters of a machine mean anything, where the base is seen from nowhere or the tool by nothing.
 #pragma once
 
 #include <vector>
@@ -12,5 +12,9 @@ namespace understudy::calibration {
 /// drawing, so that the base stays where it was. With `tool_free` what was measured sits on the tool at a
 /// place of its own, unknown as well, and the tool's mount is left at the drawing.
 std::vector<Eigen::Index> free_parameters(const ChainParameters& nominal, bool base_free, bool tool_free);
+
+/// The same of the 42 of a hexapod. With a free base the drawn place of base joint 1 and two directions from
+/// it are kept, six numbers of base joints in all; with a free tool likewise of platform joints.
+std::vector<Eigen::Index> free_parameters(const HexapodGeometry& nominal, bool base_free, bool tool_free);
 
 }  // namespace understudy::calibration

@@ -1,5 +1,6 @@
 // What a lab measures of a machine at rest, row by row: whole poses, positions, orientations, distances, one
-// point reached in several postures, points of a plane. Everything is SI. S is the work's frame of the chain.
+// point reached in several postures, points of a plane. Everything is SI. S is the work's frame of
+// a chain, and the base B of a hexapod.
 #pragma once
 
 #include <map>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/estimators/chain_calibration.h"
+#include "calibration/rows/row_machine.h"
 
 namespace understudy::calibration {
 
@@ -52,7 +53,7 @@ struct KnownDistance {
 };
 
 struct RowProblem {
-  ChainParameters nominal;
+  RowMachine nominal;
   std::vector<MeasurementRow> rows;
   // Those that are known; all others that rows name are found.
   std::map<std::string, Pose> frames;           ///< X_MS: S seen from the measuring frame

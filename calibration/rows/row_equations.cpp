@@ -44,12 +44,12 @@ void RowWriter::write(const MeasurementRow& row, const SurroundingsLayout::Use& 
                       bool with_machine) {
   const auto target = static_cast<std::size_t>(use.target);
   target_ = &layout_.targets[target];
-  X_ST_ = forward(at_.machine, row.axes);
+  X_ST_ = at_.machine.forward(row.axes);
   X_SG_ = X_ST_ * at_.around.targets[target];
   tip_.resize(3, 0);
   turn_.resize(3, 0);
   if (with_machine) {
-    const MatrixXd rows = chain_rows(at_.machine, row.axes);
+    const MatrixXd rows = at_.machine.parameter_rows(row.axes, X_ST_);
     turn_ = rows.bottomRows<3>();
     tip_ = rows.topRows<3>() - cross_matrix(X_SG_.translation() - X_ST_.translation()) * turn_;
   }
@@ -130,8 +130,7 @@ RowEquations row_equations(const RowProblem& problem, const SurroundingsLayout& 
                            bool with_machine) {
   const std::vector<Index> first = first_equations(problem);
   const Index equations = first.back() + static_cast<Index>(problem.distances.size());
-  const Index parameters =
-      with_machine ? static_cast<Index>(chain_parameter_names(at.machine.chain).size()) : 0;
+  const Index parameters = with_machine ? static_cast<Index>(at.machine.parameters().size()) : 0;
   RowEquations out;
   out.error = Eigen::VectorXd::Zero(equations);
   out.machine = MatrixXd::Zero(equations, parameters);

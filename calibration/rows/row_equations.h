@@ -7,16 +7,17 @@ namespace understudy::calibration {
 
 /// A machine, and what stands around it.
 struct RowState {
-  ChainParameters machine;
+  RowMachine machine;
   Surroundings around;
 };
 
 /// Equations of all rows, then one of each known distance. Of one row: (position, rotation vector), as far as
 /// its kind has them; positions [m], turns [rad], both in M.
 struct RowEquations {
-  Eigen::VectorXd error;    ///< measured less model
-  Eigen::MatrixXd machine;  ///< d model / d chain_parameter_names(); no columns where they were not asked for
-  Eigen::MatrixXd around;   ///< d model / d SurroundingsLayout::names
+  Eigen::VectorXd error;  ///< measured less model
+  Eigen::MatrixXd
+      machine;             ///< d model / d RowMachine::parameters(); no columns where they were not asked for
+  Eigen::MatrixXd around;  ///< d model / d SurroundingsLayout::names
 };
 
 /// First equation of each row, and at the end that of the known distances.

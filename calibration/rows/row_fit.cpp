@@ -1,9 +1,8 @@
 #include "calibration/rows/row_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
-
-#include "calibration/rows/surroundings_start.h"
 
 namespace understudy::calibration {
 namespace {
@@ -23,26 +22,18 @@ double cost_of(const VectorXd& e, const VectorXd& by, const VectorXd& prior) {
 
 }  // namespace
 
-bool is_angle(const std::string& name, const kinematics::Chain& chain) {
-  if (name.find("turn") != std::string::npos || name.find("tilt") != std::string::npos) return true;
-  for (const auto& axis : chain.axes)
-    if (name == axis.name + " zero") return axis.angle;
-  return false;
-}
-
 RowLikelihood::RowLikelihood(const RowProblem& problem, const SurroundingsLayout& layout,
                              std::vector<Index> unknowns)
     : problem_(problem), layout_(layout), unknowns_(std::move(unknowns)) {
-  const auto names = chain_parameter_names(problem.nominal.chain);
+  const auto parameters = problem.nominal.parameters();
   prior_.resize(static_cast<Index>(unknowns_.size()));
-  for (std::size_t k = 0; k < unknowns_.size(); ++k) {
-    const std::string& name = names[static_cast<std::size_t>(unknowns_[k])];
-    prior_[static_cast<Index>(k)] = is_angle(name, problem.nominal.chain) ? kPriorAngle : kPriorLength;
-  }
+  for (std::size_t k = 0; k < unknowns_.size(); ++k)
+    prior_[static_cast<Index>(k)] =
+        parameters[static_cast<std::size_t>(unknowns_[k])].angle ? kPriorAngle : kPriorLength;
 }
 
-RowLikelihood::Linear RowLikelihood::linear(const RowState& at, const AddedNoise& noise,
-                                            bool machine_too) const {
+RowLikelihood::Linear RowLikelihood::linear(const RowState& at, const AddedNoise& noise, bool machine_too,
+                                            const RowWeights& weights) const {
   RowEquations equations = row_equations(problem_, layout_, at, machine_too);
   Linear out;
   out.error = equations.error;
@@ -52,33 +43,40 @@ RowLikelihood::Linear RowLikelihood::linear(const RowState& at, const AddedNoise
   if (machine_too) out.J.leftCols(machine) = equations.machine(Eigen::all, unknowns_);
   out.J.rightCols(layout_.columns()) = equations.around;
   out.e = std::move(equations.error);
+  if (weights.empty()) return out;
+  const auto first = first_equations(problem_);
+  for (std::size_t j = 0; j < weights.size(); ++j) {
+    const double root = std::sqrt(weights[j]);
+    out.e.segment(first[j], first[j + 1] - first[j]) *= root;
+    out.J.middleRows(first[j], first[j + 1] - first[j]) *= root;
+  }
   return out;
 }
 
 RowState RowLikelihood::step_from(const RowState& at, const VectorXd& step, Index machine) const {
   RowState to{at.machine, moved(at.around, layout_, step.tail(layout_.columns()))};
   if (machine == 0) return to;
-  VectorXd by = VectorXd::Zero(static_cast<Index>(chain_parameter_names(at.machine.chain).size()));
+  VectorXd by = VectorXd::Zero(static_cast<Index>(at.machine.parameters().size()));
   for (Index k = 0; k < machine; ++k) by[unknowns_[static_cast<std::size_t>(k)]] = step[k];
-  to.machine = calibration::moved(at.machine, by);
+  to.machine = at.machine.moved(by);
   return to;
 }
 
 RowFit RowLikelihood::fit(const RowState& start, const AddedNoise& noise, bool machine_too,
-                          int max_iterations) const {
+                          int max_iterations, const RowWeights& weights) const {
   RowFit found;
   found.state = start;
   const Index machine = machine_too ? prior_.size() : 0, unknowns = machine + layout_.columns();
   const VectorXd prior = prior_.head(machine);
   VectorXd by = VectorXd::Zero(unknowns);
-  Linear at = linear(found.state, noise, machine_too);
+  Linear at = linear(found.state, noise, machine_too, weights);
   if (unknowns == 0) {  // Eigen's reductions over no columns are undefined
     found.settled = true;
     found.covariance.resize(0, 0);
     found.moved = by;
     found.chi_square = at.e.squaredNorm();
     found.error = at.error;
-    found.fitted = VectorXd::Zero(at.error.size());
+    tell(noise, machine_too, weights, found);
     return found;
   }
   double cost = cost_of(at.e, by, prior), damping = 1e-6;
@@ -102,10 +100,10 @@ RowFit RowLikelihood::fit(const RowState& start, const AddedNoise& noise, bool m
         continue;
       }
       const RowState next = step_from(found.state, step, machine);
-      Linear after = linear(next, noise, machine_too);
+      Linear after = linear(next, noise, machine_too, weights);
       const double lower = cost_of(after.e, by + step, prior);
       // Rounding of the cost itself is no reason against a step that hardly moves.
-      better = lower < cost || curvature < kStepDone;
+      better = lower < cost || (curvature < kStepDone && std::isfinite(lower));
       if (!better) {
         damping *= 10;
         continue;
@@ -130,40 +128,65 @@ RowFit RowLikelihood::fit(const RowState& start, const AddedNoise& noise, bool m
   found.moved = by;
   found.chi_square = at.e.squaredNorm();
   found.error = at.error;
-  // Of whitened rows, times what they were divided by: the model's own variance in SI.
-  RowEquations equations = row_equations(problem_, layout_, found.state, machine_too);
-  MatrixXd raw(equations.error.size(), unknowns);
-  if (machine > 0) raw.leftCols(machine) = equations.machine(Eigen::all, unknowns_);
-  raw.rightCols(layout_.columns()) = equations.around;
-  found.fitted = (raw * found.covariance).cwiseProduct(raw).rowwise().sum();
+  tell(noise, machine_too, weights, found);
   return found;
 }
 
+/// What each row and equation says about the fit.
+void RowLikelihood::tell(const AddedNoise& noise, bool machine_too, const RowWeights& weights,
+                         RowFit& found) const {
+  constexpr double kUntested =
+      1e-3;  // a direction of which the fit took all but this tells nothing of the row
+  const Index unknowns = found.covariance.rows();
+  RowEquations equations = row_equations(problem_, layout_, found.state, machine_too);
+  const auto stack = [&] {
+    MatrixXd J(equations.error.size(), unknowns);
+    if (machine_too && unknowns > 0) J.leftCols(prior_.size()) = equations.machine(Eigen::all, unknowns_);
+    if (unknowns > 0) J.rightCols(layout_.columns()) = equations.around;
+    return J;
+  };
+  found.fitted = VectorXd::Zero(equations.error.size());
+  if (unknowns > 0) {
+    const MatrixXd J = stack();
+    found.fitted = (J * found.covariance).cwiseProduct(J).rowwise().sum();
+  }
+  whiten(problem_, noise, equations);
+  const MatrixXd J = stack();
+  const auto first = first_equations(problem_);
+  found.apart.assign(problem_.rows.size(), 0.0);
+  for (std::size_t j = 0; j < problem_.rows.size(); ++j) {
+    const Index n = first[j + 1] - first[j];
+    const VectorXd e = equations.error.segment(first[j], n);
+    if (unknowns == 0) {
+      found.apart[j] = e.squaredNorm();
+      continue;
+    }
+    const auto rows = J.middleRows(first[j], n);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> share(MatrixXd(rows * found.covariance * rows.transpose()));
+    const double w = weight_of(weights, j);
+    for (Index i = 0; i < n; ++i) {
+      const double h = share.eigenvalues()[i], left = 1 - w * h;
+      if (left > kUntested)
+        found.apart[j] += std::pow(share.eigenvectors().col(i).dot(e), 2) / (left * (1 + (1 - w) * h));
+    }
+    if (!std::isfinite(found.apart[j])) found.apart[j] = 1e300;
+  }
+}
+
 RowFit RowLikelihood::fit_with_noise(const RowState& start, AddedNoise& noise, bool machine_too,
-                                     int max_iterations) const {
-  RowFit found = fit(start, noise, machine_too, max_iterations);
+                                     int max_iterations, const RowWeights& weights) const {
+  RowFit found = fit(start, noise, machine_too, max_iterations, weights);
   for (int round = 0; round < kNoiseRounds; ++round) {
-    const AddedNoise next = explaining_noise(problem_, found.error, found.fitted, noise);
+    const AddedNoise next = explaining_noise(problem_, found.error, found.fitted, noise, weights);
     bool same = true;
     for (std::size_t part = 0; part < kNoiseParts; ++part)
       same = same && std::abs(next[part] - noise[part]) <= kNoiseSettled * noise[part];
     noise = next;
     // Always from the nominal machine, where the prior has its middle; what stands around is near already.
-    found = fit({start.machine, found.state.around}, noise, machine_too, max_iterations);
+    found = fit({start.machine, found.state.around}, noise, machine_too, max_iterations, weights);
     if (same) break;
   }
   return found;
-}
-
-std::optional<RowFit> fitted_surroundings(const RowLikelihood& likelihood, const RowProblem& problem,
-                                          const SurroundingsLayout& layout, const AddedNoise& noise,
-                                          int max_iterations) {
-  std::optional<RowFit> best;
-  for (const Surroundings& start : starts(problem, layout)) {
-    const RowFit fit = likelihood.fit({problem.nominal, start}, noise, false, max_iterations);
-    if (std::isfinite(fit.chi_square) && (!best || fit.chi_square < best->chi_square)) best = fit;
-  }
-  return best;
 }
 
 }  // namespace understudy::calibration

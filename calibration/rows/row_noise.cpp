@@ -45,6 +45,16 @@ Eigen::VectorXd told_variances(const RowProblem& problem) {
   return told;
 }
 
+/// Of each equation, whether its row counts; known distances do.
+std::vector<bool> counted(const RowProblem& problem, const RowWeights& weights) {
+  std::vector<bool> counts;
+  for (std::size_t j = 0; j < problem.rows.size(); ++j)
+    counts.insert(counts.end(), static_cast<std::size_t>(equations_of(problem.rows[j].kind)),
+                  weight_of(weights, j) > 0);
+  counts.insert(counts.end(), problem.distances.size(), true);
+  return counts;
+}
+
 std::vector<bool> noise_told(const RowProblem& problem) {
   std::vector<bool> told;
   for (const MeasurementRow& row : problem.rows)
@@ -111,13 +121,15 @@ void whiten(const RowProblem& problem, const AddedNoise& added, RowEquations& eq
 }
 
 std::array<PartScatter, kNoiseParts> scatter(const RowProblem& problem, const Eigen::VectorXd& error,
-                                             const Eigen::VectorXd& fitted, const AddedNoise& added) {
+                                             const Eigen::VectorXd& fitted, const AddedNoise& added,
+                                             const RowWeights& weights) {
   const auto parts = parts_of(problem);
+  const auto counts = counted(problem, weights);
   const auto is_told = noise_told(problem);
   const Eigen::VectorXd told = told_variances(problem);
   std::array<PartScatter, kNoiseParts> found;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i] == NoisePart::exact) continue;
+    if (parts[i] == NoisePart::exact || !counts[i]) continue;
     const auto part = static_cast<std::size_t>(parts[i]);
     const auto row = static_cast<Index>(i);
     PartScatter& s = found[part];
@@ -130,10 +142,12 @@ std::array<PartScatter, kNoiseParts> scatter(const RowProblem& problem, const Ei
 }
 
 AddedNoise explaining_noise(const RowProblem& problem, const Eigen::VectorXd& error,
-                            const Eigen::VectorXd& fitted, const AddedNoise& before) {
+                            const Eigen::VectorXd& fitted, const AddedNoise& before,
+                            const RowWeights& weights) {
   const auto parts = parts_of(problem);
+  const auto counts = counted(problem, weights);
   const Eigen::VectorXd told = told_variances(problem);
-  const auto found = scatter(problem, error, fitted, before);
+  const auto found = scatter(problem, error, fitted, before, weights);
   AddedNoise added = before;
   for (std::size_t part = 0; part < kNoiseParts; ++part) {
     const PartScatter& s = found[part];
@@ -144,11 +158,55 @@ AddedNoise explaining_noise(const RowProblem& problem, const Eigen::VectorXd& er
     }
     std::vector<double> squares, variances;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      if (static_cast<std::size_t>(parts[i]) != part) continue;
+      if (static_cast<std::size_t>(parts[i]) != part || !counts[i]) continue;
       squares.push_back(square(error[static_cast<Index>(i)]));
       variances.push_back(told[static_cast<Index>(i)]);
     }
     added[part] = std::sqrt(added_variance(squares, variances, s.degrees));
+  }
+  return added;
+}
+
+AddedNoise median_noise(const RowProblem& problem, const Eigen::VectorXd& error,
+                        const Eigen::VectorXd& fitted, const AddedNoise& before) {
+  constexpr double kMedian = 0.4549;  // of the square of a standard normal number
+  constexpr double kSpread = 2.3;     // relative, times 1 / sqrt(n): 1 sigma of that median as an estimate
+  constexpr double kLeastShare = 0.05;
+  const auto parts = parts_of(problem);
+  const Eigen::VectorXd told = told_variances(problem);
+  const auto all = scatter(problem, error, fitted, before);
+  AddedNoise added = before;
+  for (std::size_t part = 0; part < kNoiseParts; ++part) {
+    if (all[part].equations == 0) continue;
+    std::vector<double> squares, variances;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (static_cast<std::size_t>(parts[i]) != part) continue;
+      const auto row = static_cast<Index>(i);
+      // What the fit has not taken of a residual that it was made from.
+      const double share = 1 - fitted[row] / (told[row] + square(std::max(kLeast, before[part])));
+      squares.push_back(square(error[row]) / std::max(kLeastShare, share));
+      variances.push_back(told[row]);
+    }
+    const auto median_with = [&](double variance) {
+      std::vector<double> ratio;
+      for (std::size_t i = 0; i < squares.size(); ++i)
+        ratio.push_back(squares[i] / (variances[i] + variance));
+      const auto middle = ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2);
+      std::nth_element(ratio.begin(), middle, ratio.end());
+      return *middle;
+    };
+    double low = square(kLeast), high = low;
+    const double n = static_cast<double>(squares.size());
+    if (all[part].all_told && median_with(0) < kMedian * (1 + kExplained * kSpread / std::sqrt(n))) {
+      added[part] = 0;
+      continue;
+    }
+    while (median_with(high) > kMedian && high < 1e6) high *= 4;
+    for (int halving = 0; halving < 60; ++halving) {
+      const double middle = std::sqrt(low * high);
+      (median_with(middle) > kMedian ? low : high) = middle;
+    }
+    added[part] = std::sqrt(high);
   }
   return added;
 }

@@ -15,6 +15,12 @@ constexpr std::size_t kNoiseParts = 5;  ///< `exact`, of known distances, has it
 /// 1 sigma [m] or [rad] on each axis, added in squares to what rows tell of themselves.
 using AddedNoise = std::array<double, kNoiseParts>;
 
+/// How much each row counts in a fit, 0 to 1; empty: all of them 1.
+using RowWeights = std::vector<double>;
+inline double weight_of(const RowWeights& weights, std::size_t row) {
+  return weights.empty() ? 1.0 : weights[row];
+}
+
 /// The part of every equation.
 std::vector<NoisePart> parts_of(const RowProblem& problem);
 
@@ -30,13 +36,19 @@ struct PartScatter {
 };
 
 /// From residuals and their share of the fit: `fitted` are the variances of the model's own values, one an
-/// equation, in SI.
+/// equation, in SI. Rows of weight 0 are passed over.
 std::array<PartScatter, kNoiseParts> scatter(const RowProblem& problem, const Eigen::VectorXd& error,
-                                             const Eigen::VectorXd& fitted, const AddedNoise& added);
+                                             const Eigen::VectorXd& fitted, const AddedNoise& added,
+                                             const RowWeights& weights = {});
 
 /// The noise that makes each part's residuals what they should be on average (Mandel and Paule 1970): 0 where
 /// the told noise explains them. A part without a degree of freedom keeps its noise.
 AddedNoise explaining_noise(const RowProblem& problem, const Eigen::VectorXd& error,
-                            const Eigen::VectorXd& fitted, const AddedNoise& before);
+                            const Eigen::VectorXd& fitted, const AddedNoise& before,
+                            const RowWeights& weights = {});
+
+/// Likewise from the median of each part's residuals, which fewer than half of the rows cannot spoil.
+AddedNoise median_noise(const RowProblem& problem, const Eigen::VectorXd& error,
+                        const Eigen::VectorXd& fitted, const AddedNoise& before);
 
 }  // namespace understudy::calibration

@@ -7,7 +7,16 @@ namespace understudy::calibration {
 
 /// RMS of each part that the rows have. `before`, `after`: errors of all equations.
 std::vector<PartReport> part_reports(const RowProblem& problem, const Eigen::VectorXd& before,
-                                     const Eigen::VectorXd& after, const AddedNoise& added);
+                                     const Eigen::VectorXd& after, const AddedNoise& added,
+                                     const RowWeights& weights = {});
+
+/// Rows of weight 0. `apart`, `after`: of the fit.
+std::vector<SpoiledRow> spoiled_list(const RowProblem& problem, const RowFit& fit, const RowWeights& weights);
+
+/// What rows tell of the machine's parameters less than `prior` did: single ones, then combinations of the
+/// others. `covariance` is theirs.
+void name_untold(const std::vector<std::string>& names, const Eigen::MatrixXd& covariance,
+                 const Eigen::VectorXd& prior, RowCalibration& result);
 
 /// Numbers of the surroundings, named as the layout's columns; the last rows of `covariance` are theirs.
 std::vector<FoundNumber> found_numbers(const SurroundingsLayout& layout, const Surroundings& around,

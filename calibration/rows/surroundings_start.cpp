@@ -25,7 +25,7 @@ class Starter {
  public:
   Starter(const RowProblem& problem, const SurroundingsLayout& layout)
       : problem_(problem), layout_(layout), at_(layout.known(problem)) {
-    for (const MeasurementRow& row : problem.rows) reached_.push_back(forward(problem.nominal, row.axes));
+    for (const MeasurementRow& row : problem.rows) reached_.push_back(problem.nominal.forward(row.axes));
   }
 
   std::vector<Surroundings> run() {

@@ -30,6 +30,9 @@ void check_count(YamlMap& map, const std::vector<std::string>& columns, std::siz
 
 void read_sigma(YamlMap& map, NumberColumns& numbers) {
   numbers.sigma_unit = numbers.unit;
+  if (map.has("sigma_coverage"))
+    numbers.sigma_coverage =
+        map.number("sigma_coverage", {0.1, 10}, "sigma that a number of sigma_columns is: 2 of U95");
   if (map.has("sigma_columns")) numbers.sigma = map.texts("sigma_columns", "1 sigma in the same unit");
   if (!numbers.sigma.empty() && numbers.sigma.size() != 1 && numbers.sigma.size() != 3)
     throw InputError(
@@ -54,7 +57,8 @@ void read_joints(YamlMap& map, TableMap& table) {
   table.joints.columns = map.texts("columns", "one for each axis, in the machine's order");
   table.joint_unit_told = map.has("unit");
   if (table.joint_unit_told) table.joints.unit = angle_unit(map);
-  if (map.has("slide_unit")) table.slide_unit = length_unit(map, "slide_unit");
+  table.slide_unit_told = map.has("slide_unit");
+  if (table.slide_unit_told) table.slide_unit = length_unit(map, "slide_unit");
   table.joint_format = table.format;
   if (!map.has("file")) return;
   table.joint_file = map.text("file", "with the joints of each row, in the same order");
@@ -81,7 +85,10 @@ void read_orientation(YamlMap& map, TableMap& table) {
     reading.fixed =
         map.word("axes", {"fixed", "moving"}, "fixed: R = R3 R2 R1; moving: R = R1 R2 R3") == "fixed";
   }
-  if (form == "euler" || form == "rotation_vector") numbers.unit = reading.unit = angle_unit(map);
+  if (form == "euler" || form == "rotation_vector") {
+    numbers.unit_told = map.has("unit");
+    if (numbers.unit_told) numbers.unit = angle_unit(map);
+  }
   read_sigma(map, numbers);
 }
 
@@ -89,7 +96,8 @@ void read_lengths(YamlMap& map, std::optional<NumberColumns>& to, std::size_t co
   NumberColumns& numbers = to.emplace();
   numbers.columns = map.texts("columns", "of x, y, z, or of the distance");
   check_count(map, numbers.columns, count);
-  numbers.unit = length_unit(map);
+  numbers.unit_told = map.has("unit");
+  if (numbers.unit_told) numbers.unit = length_unit(map);
   read_sigma(map, numbers);
 }
 
@@ -145,40 +153,49 @@ void read_places(YamlMap& root, const char* key, const char* about, std::vector<
   });
 }
 
+void read_map(YamlMap& root, ColumnMap& map) {
+  if (root.has("tables"))
+    root.list("tables", 0, "each with a file", [&](YamlMap& table, std::size_t) {
+      read_table(table, map.tables.emplace_back());
+      if (table.complete() && map.tables.back().file.empty())
+        throw InputError(table.place(), fmt::format("{} is missing: of several tables each names its file",
+                                                    table.path("file")));
+    });
+  else
+    read_table(root, map.tables.emplace_back());
+  read_places(root, "targets", "whose places on the tool are known", map.targets);
+  read_places(root, "points", "that are known", map.points);
+  read_places(root, "anchors", "that are known", map.anchors);
+  if (root.has("distances"))
+    root.list("distances", 0, "between points", [&](YamlMap& item, std::size_t) {
+      const auto between = item.texts("between", "two points");
+      if (item.complete() && between.size() != 2)
+        throw InputError(item.place("between"),
+                         fmt::format("{} names {} points, not 2", item.path("between"), between.size()));
+      KnownDistance distance;
+      distance.length = item.quantity("length_mm", {1e-3, 100000}, "from one to the other");
+      distance.sigma = item.quantity("sigma_um", {1e-3, 1e6}, "1 sigma of it");
+      if (!item.complete()) return;
+      distance.a = between[0];
+      distance.b = between[1];
+      map.distances.push_back(distance);
+    });
+}
+
 }  // namespace
 
 ColumnMap read_column_map(const std::string& file) {
   ColumnMap map;
   map.file = file;
-  YamlMap::read_text(read_file(file), file, [&](YamlMap& root) {
-    if (root.has("tables"))
-      root.list("tables", 0, "each with a file", [&](YamlMap& table, std::size_t) {
-        read_table(table, map.tables.emplace_back());
-        if (table.complete() && map.tables.back().file.empty())
-          throw InputError(table.place(), fmt::format("{} is missing: of several tables each names its file",
-                                                      table.path("file")));
-      });
-    else
-      read_table(root, map.tables.emplace_back());
-    read_places(root, "targets", "whose places on the tool are known", map.targets);
-    read_places(root, "points", "that are known", map.points);
-    read_places(root, "anchors", "that are known", map.anchors);
-    if (root.has("distances"))
-      root.list("distances", 0, "between points", [&](YamlMap& item, std::size_t) {
-        const auto between = item.texts("between", "two points");
-        if (item.complete() && between.size() != 2)
-          throw InputError(item.place("between"),
-                           fmt::format("{} names {} points, not 2", item.path("between"), between.size()));
-        KnownDistance distance;
-        distance.length = item.quantity("length_mm", {1e-3, 100000}, "from one to the other");
-        distance.sigma = item.quantity("sigma_um", {1e-3, 1e6}, "1 sigma of it");
-        if (!item.complete()) return;
-        distance.a = between[0];
-        distance.b = between[1];
-        map.distances.push_back(distance);
-      });
-  });
+  YamlMap::read_text(read_file(file), file, [&](YamlMap& root) { read_map(root, map); });
   return map;
+}
+
+MapSchema column_map_schema() {
+  return YamlMap::schema([](YamlMap& root) {
+    ColumnMap map;
+    read_map(root, map);
+  });
 }
 
 }  // namespace understudy::calibration

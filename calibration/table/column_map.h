@@ -8,14 +8,17 @@
 #include "calibration/rows/measurement_row.h"
 #include "calibration/table/delimited_text.h"
 #include "calibration/table/measured_orientation.h"
+#include "core/yaml/map_schema.h"
 
 namespace understudy::calibration {
 
 struct NumberColumns {
   std::vector<std::string> columns;
   double unit = 1;                 ///< [m] or [rad] of one
+  bool unit_told = true;           ///< else the columns' headers tell it: "X [mm]"
   std::vector<std::string> sigma;  ///< columns of 1 sigma: one, or one each; empty: none
-  double sigma_unit = 1;           ///< [m] or [rad] of one of these
+  double sigma_unit = 1;           ///< [m] or [rad] of one of these, where their headers tell none
+  double sigma_coverage = 1;       ///< how many sigma one of these numbers is: 2 of U95
 };
 
 struct TextOfFile {
@@ -30,8 +33,9 @@ struct TableMap {
   TextFormat format;
   NumberColumns joints;
   bool joint_unit_told = false;  ///< of angles; else it is recognised
-  double slide_unit = 1e-3;      ///< [m] of one, of sliding axes
-  std::string joint_file;        ///< where the joints stand in a file of their own, by row number
+  double slide_unit = 1e-3;      ///< [m] of one, of sliding axes and struts
+  bool slide_unit_told = false;
+  std::string joint_file;  ///< where the joints stand in a file of their own, by row number
   TextFormat joint_format;
   std::optional<NumberColumns> position, distance, orientation;
   OrientationReading reading;
@@ -56,5 +60,6 @@ struct ColumnMap {
 
 /// Throws InputError with file, line and key.
 ColumnMap read_column_map(const std::string& file);
+MapSchema column_map_schema();
 
 }  // namespace understudy::calibration

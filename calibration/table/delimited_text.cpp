@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "calibration/table/header_units.h"
 #include "core/error.h"
 
 namespace understudy::calibration {
@@ -76,6 +77,15 @@ char separator_of(const std::string& line, char decimal) {
   return ' ';
 }
 
+/// A name where the next line has a number. Rows of points have names, too, each of them.
+bool names_columns(const Words& first, const Words& next) {
+  if (std::all_of(first.begin(), first.end(), is_number)) return false;
+  if (first.size() != next.size()) return true;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    if (!is_number(first[i]) && is_number(next[i])) return true;
+  return false;
+}
+
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
@@ -85,10 +95,16 @@ std::string lower(std::string text) {
 
 DelimitedText::DelimitedText(const std::string& text, const std::string& file, const TextFormat& format)
     : file_(file), format_(format) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw InputError({file, 0, 0}, "is UTF-16: save it as plain text (UTF-8, CSV)");
   std::istringstream in(text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text);
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     if (number <= format.skip_lines || trimmed(line).empty()) continue;
+    if (rows_.empty() && trimmed(line).size() == 5 && lower(line).starts_with("sep=")) {
+      if (format_.separator == '\0') format_.separator = line[4];
+      continue;
+    }
     if (!format.comment.empty() && trimmed(line).starts_with(format.comment)) continue;
     rows_.push_back({number, {line}});
   }
@@ -99,7 +115,8 @@ DelimitedText::DelimitedText(const std::string& text, const std::string& file, c
     throw InputError({file, 0, 0}, "commas cannot stand both between cells and before decimals");
   for (Row& row : rows_) row.cells = split(row.cells[0], format_.separator);
   const Words& first = rows_.front().cells;
-  if (format_.header < 0) format_.header = std::all_of(first.begin(), first.end(), is_number) ? 0 : 1;
+  if (format_.header < 0)
+    format_.header = names_columns(first, rows_.size() > 1 ? rows_[1].cells : Words{}) ? 1 : 0;
   columns_ = first.size();
   if (format_.header == 1) {
     header_ = first;
@@ -139,6 +156,10 @@ std::size_t DelimitedText::column(const std::string& wanted) const {
     if (header_[i] == wanted) same.push_back(i);
   for (std::size_t i = 0; same.empty() && i < header_.size(); ++i)
     if (lower(header_[i]) == lower(wanted)) same.push_back(i);
+  const std::string plain = lower(header_name(wanted).name);
+  if (same.empty())
+    for (std::size_t i = 0; i < header_.size(); ++i)
+      if (lower(header_name(header_[i]).name) == plain) same.push_back(i);
   if (same.size() > 1)
     throw InputError({file_, 0, 0}, fmt::format("column '{}' is there twice: name it by its number", wanted));
   if (same.size() == 1) return same.front();

@@ -17,7 +17,8 @@ struct TextFormat {
 
 class DelimitedText {
  public:
-  /// Throws InputError with `file` and line for lines of different length and for a text without rows.
+  /// A first line "sep=;", as spreadsheets write it, tells the separator. Throws InputError with `file` and
+  /// line for lines of different length, for a text without rows, and for one in UTF-16.
   DelimitedText(const std::string& text, const std::string& file, const TextFormat& format);
 
   const std::string& file() const { return file_; }
@@ -26,8 +27,8 @@ class DelimitedText {
   int line(std::size_t row) const { return rows_[row].line; }
   const std::vector<std::string>& header() const { return header_; }  ///< empty: none
 
-  /// Index of a column by its name in the header or its number from 1. Throws InputError that names the
-  /// nearest one.
+  /// Index of a column by its name in the header, with or without the unit behind it, or by its number
+  /// from 1. Throws InputError that names the nearest one.
   std::size_t column(const std::string& name_or_number) const;
   const std::string& text(std::size_t row, std::size_t column) const { return rows_[row].cells[column]; }
   /// Throws InputError with line, column and cell unless it is a finite number.

@@ -7,158 +7,23 @@
 
 #include <fmt/format.h>
 
-#include "calibration/rows/row_fit.h"
+#include "calibration/rows/row_outliers.h"
+#include "calibration/table/raw_table.h"
 #include "core/digest.h"
 #include "core/error.h"
-#include "core/file/read_file.h"
 #include "core/units.h"
 
 namespace understudy::calibration {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr double kOffRotation = 1e-3;  // of a quaternion's length, of a matrix' entries: digits of an export
 constexpr double kBeyondTurn = 0.1, kBeyondSlide = 0.01;  // [rad], [m], a log may be outside an axis' range
 constexpr double kFar = 50e-3, kTurned = 0.3;  // [m], [rad]: no machine is built so far from its drawing
 constexpr double kMuchNearer = 5;              // by this factor another unit must fit better
 
-/// The numbers of one table, still in its own units.
-struct RawTable {
-  TableMap map;
-  std::string file;
-  int index = 0;
-  std::vector<std::vector<double>> joints, position, orientation, sigma_position, sigma_turn;
-  std::vector<double> distance;
-  std::vector<int> lines;
-  std::vector<std::string> targets, ids;
-};
-
-std::vector<std::vector<double>> numbers(const DelimitedText& text, const std::vector<std::string>& names) {
-  std::vector<std::size_t> columns;
-  for (const std::string& name : names) columns.push_back(text.column(name));
-  std::vector<std::vector<double>> rows(text.rows());
-  for (std::size_t j = 0; j < text.rows(); ++j)
-    for (const std::size_t column : columns) rows[j].push_back(text.number(j, column));
-  return rows;
-}
-
-std::vector<std::string> names(const DelimitedText& text, const std::string& column, const std::string& all) {
-  std::vector<std::string> words(text.rows(), all);
-  if (column.empty()) return words;
-  const std::size_t at = text.column(column);
-  for (std::size_t j = 0; j < text.rows(); ++j) words[j] = text.text(j, at);
-  return words;
-}
-
-RawTable read_raw(const TableMap& map, const std::string& file, const fs::path& joint_file,
-                  std::string& bytes) {
-  RawTable raw;
-  raw.map = map;
-  raw.file = file;
-  const std::string content = map.read && map.read->file == file ? map.read->text : read_file(file);
-  bytes += content;
-  const DelimitedText text(content, file, map.format);
-  for (std::size_t j = 0; j < text.rows(); ++j) raw.lines.push_back(text.line(j));
-  if (map.joint_file.empty()) {
-    raw.joints = numbers(text, map.joints.columns);
-  } else {
-    const std::string log = read_file(joint_file);
-    bytes += log;
-    const DelimitedText joints(log, joint_file.string(), map.joint_format);
-    if (joints.rows() != text.rows())
-      throw InputError({file, 0, 0}, fmt::format("has {} rows, {} has {}: rows are joined by their number",
-                                                 text.rows(), joint_file.string(), joints.rows()));
-    raw.joints = numbers(joints, map.joints.columns);
-  }
-  if (map.position) {
-    raw.position = numbers(text, map.position->columns);
-    raw.sigma_position = numbers(text, map.position->sigma);
-  }
-  if (map.orientation) {
-    raw.orientation = numbers(text, map.orientation->columns);
-    raw.sigma_turn = numbers(text, map.orientation->sigma);
-  }
-  if (map.distance) {
-    for (const auto& row : numbers(text, map.distance->columns)) raw.distance.push_back(row[0]);
-    raw.sigma_position = numbers(text, map.distance->sigma);
-  }
-  raw.targets = names(text, map.target_column, map.target);
-  raw.ids = names(text, map.id_column, map.id.empty() ? fs::path(file).stem().string() : map.id);
-  return raw;
-}
-
-/// Squares of 1 sigma on three axes.
-Vec3 variances(const std::vector<double>& told, double unit, double all) {
-  if (told.empty()) return Vec3::Constant(all * all);
-  Vec3 v;
-  for (Eigen::Index k = 0; k < 3; ++k)
-    v[k] = std::pow(unit * told[told.size() == 3 ? static_cast<std::size_t>(k) : 0], 2);
-  return v;
-}
-
-class RowMaker {
- public:
-  RowMaker(const RawTable& raw, const machine::MachineDescription& machine)
-      : raw_(raw), chain_(machine.chain().kinematics.chain), X_BW_(machine.X_WB.inverse()) {}
-
-  MeasurementRow row(std::size_t j) const {
-    const TableMap& map = raw_.map;
-    MeasurementRow row;
-    row.kind = map.kind;
-    row.table = raw_.index;
-    row.line = raw_.lines[j];
-    row.frame = map.frame;
-    row.target = raw_.targets[j] == "tool" ? "" : raw_.targets[j];
-    row.place = raw_.ids[j];
-    for (std::size_t i = 0; i < raw_.joints[j].size(); ++i)
-      row.axes.push_back(raw_.joints[j][i] * (chain_.axes[i].angle ? map.joints.unit : map.slide_unit));
-    measured(j, row);
-    noise(j, row);
-    return row;
-  }
-
- private:
-  void measured(std::size_t j, MeasurementRow& row) const {
-    const TableMap& map = raw_.map;
-    if (map.distance) row.distance = map.distance->unit * raw_.distance[j];
-    Vec3 p = Vec3::Zero();
-    Mat3 R = Mat3::Identity();
-    if (map.position)
-      p = map.position->unit * Vec3(raw_.position[j][0], raw_.position[j][1], raw_.position[j][2]);
-    if (map.orientation) {
-      const double off = off_rotation(map.reading, raw_.orientation[j]);
-      if (off > kOffRotation)
-        throw InputError({raw_.file, row.line, 0}, fmt::format("{}: off a rotation by {:.2g}, more than {:g}",
-                                                               to_string(map.reading), off, kOffRotation));
-      R = orientation_of(map.reading, raw_.orientation[j]);
-    }
-    row.X_MG = make_pose(R, p);
-    if (map.frame.empty()) row.X_MG = X_BW_ * row.X_MG;
-  }
-
-  void noise(std::size_t j, MeasurementRow& row) const {
-    const TableMap& map = raw_.map;
-    const bool turns = map.orientation.has_value(), lengths = !turns || map.position.has_value();
-    const double unit = map.position ? map.position->sigma_unit : map.distance ? map.distance->sigma_unit : 1;
-    const auto none = std::vector<double>();
-    row.covariance.diagonal().head<3>() =
-        variances(raw_.sigma_position.empty() ? none : raw_.sigma_position[j], unit, map.sigma_position);
-    row.covariance.diagonal().tail<3>() = variances(raw_.sigma_turn.empty() ? none : raw_.sigma_turn[j],
-                                                    turns ? map.orientation->sigma_unit : 1, map.sigma_turn);
-    const auto diagonal = row.covariance.diagonal();
-    row.noise_told =
-        (!lengths || diagonal.head<3>().minCoeff() > 0) && (!turns || diagonal.tail<3>().minCoeff() > 0);
-    if (!row.noise_told) row.covariance.setZero();
-  }
-
-  const RawTable& raw_;
-  const kinematics::Chain& chain_;
-  Pose X_BW_;
-};
-
 void check_axes(const RawTable& raw, const RowProblem& problem, const machine::MachineDescription& machine) {
-  const auto& axes = machine.chain().kinematics.chain.axes;
-  for (const MeasurementRow& row : problem.rows)
+  const auto axes = row_axes(machine);
+  for (const MeasurementRow& row : problem.rows) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
       const double beyond = axes[i].angle ? kBeyondTurn : kBeyondSlide, q = row.axes[i];
       if (q >= axes[i].lower - beyond && q <= axes[i].upper + beyond) continue;
@@ -170,6 +35,17 @@ void check_axes(const RawTable& raw, const RowProblem& problem, const machine::M
                       axes[i].name, q / unit, axes[i].angle ? "deg" : "mm", axes[i].lower / unit,
                       axes[i].upper / unit));
     }
+    if (!problem.nominal.forward(row.axes).matrix().allFinite())
+      throw InputError(
+          {raw.file, row.line, 0},
+          "no pose of this machine has these axes: another machine, or another order of columns?");
+  }
+}
+
+RowMachine row_machine(const machine::MachineDescription& machine) {
+  if (machine.is_chain()) return ChainParameters{machine.chain().kinematics.chain, {}};
+  const HexapodGeometry& geometry = machine.hexapod().geometry;
+  return RowHexapod{geometry, geometry.length_offset, machine.X_BT_home};
 }
 
 class TableReader {
@@ -179,13 +55,13 @@ class TableReader {
 
   /// The rows of the table, its units settled.
   void read(RawTable raw) {
-    const std::size_t axes = machine_.chain().kinematics.chain.axes.size();
+    const std::size_t axes = row_axes(machine_).size();
     if (raw.map.joints.columns.size() != axes)
       throw InputError({map_.file, 0, 0},
                        fmt::format("joints.columns names {} columns, machine {} has {} axes",
                                    raw.map.joints.columns.size(), machine_.name, axes));
     settle_joint_unit(raw);
-    const RowProblem problem = rows_of(raw);
+    const RowProblem problem = problem_of(raw);
     check_axes(raw, problem, machine_);
     check_fit(raw);
     out_.problem.rows.insert(out_.problem.rows.end(), problem.rows.begin(), problem.rows.end());
@@ -194,12 +70,10 @@ class TableReader {
   }
 
  private:
-  RowProblem rows_of(const RawTable& raw) const {
+  RowProblem problem_of(const RawTable& raw) const {
     RowProblem problem = out_.problem;
-    problem.rows.clear();
+    problem.rows = rows_of(raw, machine_);
     problem.distances.clear();
-    const RowMaker maker(raw, machine_);
-    for (std::size_t j = 0; j < raw.lines.size(); ++j) problem.rows.push_back(maker.row(j));
     if (raw.map.zero_unknown)
       for (const MeasurementRow& row : problem.rows) problem.with_zero.insert(row.place);
     return problem;
@@ -215,7 +89,7 @@ class TableReader {
     }
   };
   Left left(const RawTable& raw) const {
-    const RowProblem problem = rows_of(raw);
+    const RowProblem problem = problem_of(raw);
     const SurroundingsLayout layout(problem);
     const RowLikelihood likelihood(problem, layout, {});
     const auto fit =
@@ -224,8 +98,17 @@ class TableReader {
     if (!fit) return {1e9, 1e9};
     const auto parts = parts_of(problem);
     int lengths = 0, turns = 0;
+    // A few rows may be spoiled; many are no exception.
+    const auto first = first_equations(problem);
+    std::vector<bool> counts(parts.size(), true);
+    if (static_cast<double>(spoiled_rows(fit->weights)) <=
+        kSpoiledShare * static_cast<double>(problem.rows.size()))
+      for (std::size_t j = 0; j < fit->weights.size(); ++j)
+        for (auto i = first[j]; i < first[j + 1]; ++i)
+          counts[static_cast<std::size_t>(i)] = fit->weights[j] > 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const double square = std::pow(fit->error[static_cast<Eigen::Index>(i)], 2);
+      if (!counts[i]) continue;
+      const double square = std::pow(fit->fit.error[static_cast<Eigen::Index>(i)], 2);
       const bool turn = parts[i] == NoisePart::turn;
       (turn ? left.turn : left.length) += square;
       ++(turn ? turns : lengths);
@@ -239,7 +122,7 @@ class TableReader {
   /// check_fit() looks at the answer.
   void settle_joint_unit(RawTable& raw) {
     constexpr double kTurn = 6.5;
-    const auto& axes = machine_.chain().kinematics.chain.axes;
+    const auto axes = row_axes(machine_);
     if (raw.map.joint_unit_told ||
         std::none_of(axes.begin(), axes.end(), [](const auto& axis) { return axis.angle; }))
       return;
@@ -307,7 +190,7 @@ class TableReader {
 MeasuredRows read_measured_rows(const ColumnMap& map, const std::vector<std::string>& files,
                                 const machine::MachineDescription& machine) {
   MeasuredRows out;
-  out.problem.nominal = {machine.chain().kinematics.chain, {}};
+  out.problem.nominal = row_machine(machine);
   const Pose X_BW = machine.X_WB.inverse();
   for (const KnownPlace& place : map.targets)
     out.problem.targets[place.name] = make_pose(Mat3(Mat3::Identity()), place.position);

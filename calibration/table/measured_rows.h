@@ -17,9 +17,9 @@ struct MeasuredRows {
   std::vector<std::string> notes;  ///< what was recognised
 };
 
-/// `files` are read by the map's one table; where it has none of them, its tables name their own. `machine`
-/// is an open chain. Throws InputError with file and line for what cannot be read, for axes beyond their
-/// ranges, and for units and conventions with which no place of the measuring frame fits.
+/// `files` are read by the map's one table; where it has none of them, its tables name their own. Throws
+/// InputError with file and line for what cannot be read, for axes beyond their ranges, and for units and
+/// conventions with which no place of the measuring frame fits.
 MeasuredRows read_measured_rows(const ColumnMap& map, const std::vector<std::string>& files,
                                 const machine::MachineDescription& machine);
 

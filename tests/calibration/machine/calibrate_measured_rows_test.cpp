@@ -321,13 +321,13 @@ class PartialPoses : public ::testing::Test {
  protected:
   std::string table(bool position) {
     const machine::MachineDescription arm = machine::load_machine("arm");
-    DrawnRows lab(free_parameters({arm.chain().kinematics.chain, {}}, false, false), 5);
+    DrawnRows lab(DrawnRows::nominal_rows(arm).free_parameters(false, false), 5);
     std::string text = position ? "x_mm,y_mm,z_mm" : "qw,qx,qy,qz";
     for (int i = 1; i <= 6; ++i) text += fmt::format(",j{}_deg", i);
     text += "\n";
     for (int j = 0; j < 60; ++j) {
       const auto axes = lab.drawn_axes();
-      const Pose X = arm.X_WB * forward(lab.built, axes);
+      const Pose X = arm.X_WB * lab.built.forward(axes);
       const Vec3 p = 1e3 * (X.translation() + lab.noise(kDrawnSigma));
       const Quat q(Mat3(exp_rotation(lab.noise(kDrawnTurn)) * X.linear()));
       text += position ? fmt::format("{},{},{}", p.x(), p.y(), p.z())

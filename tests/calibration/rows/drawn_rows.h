@@ -6,6 +6,7 @@
 
 #include <Eigen/QR>
 
+#include "calibration/pose_choice.h"
 #include "calibration/rows/calibrate_rows.h"
 #include "calibration/rows/free_parameters.h"
 #include "core/random.h"
@@ -16,24 +17,39 @@ namespace understudy::calibration {
 constexpr double kDrawnSigma = 50e-6;  // [m]
 constexpr double kDrawnTurn = 0.2e-3;  // [rad]
 
-/// A built arm: its parameters of `columns` are off by 0.3 mm and 0.5 mrad, 1 sigma each.
+/// A built machine: its parameters of `columns` are off by 0.3 mm and 0.5 mrad, 1 sigma each.
 class DrawnRows {
  public:
-  DrawnRows(const std::vector<Eigen::Index>& columns, std::uint64_t seed) : random(seed, "drawn rows") {
-    nominal.chain = machine::load_machine("arm").chain().kinematics.chain;
-    const auto names = chain_parameter_names(nominal.chain);
-    Eigen::VectorXd by = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
+  DrawnRows(const std::vector<Eigen::Index>& columns, std::uint64_t seed, const std::string& name = "arm")
+      : random(seed, "drawn rows"), description(machine::load_machine(name)) {
+    nominal = nominal_rows(description);
+    const auto parameters = nominal.parameters();
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
     for (const Eigen::Index k : columns)
-      by[k] =
-          (is_angle(names[static_cast<std::size_t>(k)], nominal.chain) ? 0.5e-3 : 0.3e-3) * random.normal();
-    built = moved(nominal, by);
+      by[k] = (parameters[static_cast<std::size_t>(k)].angle ? 0.5e-3 : 0.3e-3) * random.normal();
+    built = nominal.moved(by);
     problem.nominal = nominal;
     X_MS = make_pose(exp_rotation({0.3, -1.1, 2.0}), {2.6, -1.1, 0.2});
   }
 
+  static RowMachine nominal_rows(const machine::MachineDescription& machine) {
+    if (machine.is_chain()) return ChainParameters{machine.chain().kinematics.chain, {}};
+    const HexapodGeometry& geometry = machine.hexapod().geometry;
+    return RowHexapod{geometry, geometry.length_offset, machine.X_BT_home};
+  }
+
+  /// All over a chain's ranges; of a hexapod where docs/reference.md calibrates it.
   std::vector<double> drawn_axes() {
     std::vector<double> axes;
-    for (const auto& axis : nominal.chain.axes)
+    if (!nominal.chain()) {
+      const auto mechanism = description.make_mechanism();
+      const Pose X =
+          random_reachable_poses(*mechanism, reference_region(description.X_BT_home), 1, random)[0];
+      StrutLengths lengths{};
+      (void)kinematics::inverse(nominal.hexapod()->geometry, X, lengths);
+      return {lengths.begin(), lengths.end()};
+    }
+    for (const auto& axis : nominal.chain()->chain.axes)
       axes.push_back(
           random.uniform(std::max(axis.lower, -std::numbers::pi), std::min(axis.upper, std::numbers::pi)));
     return axes;
@@ -57,7 +73,7 @@ class DrawnRows {
       MeasurementRow out = row(kind);
       out.frame = "tracker";
       out.target = name;
-      const Pose X = X_MS * forward(built, out.axes) * X_TG;
+      const Pose X = X_MS * built.forward(out.axes) * X_TG;
       out.X_MG =
           make_pose(Mat3(exp_rotation(noise(kDrawnTurn)) * X.linear()), X.translation() + noise(kDrawnSigma));
       problem.rows.push_back(out);
@@ -69,9 +85,19 @@ class DrawnRows {
       MeasurementRow out = row(RowKind::distance);
       out.target = "ball";
       out.place = anchor;
-      out.distance = (forward(built, out.axes) * p_TG - p).norm() + zero + kDrawnSigma * random.normal();
+      out.distance = (built.forward(out.axes) * p_TG - p).norm() + zero + kDrawnSigma * random.normal();
       problem.rows.push_back(out);
     }
+  }
+
+  /// Whether a hexapod's struts have these lengths.
+  bool within_struts(const std::vector<double>& lengths) const {
+    if (nominal.chain()) return true;
+    const auto& limits = description.hexapod().limits;
+    return nominal.forward(lengths).matrix().allFinite() &&
+           std::all_of(lengths.begin(), lengths.end(), [&](double length) {
+             return length >= limits.strut_min && length <= limits.strut_max;
+           });
   }
 
   /// Axes that put `p_TG` where `wanted` is zero: Newton steps of least norm from drawn axes.
@@ -80,9 +106,9 @@ class DrawnRows {
     while (true) {
       std::vector<double> q = drawn_axes();
       for (int step = 0; step < 60; ++step) {
-        const auto value = [&](const std::vector<double>& at) { return wanted(forward(built, at) * p_TG); };
+        const auto value = [&](const std::vector<double>& at) { return wanted(built.forward(at) * p_TG); };
         const Eigen::VectorXd f = value(q);
-        if (f.norm() < 1e-11) return q;
+        if (f.norm() < 1e-11 && within_struts(q)) return q;
         Eigen::MatrixXd J(f.size(), static_cast<Eigen::Index>(q.size()));
         for (std::size_t i = 0; i < q.size(); ++i) {
           std::vector<double> by = q;
@@ -121,7 +147,8 @@ class DrawnRows {
   }
 
   Random random;
-  ChainParameters nominal, built;
+  machine::MachineDescription description;
+  RowMachine nominal, built;
   Pose X_MS;
   RowProblem problem;
 };

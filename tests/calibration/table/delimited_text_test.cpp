@@ -37,6 +37,24 @@ TEST(DelimitedText, FindsSeparatorHeaderAndDecimals) {
   EXPECT_EQ(quoted.number(0, quoted.column("x, mm")), 1);
 }
 
+TEST(DelimitedText, FindsColumnsWithoutTheirUnitsAndASeparatorThatIsTold) {
+  const DelimitedText leica("X  [mm],U(95) X  [mm],U(95)  [mm]\n1,2,3\n", "t.csv", {});
+  EXPECT_EQ(leica.column("x"), 0u);
+  EXPECT_EQ(leica.column("U(95) X"), 1u);
+  EXPECT_EQ(leica.column("U(95)"), 2u);
+  EXPECT_EQ(leica.column("X [mm]"), 0u);
+  const DelimitedText told("sep=|\na|b\n1|2\n", "t.csv", {});
+  EXPECT_EQ(told.number(0, told.column("b")), 2);
+  EXPECT_EQ(told.line(0), 3);
+  const DelimitedText points("p1, 1.5, x\np2, 2.5, y\n", "t.txt", {});
+  EXPECT_EQ(points.rows(), 2u);
+  EXPECT_THAT(refused("X [mm],x [deg]\n1,2\n", {}, "X"), HasSubstr("there twice"));
+  EXPECT_THAT(refused(std::string("\xff\xfe"
+                                  "1\0",
+                                  4)),
+              HasSubstr("is UTF-16: save it as plain text"));
+}
+
 TEST(DelimitedText, NamesWhatItCannotRead) {
   EXPECT_THAT(refused("x;y\n1,5;2\n1.5;3\n"), HasSubstr("some numbers have a comma and some a point"));
   EXPECT_THAT(refused("x;y\n1;2\n3\n"), HasSubstr("t.csv:3: 1 cells, where the first line has 2"));
