@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "calibration/table/column_map.h"
 #include "cli/command.h"
 #include "core/file/output_file.h"
 #include "core/yaml/map_schema.h"
@@ -41,6 +42,8 @@ const Kind kKinds[] = {
      [](const SchemaRequest& r) { sim::make_as_built(machine::load_machine(r.machine), r.file, 1); }},
     {"rig", "Understudy: two cameras that measure a machine", vision::rig_schema,
      [](const SchemaRequest& r) { vision::load_rig(r.file); }},
+    {"columns", "Understudy: columns of tables of measurements", calibration::column_map_schema,
+     [](const SchemaRequest& r) { calibration::read_column_map(r.file); }},
 };
 
 int run_schema(const Kind& kind, const SchemaRequest& request) {

@@ -20,7 +20,7 @@ import tempfile
 import jsonschema
 import yaml
 
-KINDS = ("machine", "material", "scenario", "as-built", "rig")
+KINDS = ("machine", "material", "scenario", "as-built", "rig", "columns")
 HEADER = re.compile(r"^# yaml-language-server: \$schema=(\S+)$")
 SLIPS_IN_A_FILE = 12
 
