@@ -12,13 +12,15 @@ namespace {
 
 constexpr double kElementLength = 0.1e-3;  // [m], at least
 constexpr double kLongest = 2e-3;          // [m]: sag, cooling and pictures see no coarser
-constexpr double kPause = 10e-6;           // [m], path without feed that ends an element; less is jitter
-constexpr double kSettled = 1e-3;          // [m], path without feed after which an element is done
-constexpr double kStraight = 5e-6;         // [m], a path farther beside the element's line begins a new one
-constexpr double kSteepest = 1.5;          // surface's path over the tip's
-constexpr double kSameGap = 2e-6;          // [m]
-constexpr double kSameSection = 0.03;      // of the area
-constexpr double kSameAxis = 0.02;         // [rad]
+constexpr double kShort = kElementLength / 2;
+constexpr double kSwell = 1.2;         // of the area, from one short element to the next
+constexpr double kPause = 10e-6;       // [m], path without feed that ends an element; less is jitter
+constexpr double kSettled = 1e-3;      // [m], path without feed after which an element is done
+constexpr double kStraight = 5e-6;     // [m], a path farther beside the element's line begins a new one
+constexpr double kSteepest = 1.5;      // surface's path over the tip's
+constexpr double kSameGap = 2e-6;      // [m]
+constexpr double kSameSection = 0.03;  // of the area
+constexpr double kSameAxis = 0.02;     // [rad]
 
 double round_diameter(double area) { return std::sqrt(4 * area / std::numbers::pi); }
 
@@ -64,9 +66,11 @@ void BeadBuilder::begin(const PathPoint& at, Adhesion adhesion, int line) {
 }
 
 void BeadBuilder::extrude(const PathPoint& a, const PathPoint& b, Adhesion adhesion, double volume, int line,
-                          double height) {
-  if (!element_ || !goes_on(a, b, adhesion, volume)) begin(a, adhesion, line);
-  fused_height_ = height;
+                          const Below& below) {
+  const bool same_ground = element_ && std::isfinite(element_->carrier) == std::isfinite(below.carrier);
+  if (!same_ground || !goes_on(a, b, adhesion, volume)) begin(a, adhesion, line);
+  fused_height_ = below.fused_height;
+  element_->carrier = below.carrier;
   grow(a, b, volume, line);
   continuous_ = true;
   idle_path_ = 0;
@@ -92,6 +96,16 @@ void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double volume, in
   if (heading_.isZero() && displacement.norm() >= kElementLength) heading_ = displacement.normalized();
 }
 
+// Of the cross-section. Some micrometres at the end of a line, with the volume that the extruder's lag leaves
+// there, are hardly thicker than the line, or than the drop that they would be.
+double BeadBuilder::area_of(const LaidBead& bead) {
+  // Where the ground falls away the surface's path is longer than the strand that was drawn out.
+  const double drawn = std::min(bead.length, kSteepest * bead.path), area = bead.volume / drawn;
+  if (drawn >= kShort || !bead.follows) return last_area_ = area;
+  const double drop = std::cbrt(6 * bead.volume / std::numbers::pi);
+  return last_area_ = std::min(area, std::max(kSwell * last_area_, std::numbers::pi / 4 * drop * drop));
+}
+
 // Width and height from the volume, once it is known.
 void BeadBuilder::settle_section() {
   LaidBead& bead = element_->bead;
@@ -102,16 +116,19 @@ void BeadBuilder::settle_section() {
   bead.length = (bead.to_W - bead.from_W).norm();
   bead.path = (element_->tip_to_W - element_->tip_from_W).norm();
   if (bead.length > 0) {
-    // Where the ground falls away the surface's path is longer than the strand that was drawn out.
-    const double area = bead.volume / std::min(bead.length, kSteepest * bead.path);
+    const double area = area_of(bead);
     bead.width = bead_width(area, gap);
     bead.height = pressed ? std::min(gap, bead.width) : round_diameter(area);
+    if (pressed && bead.width > element_->carrier) {
+      bead.width = std::max(element_->carrier, round_diameter(area));
+      bead.height = bead_height(area, bead.width);
+    }
   }
   // Wider than long by itself, or wider than any line: a blob. A short piece of a line is as wide as the
   // line.
   const bool alone = !bead.follows && !continuous_;
   if (bead.length == 0 || (bead.width > bead.length && (alone || bead.width > widest_line_)))
-    settle_blob(pressed ? gap : 0);
+    settle_blob(pressed && !std::isfinite(element_->carrier) ? gap : 0);
   last_width_ = bead.width;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "sim/deposition/deposition.h"
@@ -22,7 +23,14 @@ struct PathPoint {
 struct Element {
   LaidBead bead;
   Vec3 tip_from_W{0, 0, 0}, tip_to_W{0, 0, 0};
-  double worst_gap = 0;  ///< [m], farthest from the band
+  double worst_gap = 0;                                      ///< [m], farthest from the band
+  double carrier = std::numeric_limits<double>::infinity();  ///< [m], as in Below
+};
+
+/// What an element is pressed on.
+struct Below {
+  double fused_height = 0;                                   ///< [m], what a fused element gets
+  double carrier = std::numeric_limits<double>::infinity();  ///< [m], carrier_width()
 };
 
 class BeadBuilder {
@@ -31,9 +39,9 @@ class BeadBuilder {
   BeadBuilder(double widest_line, std::function<void(const Element&)> done)
       : done_(std::move(done)), widest_line_(widest_line) {}
 
-  /// From a to b nothing changes but linearly. `height` is that of a fused element.
+  /// From a to b nothing changes but linearly.
   void extrude(const PathPoint& a, const PathPoint& b, Adhesion adhesion, double volume, int line,
-               double height);
+               const Below& below);
   /// The tip went on without extrusion: by so much path since the last element's end [m] it is another.
   void pause(double path);
   /// Volume that came out while the drive did not feed: it stays at the last element.
@@ -49,6 +57,7 @@ class BeadBuilder {
   void grow(const PathPoint& a, const PathPoint& b, double volume, int line);
   bool goes_on(const PathPoint& a, const PathPoint& b, Adhesion adhesion, double volume) const;
   void settle_section();
+  double area_of(const LaidBead& bead);
   void settle_blob(double height);
 
   std::function<void(const Element&)> done_;
@@ -61,7 +70,8 @@ class BeadBuilder {
   double idle_path_ = 0;     // [m] since then
   double carried_ = 0;       // [m^3], oozed where no element was open
   double last_width_ = 0;
-  double widest_line_;  // [m]
+  double last_area_ = 0;  // [m^2], of the last element
+  double widest_line_;    // [m]
 };
 
 }  // namespace understudy::sim

@@ -11,4 +11,11 @@ double bead_width(double area, double gap) {
   return area / gap + gap * (1 - kQuarterPi);
 }
 
+double bead_height(double area, double width) {
+  constexpr double kQuarterPi = std::numbers::pi / 4, kEdges = 1 - kQuarterPi;
+  const double round = std::sqrt(area / kQuarterPi);
+  if (width <= round) return round;
+  return (width - std::sqrt(width * width - 4 * kEdges * area)) / (2 * kEdges);
+}
+
 }  // namespace understudy::sim

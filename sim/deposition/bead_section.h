@@ -8,4 +8,8 @@ namespace understudy::sim {
 /// 0.
 double bead_width(double area, double gap);
 
+/// [m], height of a bead of this cross-section that is `width` wide; round where that is narrower than the
+/// round strand.
+double bead_height(double area, double width);
+
 }  // namespace understudy::sim

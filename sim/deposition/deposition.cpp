@@ -6,11 +6,13 @@
 #include <deque>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "geometry/printed_clearance.h"
 #include "sim/deposition/bead_builder.h"
 #include "sim/deposition/extruder.h"
 #include "sim/deposition/gap_sums.h"
+#include "sim/deposition/lone_strand.h"
 #include "sim/deposition/unsupported_stretch_recorder.h"
 
 namespace understudy::sim {
@@ -34,6 +36,7 @@ struct Ground {
   double gap = kInfinity;
   bool printed = false;                      // it is a bead
   double interface_temperature = kInfinity;  // [K]
+  double carrier = kInfinity;                // [m], see lone_strand.h
 };
 
 Bead shape_of(const Element& element) {
@@ -57,7 +60,9 @@ Bead shape_of(const Element& element) {
   bead.to_W = floats(to);
   bead.up_W = floats(laid.normal_W);
   bead.height = static_cast<float>(laid.height);
-  bead.width = std::max(bead.height, static_cast<float>(laid.width));
+  // What hangs is round, whatever its distance to what is below.
+  const bool hangs = laid.adhesion == Adhesion::unsupported;
+  bead.width = hangs ? bead.height : std::max(bead.height, static_cast<float>(laid.width));
   bead.laid_at = static_cast<float>(laid.time);
   bead.line = laid.line;
   return bead;
@@ -106,6 +111,7 @@ struct DepositionObserver::State {
   bool started = false;
   bool emptied = false;  // the nozzle, after the end
 
+  std::vector<bool> in_air;    // by bead: a strand, or carried by one alone
   double path = 0;             // [m], of the tip
   std::deque<double> fresh;    // path at the end of each bead that may be under the nozzle
   std::size_t fresh_from = 0;  // number of the first of them
@@ -127,12 +133,13 @@ struct DepositionObserver::State {
     if (falls && workpiece->beads().size() == 0) started = false;  // the print has not begun
     if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
       totals.deposited_volume += bead.volume;
-    if (bead.adhesion == Adhesion::sticks) usual_height = bead.height;
+    if (bead.adhesion == Adhesion::sticks && !std::isfinite(element.carrier)) usual_height = bead.height;
     ++totals.beads;
     if (!falls) unsupported.add(element, conditions);
     conditions.interface_temperature = kInfinity;
     if (bead.height > kThinnest && !falls) {
       workpiece->add(shape_of(element));
+      in_air.push_back(bead.adhesion == Adhesion::unsupported || std::isfinite(element.carrier));
       fresh.push_back(path);
     }
     if (options.laid) options.laid(bead);
@@ -153,6 +160,9 @@ struct DepositionObserver::State {
     if (!hit) return seen;
     seen.gap = hit->distance;
     seen.printed = hit->body == Workpiece::Body::bead;
+    // Also a little above the band: the interval that leads there is cut at its upper end.
+    if (seen.printed && hit->bead < in_air.size() && in_air[hit->bead] && seen.gap <= band.high + kGapJump)
+      seen.carrier = carrier_width(*workpiece, X_WT, *hit, fresh_from);
     if (seen.printed && options.glass_transition > 0) {
       const double age = time - static_cast<double>(workpiece->beads().bead(hit->bead).laid_at);
       const double substrate = options.substrate_temperature ? options.substrate_temperature(age, fan) : 0.0;
@@ -196,7 +206,7 @@ struct DepositionObserver::State {
   // From a to b nothing changes but linearly.
   void extrude(const PathPoint& a, const PathPoint& b, const Ground& below, double volume, int line) {
     const Adhesion adhesion = adhesion_of(0.5 * (a.gap + b.gap), below);
-    builder.extrude(a, b, adhesion, volume, line, usual_height);
+    builder.extrude(a, b, adhesion, volume, line, {usual_height, below.carrier});
     const double length = (b.foot_W() - a.foot_W()).norm();
     if (adhesion == Adhesion::fused) {
       totals.fused_length += length;

@@ -30,5 +30,12 @@ TEST(BeadSection, TurnsFromFlatToRoundWithoutAStep) {
   EXPECT_NEAR(bead_width(touching / 4, kGap), kGap / 2, 1e-15) << "a round strand of half the diameter";
 }
 
+TEST(BeadSection, TheHeightOfAWidthIsTheGapThatGivesThatWidth) {
+  const double area = kQuarterPi * 0.48e-3 * 0.48e-3;
+  for (const double gap : {0.1e-3, 0.15e-3, 0.3e-3, 0.45e-3})
+    EXPECT_NEAR(bead_height(area, bead_width(area, gap)), gap, 1e-12);
+  EXPECT_DOUBLE_EQ(bead_height(area, 0.3e-3), 0.48e-3) << "no narrower than round";
+}
+
 }  // namespace
 }  // namespace understudy::sim
