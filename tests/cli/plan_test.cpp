@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -173,6 +177,46 @@ TEST(PlanLattice, PlansAFrameFromAFileAndWarnsOfItsLengths) {
   EXPECT_THAT(outcome.err,
               HasSubstr("warning: 1 of 2 struts are outside 5..11 mm (Ishak 2018), the longest 20.0 mm"));
   EXPECT_THAT(outcome.out, HasSubstr("2 struts, 30.0 mm"));
+}
+
+// Posts, a ring with a diagonal, posts on it, another ring and a diagonal through space: at its joints five
+// struts meet, upright, level and leaning. The arm in the twin errs by some hundredths of a millimetre.
+TEST(PlanLattice, AFrameThatIsPlannedIsPrintedWithoutRunningIntoItsJoints) {
+  const Folder folder;
+  std::string nodes, struts;
+  for (const int z : {0, 5, 15})
+    for (const auto& [x, y] : {std::pair(-5, -5), std::pair(5, -5), std::pair(5, 5), std::pair(-5, 5)})
+      nodes += fmt::format(R"({}{{"point": {{"X": {}, "Y": {}, "Z": {}}}, "is_grounded": {}}})",
+                           nodes.empty() ? "" : ", ", x, y, z, z == 0 ? 1 : 0);
+  std::vector<std::pair<int, int>> ends = {{4, 5}, {5, 6},  {6, 7},   {7, 4},  {4, 6},
+                                           {8, 9}, {9, 10}, {10, 11}, {11, 8}, {11, 5}};
+  for (int post = 0; post < 8; ++post) ends.emplace_back(post, post + 4);
+  for (const auto& [from, to] : ends)
+    struts += fmt::format(R"({}{{"end_node_ids": [{}, {}]}})", struts.empty() ? "" : ", ", from, to);
+  const auto frame = folder.write("frame.json", R"({"unit": "millimeter", "node_list": [)" + nodes +
+                                                    R"(], "element_list": [)" + struts + "]}");
+  const std::string program = folder / "frame.gcode";
+  ASSERT_EQ(understudy("plan lattice " + frame + " --place 0,0,0.05 -o " + program).status, 0);
+  const Outcome rehearsed = understudy(
+      "rehearse " + program + " --machine arm --engine quasistatic --no-pictures --out " + (folder / "out"));
+  EXPECT_EQ(rehearsed.status, 0) << rehearsed.out << rehearsed.err;
+}
+
+TEST(PlanLattice, FramesOfOthersAreGoOrRefusedWithTheStrutAndTheReason) {
+  const std::string shared = kSource + "/../shared/data/lattices/";
+  if (!std::filesystem::exists(shared)) GTEST_SKIP() << "no " << shared;
+  const Folder folder;
+  const std::string program = folder / "frame.gcode";
+  ASSERT_EQ(understudy("plan lattice " + shared + "four-frame.json --place 0,0,0.05 -o " + program).status,
+            0);
+  EXPECT_EQ(understudy("rehearse " + program + " --machine arm --engine quasistatic --no-pictures --out " +
+                       (folder / "out"))
+                .status,
+            0);
+  const Outcome refused = understudy("plan lattice " + shared +
+                                     "topopt-100_S1_03-14-2019_w_layer.json --place 0,0,0.05 -o " + program);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, ::testing::ContainsRegex("strut [0-9]+ from .* to .*: no tool axis within"));
 }
 
 TEST(PlanLattice, RefusesAStrutThatTheMachineCannotReachAndSaysWhy) {

@@ -25,7 +25,7 @@ void check(const LatticePlan& plan) {
 class LatticePrint {
  public:
   LatticePrint(const Lattice& lattice, const LatticePlan& plan)
-      : lattice_(lattice), plan_(plan), builder_(plan.filament_diameter) {}
+      : lattice_(lattice), plan_(plan), builder_(plan.filament_diameter), there_(lattice.nodes.size()) {}
 
   void add(const StrutPrint& print) {
     const bool goes_on = last_ && last_->to == print.from && (last_->axis - print.axis).norm() < kSameAxis &&
@@ -33,13 +33,14 @@ class LatticePrint {
     if (!goes_on) {
       come_to(print);
       builder_.travel(tool_at(print.tip_from, print.axis, std::min(plan_.approach, print.out_from)));
-      builder_.move(tool_at(print.tip_from, print.axis), plan_.approach_feed);
+      builder_.move(tool_at(print.tip_from, print.axis, gap_at(print.from)), plan_.approach_feed);
     }
     const double length = lattice_.length(static_cast<std::size_t>(print.strut));
-    builder_.print(tool_at(print.tip_to, print.axis), plan_.feed,
+    builder_.print(tool_at(print.tip_to, print.axis, gap_at(print.to)), plan_.feed,
                    strand_area(plan_.limits.strut_diameter) * length);
     builder_.dwell(plan_.dwell);
     printed_ += length;
+    there_[static_cast<std::size_t>(print.from)] = there_[static_cast<std::size_t>(print.to)] = true;
     last_ = &print;
   }
 
@@ -50,6 +51,13 @@ class LatticePrint {
   double printed() const { return printed_; }
 
  private:
+  // [m], along the axis beyond the planned tip. To what stands at a joint the nozzle comes as near as to the
+  // table, so that a machine's errors do not press it in.
+  double gap_at(int node) const {
+    const auto n = static_cast<std::size_t>(node);
+    return there_[n] && !lattice_.nodes[n].grounded ? plan_.limits.ground_gap : 0;
+  }
+
   // From above what is built to above what is built, the tool upright; or straight over, where it stays so.
   void come_to(const StrutPrint& print) {
     if (!last_) {
@@ -88,6 +96,7 @@ class LatticePrint {
   ProgramBuilder builder_;
   const StrutPrint* last_ = nullptr;
   double printed_ = 0;
+  std::vector<bool> there_;  // nodes that something was printed to
 };
 
 }  // namespace

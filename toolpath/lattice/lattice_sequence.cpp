@@ -1,6 +1,7 @@
 #include "toolpath/lattice/lattice_sequence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -15,7 +16,8 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr std::size_t kLookedAt = 16;  // removals that an error chooses from
+constexpr std::size_t kLookedAt = 16;                   // removals that an error chooses from
+constexpr std::array<double, 2> kLessPress = {0.5, 0};  // of what is allowed at joints, worse first
 
 class Sequence {
  public:
@@ -40,6 +42,7 @@ class Sequence {
     rules.steps_max = limits_.steps_max;
     const Disassembly found = take_apart(lattice_, rules);
     if (found.end != DisassemblyEnd::found) throw InputError(refusal(found));
+    leave_room(found);
     StrutSequence sequence;
     sequence.steps = found.steps;
     for (auto it = found.removals.rbegin(); it != found.removals.rend(); ++it)
@@ -54,6 +57,25 @@ class Sequence {
     StrutPrint print;
     StrutAccess::Obstacle obstacle;
   };
+
+  // The order is found with joints pressed as deep as is allowed. A machine errs, so where another axis
+  // presses less, that one is taken: the same struts stand then.
+  void leave_room(const Disassembly& found) {
+    if (limits_.joint_press <= 0) return;
+    for (const double share : kLessPress) {
+      SequenceLimits limits = limits_;
+      limits.joint_press *= share;
+      StrutAccess access(lattice_, limits);
+      std::vector<char> standing(lattice_.struts.size(), 1);
+      for (const Removal& removal : found.removals) {
+        const auto strut = static_cast<std::size_t>(removal.strut);
+        standing[strut] = 0;
+        if (limits_.out_of_time && limits_.out_of_time()) return;
+        StrutPrint print;
+        if (access.find(removal, standing, print)) prints_[strut] = std::move(print);
+      }
+    }
+  }
 
   // What no order can help is told before the search.
   void require_each_alone() const {

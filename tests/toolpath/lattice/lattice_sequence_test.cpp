@@ -13,6 +13,7 @@
 #include "core/units.h"
 #include "toolpath/lattice/lattice_fill.h"
 #include "toolpath/lattice/lattice_json.h"
+#include "toolpath/program_builder.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -258,6 +259,48 @@ TEST(LatticeSequence, AtAJointTheNozzlePressesInNoDeeperThanTheRehearsalAllows) 
   // With 0.2 mm: 0.24 cos(e) - 0.5 sin(e) = 0.065, e = 18.9 degrees.
   EXPECT_EQ(answer_of_arm(18.7, 0.2e-3), "planned");
   EXPECT_THAT(answer_of_arm(19.1, 0.2e-3), HasSubstr("is clear"));
+}
+
+// As above, but the tool may lean away from the arm: the flat of an upright one would press 0.07 mm into it.
+TEST(LatticeSequence, WhereAnotherAxisPressesLessAtAJointThatOneIsTaken) {
+  const double z = 0.5 * kDiameter, e = 8.1 * kDegree;
+  Lattice fork;
+  const Vec3 node(0, 0, z + 5e-3), along(std::cos(e), 0, std::sin(e));
+  fork.nodes = {
+      {Vec3(0, 0, z), true}, {node, false}, {node + 8e-3 * along, false}, {node + Vec3(0, 0, 6e-3), false}};
+  fork.struts = {{0, 1}, {1, 2}, {1, 3}};
+  for (const StrutPrint& print : plan_lattice(fork, plan()).sequence.prints) {
+    if (print.strut != 2) continue;
+    // Distance of the arm's middle line to the nozzle's flat and, within 2 %, to the cone above it.
+    const Pose X_TW = tool_at(print.tip_from, print.axis).inverse(Eigen::Isometry);
+    double nearest = 1;
+    for (double l = 0; l < 8e-3; l += 10e-6) {
+      const Vec3 p_T = X_TW * (node + l * along);
+      const double rho = p_T.head<2>().norm(), beyond = rho - 0.5e-3 - 0.25 * std::max(0.0, p_T.z());
+      nearest = std::min(nearest, p_T.z() < 0 ? std::hypot(std::max(0.0, beyond), p_T.z()) : 0.97 * beyond);
+    }
+    // Half of 0.1 mm, less a quarter of the margin.
+    EXPECT_GE(nearest, 0.5 * kDiameter - 0.025e-3) << print.axis.transpose();
+  }
+}
+
+// A bar between two posts: from the post that was printed last it goes on as it is; to the other one, that
+// stands, the tip comes as near as to the table.
+TEST(LatticeSequence, ToWhatStandsTheTipKeepsTheGap) {
+  const double z = 0.5 * kDiameter;
+  Lattice gate;
+  gate.nodes = {{Vec3(0, 0, z), true},
+                {Vec3(8e-3, 0, z), true},
+                {Vec3(0, 0, z + 6e-3), false},
+                {Vec3(8e-3, 0, z + 6e-3), false}};
+  gate.struts = {{0, 2}, {1, 3}, {2, 3}};
+  std::vector<double> tips;
+  for (const Step& s : plan_lattice(gate, plan()).program.steps)
+    if (s.kind == StepKind::print) tips.push_back(s.X_WT.translation().z());
+  ASSERT_EQ(tips.size(), 3u);
+  EXPECT_NEAR(tips[0], z + 6e-3 + 0.24e-3, 1e-12) << "nothing is there";
+  EXPECT_NEAR(tips[1], z + 6e-3 + 0.24e-3, 1e-12) << "nothing is there";
+  EXPECT_NEAR(tips[2], z + 6e-3 + 0.24e-3 + 0.13e-3, 1e-12) << "a post stands there";
 }
 
 TEST(LatticeSequence, StrutsOnTheTableMayMeetAndCross) {
