@@ -47,7 +47,7 @@ def with_supports(part, folder):
 def support_free(understudy, part, folder):
     """(s, mm of filament, verdict), as rehearsed."""
     program = folder / "support-free.gcode"
-    subprocess.run([understudy, "plan", "support-free", str(part), "--layer", str(LAYER), "--width", str(WIDTH), "--feed",
+    subprocess.run([understudy, "plan", "support-free", str(part), "--machine", "five-axis", "--layer", str(LAYER), "--width", str(WIDTH), "--feed",
                     str(SPEED), "-o", str(program)], check=True, stdout=subprocess.DEVNULL)
     subprocess.run([understudy, "rehearse", str(program), "--machine", "five-axis", "--engine", "quasistatic", "--no-pictures",
                     "--out", str(folder / "rehearsal")], check=False, stdout=subprocess.DEVNULL)

@@ -84,7 +84,6 @@ int plan_support_free(const SupportFreeRequest& r) {
 
 void add_plan_support_free(CLI::App& plan, Action& action) {
   auto request = std::make_shared<SupportFreeRequest>();
-  request->options.machine = "five-axis";
   request->options.feed_mm_per_s = 12;
   request->options.clearance_mm = 2;
   request->options.approach_mm_per_s = 3;
@@ -99,7 +98,8 @@ void add_plan_support_free(CLI::App& plan, Action& action) {
                       "CSV x_mm,y_mm,z_mm of the structural line, from the foot; without it, it is found");
   command->add_option("--step", request->step_mm, "mm, along the line, in which it is found")
       ->capture_default_str();
-  add_machine_option(*command, request->options);
+  command->add_option("--machine", request->options.machine, "filament, nozzle and reach come from it")
+      ->required();
   command->add_option("--layer", request->layer_mm, "mm, height of the layers along the line")
       ->capture_default_str();
   command

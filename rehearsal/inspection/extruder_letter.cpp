@@ -1,5 +1,6 @@
 #include "rehearsal/inspection/extruder_letter.h"
 
+#include "core/error.h"
 #include "toolpath/inspection/program_summary.h"
 
 namespace understudy::rehearsal {
@@ -29,9 +30,11 @@ std::optional<char> extruder_letter_of(const std::string& text, const std::strin
     std::vector<toolpath::PassedOver> passed_over;
     as_read.unknown = &unknown;
     as_read.passed_over = &passed_over;
-    if (prints_beads(
-            toolpath::summarise(toolpath::parse_gcode(text, file, as_read), start_W, filament_diameter)))
-      return letter;
+    try {
+      const toolpath::Program program = toolpath::parse_gcode(text, file, as_read);
+      if (prints_beads(toolpath::summarise(program, start_W, filament_diameter))) return letter;
+    } catch (const InputError&) {  // its other letters turn axes that this machine does not have
+    }
   }
   return std::nullopt;
 }

@@ -10,7 +10,7 @@ namespace understudy::rehearsal {
 
 /// A or B, as programs for Makerbot's printers have it: a letter that grows by nearly the same amount per
 /// millimetre of path, so that the beads have the section of a printer's. Nothing for a letter that turns an
-/// axis of the machine. Throws InputError as parse_gcode() does.
+/// axis of the machine, and where the program cannot be read so.
 std::optional<char> extruder_letter_of(const std::string& text, const std::string& file,
                                        const toolpath::GcodeOptions& options, double filament_diameter);
 

@@ -116,7 +116,8 @@ TEST(Calibrate, TablesOfAnyKindNeedAMapAndSayWhatIsWrong) {
       {few + " --columns " + (folder / "map.yaml") + " --machine arm", "1 rows give 3 equations"},
       {(folder / "far.csv") + " --columns " + (folder / "map.yaml") + " --machine arm", "axis j2 is -70 deg"},
       {few + " --columns " + (folder / "typo.yaml") + " --machine arm", "did you mean 'j6'"},
-      {few + " --columns " + (folder / "map.yaml") + " --machine hexapod", "whole poses only"},
+      {few + " --columns " + (folder / "map.yaml") + " --machine hexapod",
+       "where this machine's range is 170 to 240"},
       {few + " " + few + " --machine arm", "--columns"},
       {few + " --columns " + (folder / "map.yaml") + " --machine arm --estimator robust", "whole poses"}};
   for (const auto& [words, part] : calls) {

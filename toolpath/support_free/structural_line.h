@@ -11,8 +11,8 @@
 
 namespace understudy::toolpath {
 
-/// A smooth line through points: cubic between them, with the direction of its neighbours at each (Catmull
-/// and Rom 1974). Places are lengths along it [m].
+/// A smooth line through points: cubic between them, with the direction of its neighbours at each. Places are
+/// lengths along it [m].
 class StructuralLine {
  public:
   /// At least two points, none on its neighbour [m]. Throws InputError.

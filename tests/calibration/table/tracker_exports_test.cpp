@@ -87,7 +87,7 @@ TEST_F(TrackerExports, UnitsInHeadersUncertaintiesOf95PercentAndTimeStamps) {
 /// Lines of comment behind two strokes, names of points, spaces after commas, uncertainties, a time.
 TEST_F(TrackerExports, CommentsBehindStrokesAndNamesOfPoints) {
   DrawnRows& lab = rows_of("hexapod");
-  std::string text = "// Version 2023.2 of the program\n// Frame: A::WORLD\n// x, y, z, Ux, Uy, Uz\n";
+  std::string text = "// Exported points\n// Frame: A::WORLD\n// x, y, z, Ux, Uy, Uz\n";
   int number = 0;
   for (const MeasurementRow& row : lab.problem.rows) {
     const Vec3 p = 1e3 * row.X_MG.translation();

@@ -53,7 +53,6 @@ TEST_F(Inspect, FilamentOnALetterOfItsOwnStaysInTheCommand) {
   EXPECT_TRUE(found.foreign_words.empty());
   EXPECT_EQ(found.summary.prints, 16);
   EXPECT_THAT(rehearse_command(found.request, "out"), HasSubstr(" --extruder-letter A "));
-  EXPECT_EQ(inspect(file("G1 E1 F60\n" + program), "corexy").request.dialect.extruder_letter, "");
 }
 
 TEST_F(Inspect, FeaturesOfCommentsAreMeasured) {
