@@ -198,7 +198,6 @@ TEST(CalibrationBenchmark, RefusesWhatAMachineCannotHave) {
   request.machine = "arm";
   request.disturbances = {Disturbance::deviation};
   EXPECT_THAT(message(request), HasSubstr("no screw struts"));
-  request = small();
   request.disturbances = {Disturbance::none};
   request.estimators = {"whitened"};
   EXPECT_THAT(message(request), HasSubstr("calibrates hexapods"));

@@ -66,6 +66,13 @@ INSTANTIATE_TEST_SUITE_P(StructuralLine, FoundLine,
                                          Bent{"twoplanes", circle_mm(6), bends_in_two_planes()}),
                          [](const auto& each) { return std::string(each.param.name); });
 
+/// A first walk in long steps cuts corners; sections across the line as it is by then put that right.
+TEST(StructuralLine, IsTheAxisEvenWhereTheStepsAreLong) {
+  const std::vector<SweptPiece> pieces{straight_mm(4), arc_mm(12, 80), straight_mm(6)};
+  const auto part = swept_part(circle_mm(4), pieces);
+  EXPECT_LT(farthest_off(find_structural_line(*part, 2e-3), pieces), 60e-6);
+}
+
 TEST(StructuralLine, RunsThroughItsPointsAndAlongAnArc) {
   std::vector<Vec3> points;
   for (int i = 0; i <= 30; ++i) {

@@ -73,5 +73,19 @@ TEST(Zigzag, GoesRoundAHole) {
   EXPECT_NEAR(sum, 33 * 10e-3 - 9 * 4e-3 + 20e-3, 4e-3);
 }
 
+/// From the top of the upright of an L to its foot no line is laid through what is not there.
+TEST(Zigzag, LeavesOutWhatIsNoPartOfTheRegion) {
+  Contour l{{0, 0}, {4, 0}, {4, 4}, {1.6, 4}, {1.6, 10}, {0, 10}};
+  for (Vec2& p : l) p *= 1e-3;
+  double spacing = 0;
+  const auto paths = zigzag({l}, {1, 0}, 0.5e-3, {-1e-3, 11e-3}, spacing);
+  EXPECT_EQ(paths.size(), 2u);
+  for (const FlatPath& path : paths)
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const Vec2 middle = 0.5 * (path[i] + path[i - 1]);
+      EXPECT_FALSE(middle.x() > 1.61e-3 && middle.y() > 4.01e-3) << middle.transpose();
+    }
+}
+
 }  // namespace
 }  // namespace understudy::toolpath
