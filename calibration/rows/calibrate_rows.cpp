@@ -71,7 +71,8 @@ std::vector<std::string> untold_surroundings(const RowProblem& problem, const Su
   whiten(problem, noise, equations);
   const auto first = first_equations(problem);
   for (std::size_t j = 0; j < weights.size(); ++j)
-    if (weights[j] == 0) equations.around.middleRows(first[j], first[j + 1] - first[j]).setZero();
+    if (weights[j] == 0 && equations.around.cols() > 0)
+      equations.around.middleRows(first[j], first[j + 1] - first[j]).setZero();
   const auto kept = independent_columns(equations.around);
   std::vector<std::string> names;
   for (Index k = 0; k < layout.columns(); ++k)

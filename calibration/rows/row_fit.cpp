@@ -48,7 +48,7 @@ RowLikelihood::Linear RowLikelihood::linear(const RowState& at, const AddedNoise
   for (std::size_t j = 0; j < weights.size(); ++j) {
     const double root = std::sqrt(weights[j]);
     out.e.segment(first[j], first[j + 1] - first[j]) *= root;
-    out.J.middleRows(first[j], first[j + 1] - first[j]) *= root;
+    if (out.J.cols() > 0) out.J.middleRows(first[j], first[j + 1] - first[j]) *= root;
   }
   return out;
 }
