@@ -45,8 +45,13 @@ PartialResult::~PartialResult() {
 }
 
 void PartialResult::keep() {
+  keep_after([] {});
+}
+
+void PartialResult::keep_after(const std::function<void()>& last) {
   const std::scoped_lock lock(registry().mutex);
   if (!std::exchange(keep_, true)) registry().paths.erase(registry().paths.find(path_));
+  last();
 }
 
 void remove_partial_results() {

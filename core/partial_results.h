@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 namespace understudy {
 
@@ -15,6 +16,9 @@ class PartialResult {
   PartialResult& operator=(const PartialResult&) = delete;
   /// It has become a result, or shall stay.
   void keep();
+  /// The same, and `last` is done before an interrupt may end the process. It must not begin or end partial
+  /// results itself.
+  void keep_after(const std::function<void()>& last);
 
  private:
   std::filesystem::path path_;

@@ -1,7 +1,10 @@
 #include "calibration/rows/row_outliers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include <boost/math/distributions/chi_squared.hpp>
 
 #include "calibration/rows/surroundings_start.h"
 
@@ -14,6 +17,7 @@ constexpr double kSharpest = 0.15;
 constexpr int kWeightRounds = 60;   // of which a row off by 1000 limits takes 10
 constexpr int kReturnRounds = 10;   // in which rows come back
 constexpr int kSettlingRounds = 4;  // at the sharpest scale
+constexpr int kMostEquations = 6;   // of one row, a pose
 
 /// Largest of the rows' distances, each by its own limit; 1 is the limit.
 double farthest(const RowProblem& problem, const RowFit& fit) {
@@ -65,8 +69,14 @@ void sharpen(const RowLikelihood& likelihood, const RowProblem& problem, const R
 }  // namespace
 
 double spoiled_from(RowKind kind) {
-  const int n = equations_of(kind);
-  return n == 1 ? 23.93 : n == 3 ? 30.66 : 38.26;
+  static const auto limits = [] {
+    std::array<double, kMostEquations + 1> of{};
+    for (int n = 1; n <= kMostEquations; ++n)
+      of[static_cast<std::size_t>(n)] =
+          quantile(complement(boost::math::chi_squared_distribution<double>(n), kRowSpoiled));
+    return of;
+  }();
+  return limits.at(static_cast<std::size_t>(equations_of(kind)));
 }
 
 std::size_t spoiled_rows(const RowWeights& weights) {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/plan/lattice_reach.h"
+#include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
@@ -103,7 +103,7 @@ toolpath::LatticePlan plan_of(const LatticeRequest& r, const machine::MachineDes
   plan.limits.joint_press = from_mm(r.joint_press_mm);
   plan.limits.lift = from_mm(r.options.clearance_mm);
   plan.limits.tilt_max = from_deg(r.tilt_max_deg);
-  if (!r.ignore_reach) plan.limits.way = lattice_reach(machine);
+  if (!r.ignore_reach) plan.limits.way = machine_reach(machine);
   plan.limits.accept_interference = r.force;
   plan.limits.out_of_time = deadline(r.time_limit_s);
   plan.feed = from_mm(r.options.feed_mm_per_s);

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/plan/lattice_reach.h"
+#include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
@@ -28,7 +28,7 @@ struct SupportFreeRequest {
 
 /// Which bead the machine cannot lay, and how far it would have to lean there.
 void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine) {
-  const toolpath::WayCheck reach = lattice_reach(machine);
+  const toolpath::WayCheck reach = machine_reach(machine);
   std::vector<Pose> way;
   for (const toolpath::Step& step : program.steps) {
     if (!toolpath::moves(step)) continue;

@@ -256,9 +256,11 @@ void OutputFolder::commit() {
   if (replaces && !mark(target_)) stays(text_of(errno));
   if (const int failure = replaces ? exchange(working_, target_) : move_new(working_, target_); failure != 0)
     stays(text_of(failure));
-  partial_->keep();
-  fs::remove(target_ / kUnfinished, error);
-  if (replaces) remove_result(working_);
+  // An interrupt does not end the process between these: what lies under TARGET.part is the old result now.
+  partial_->keep_after([&] {
+    fs::remove(target_ / kUnfinished, error);
+    if (replaces) remove_result(working_);
+  });
 }
 
 }  // namespace understudy

@@ -213,7 +213,7 @@ TEST(PlanLattice, AFrameThatIsPlannedIsPrintedWithoutRunningIntoItsJoints) {
 
 TEST(PlanLattice, FramesOfOthersAreGoOrRefusedWithTheStrutAndTheReason) {
   const std::string shared = kSource + "/../shared/data/lattices/";
-  if (!std::filesystem::exists(shared)) GTEST_SKIP() << "no " << shared;
+  if (!std::filesystem::exists(shared)) GTEST_SKIP() << "the folder shared/data is not beside the repository";
   const Folder folder;
   const std::string program = folder / "frame.gcode";
   ASSERT_EQ(understudy("plan lattice " + shared + "four-frame.json --place 0,0,0.05 -o " + program).status,

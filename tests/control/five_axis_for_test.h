@@ -7,6 +7,7 @@
 
 #include "control/motion/motion_planner.h"
 #include "kinematics/chain/five_axis.h"
+#include "tests/control/motion/planning_for_test.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::control {
@@ -41,15 +42,7 @@ struct FiveAxisForTest {
 
   std::vector<PlannedPoint> plan(const std::string& text) const {
     MotionPlanner planner(*mechanism, machine.X_WB, limits, {X_WT_home});
-    std::vector<PlannedPoint> points;
-    PlannedPoint point;
-    for (const toolpath::Step& step : program(text).steps) {
-      planner.push(step);
-      while (planner.next(point)) points.push_back(point);
-    }
-    planner.finish();
-    while (planner.next(point)) points.push_back(point);
-    return points;
+    return stream(planner, program(text).steps);
   }
 };
 

@@ -49,30 +49,18 @@ class LineFinder {
     SectionFrame foot;
     // Just above the foot, whose facets lie in the plane itself.
     foot.origin = Vec3(0, 0, z + kLastStep * step_);
-    foot.origin.head<2>() = (part_.lower() + part_.upper()).head<2>() / 2;
-    const auto wide = largest_at(foot);
-    if (!wide) throw InputError(fmt::format("the part has no foot at {}", in_mm(foot.origin)));
-    foot.origin = foot.out(wide->centroid);
+    const auto section = foot_at(foot);
+    if (!section) throw InputError(fmt::format("the part has no foot at {}", in_mm(foot.origin)));
+    foot.origin = foot.out(section->centroid);
     frame_ = foot;
     points_.push_back(Vec3(foot.origin.x(), foot.origin.y(), z));
   }
 
-  /// The foot may be anywhere under the part's middle.
-  std::optional<FlatSection> largest_at(SectionFrame& frame) const {
-    std::optional<FlatSection> largest;
-    Vec3 lowest = frame.origin;
-    for (const Vec3& vertex : part_.vertices())
-      if (vertex.z() < part_.lower().z() + kSamePlace) {
-        SectionFrame at = frame;
-        at.origin.head<2>() = vertex.head<2>();
-        if (auto section = section_at(part_, at); section && (!largest || section->area > largest->area)) {
-          largest = section;
-          lowest = at.origin;
-        }
-        if (largest) break;  // of one foot, each vertex finds the same section
-      }
-    frame.origin = lowest;
-    return largest;
+  /// The section nearest to the part's lowest vertex; moves the frame there.
+  std::optional<FlatSection> foot_at(SectionFrame& frame) const {
+    const auto lowest = std::ranges::min_element(part_.vertices(), {}, [](const Vec3& v) { return v.z(); });
+    frame.origin.head<2>() = lowest->head<2>();
+    return section_at(part_, frame);
   }
 
   bool advance(double step) {

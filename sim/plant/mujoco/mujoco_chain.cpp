@@ -41,8 +41,6 @@ class MujocoChain final : public MujocoPlantBase {
     return machine_.X_WB * kinematics::forward(as_built_.chain, std::span(axes).first(joints_.size()));
   }
 
-  double closure_error() const override { return 0; }  // nothing closes
-
  private:
   struct Positions {
     int driven = 0, play = -1;  ///< in qpos

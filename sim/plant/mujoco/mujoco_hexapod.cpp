@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/units.h"
@@ -31,22 +31,7 @@ class MujocoHexapod final : public MujocoPlantBase {
     return make_pose(Quat(q[3], q[4], q[5], q[6]).normalized(), Vec3(q[0], q[1], q[2]));
   }
 
-  double closure_error() const override {
-    double largest = 0;
-    for (int i = 0; i < kStruts; ++i)
-      largest = std::max(largest, Eigen::Map<const Vec3>(data_->efc_pos + 3 * i).norm());
-    return largest;
-  }
-
  protected:
-  void check_assembly() const override {
-    const double closure = closure_error();
-    if (!(closure <= kClosureLimit))
-      throw MachineError(
-          fmt::format("engine failure at {:.4f} s: a closed joint is {:.4f} mm apart, limit {} mm",
-                      data_->time, to_mm(closure), to_mm(kClosureLimit)));
-  }
-
   double hidden_travel(int strut) const override { return screws_.growth(tool_pose(), strut); }
 
  private:
@@ -78,10 +63,9 @@ void MujocoHexapod::reset(const AxisVector& displacement) {
   for (int i = 0; i < kStruts; ++i) assembled[static_cast<std::size_t>(i)] += screws_.growth(X_WT, i);
   load(write_mjcf(machine_, as_built_, X_WT, options_), driven_joints(), assembled);
   platform_qpos_ = model_->jnt_qposadr[find_id(*model_, mjOBJ_JOINT, kPlatformBody)];
-  // closure_error() reads the first rows of constraints: three a closure.
-  for (int i = 0; i < kStruts; ++i)
-    if (find_id(*model_, mjOBJ_EQUALITY, strut_part(i, kClosurePart)) != i)
-      throw MachineError("engine failure: the constraints are not in the order in which they were written");
+  std::vector<std::string> closures;
+  for (int i = 0; i < kStruts; ++i) closures.push_back(strut_part(i, kClosurePart));
+  set_closures(closures);
   settle(displacement);
 }
 

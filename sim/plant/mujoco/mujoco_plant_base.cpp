@@ -56,6 +56,29 @@ void MujocoPlantBase::load(const std::string& mjcf, const std::vector<DrivenJoin
   failed_ = false;
 }
 
+void MujocoPlantBase::set_closures(const std::vector<std::string>& names) {
+  closures_ = static_cast<int>(names.size());
+  for (int i = 0; i < closures_; ++i)
+    if (find_id(*model_, mjOBJ_EQUALITY, names[static_cast<std::size_t>(i)]) != i)
+      throw MachineError("engine failure: the constraints are not in the order in which they were written");
+}
+
+/// The first rows of constraints are the closures': three each.
+double MujocoPlantBase::closure_error() const {
+  double largest = 0;
+  for (int i = 0; i < closures_; ++i)
+    largest = std::max(largest, Eigen::Map<const Vec3>(data_->efc_pos + 3 * i).norm());
+  return largest;
+}
+
+void MujocoPlantBase::check_closures() const {
+  const double closure = closure_error();
+  if (!(closure <= kClosureLimit))
+    throw MachineError(
+        fmt::format("engine failure at {:.4f} s: a closed joint is {:.4f} mm apart, limit {} mm", data_->time,
+                    to_mm(closure), to_mm(kClosureLimit)));
+}
+
 double MujocoPlantBase::largest_speed() const {
   return Eigen::Map<const Eigen::VectorXd>(data_->qvel, model_->nv).cwiseAbs().maxCoeff();
 }
@@ -155,7 +178,7 @@ void MujocoPlantBase::command_drives(const DriveCommand& command) {
 }
 
 void MujocoPlantBase::check_state(const DriveCommand& command) const {
-  check_assembly();
+  check_closures();
   const AxisVector reached = displacement();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (!drives_[i].following) continue;

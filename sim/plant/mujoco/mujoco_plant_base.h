@@ -28,6 +28,7 @@ class MujocoPlantBase : public Plant {
   kinematics::AxisVector displacement() const override;
   kinematics::AxisVector drive_force() const override;
   void set_condition(int axis, const AxisCondition& condition) override;
+  double closure_error() const override;
 
  protected:
   /// Compiles the model; `assembled`: drive displacements at which the driven joints read 0.
@@ -35,8 +36,8 @@ class MujocoPlantBase : public Plant {
             const kinematics::AxisVector& assembled);
   /// Holds the drives at `displacement` until everything is at rest; time is 0 afterwards.
   void settle(const kinematics::AxisVector& displacement);
-  /// Throws MachineError when the state is no machine any more.
-  virtual void check_assembly() const {}
+  /// The equalities, by name, that close the mechanism's loops: the first of the model, in this order.
+  void set_closures(const std::vector<std::string>& names);
   /// Not in a drive's reading, in addition to growth: [m] or [rad].
   virtual double hidden_travel(int) const { return 0; }
   void fail_until_reset() { failed_ = true; }
@@ -60,12 +61,14 @@ class MujocoPlantBase : public Plant {
   };
   void command_drives(const DriveCommand& command);
   void let_go(const Drive& drive);
+  void check_closures() const;
   void check_state(const DriveCommand& command) const;
   double largest_speed() const;  ///< [m/s] and [rad/s], of all joints
   double force_of(const Drive& drive) const;
 
   std::vector<Drive> drives_;
   kinematics::AxisVector assembled_{};
+  int closures_ = 0;
   bool failed_ = true;  ///< the state is no result
 };
 

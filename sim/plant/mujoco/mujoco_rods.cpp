@@ -1,7 +1,8 @@
 // A tool on rods in MuJoCo: three driven slides, and the closures of the rods at the tool.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/units.h"
@@ -33,22 +34,6 @@ class MujocoRods final : public MujocoPlantBase {
     return X_WO_ * (Eigen::Translation3d(meet_O_ + moved) * as_built_.chain.X_OT_zero);
   }
 
-  double closure_error() const override {
-    double largest = 0;
-    for (int i = 0; i < kRods; ++i)
-      largest = std::max(largest, Eigen::Map<const Vec3>(data_->efc_pos + 3 * i).norm());
-    return largest;
-  }
-
- protected:
-  void check_assembly() const override {
-    const double closure = closure_error();
-    if (!(closure <= kClosureLimit))
-      throw MachineError(
-          fmt::format("engine failure at {:.4f} s: a closed joint is {:.4f} mm apart, limit {} mm",
-                      data_->time, to_mm(closure), to_mm(kClosureLimit)));
-  }
-
  private:
   AsBuilt as_built_;
   Pose X_WO_;
@@ -66,17 +51,16 @@ void MujocoRods::reset(const AxisVector& displacement) {
                                    to_mm(slides[0]), to_mm(slides[1]), to_mm(slides[2])));
   const Pose X_WT = X_WO_ * (Eigen::Translation3d(meet_O_) * chain.X_OT_zero);
   std::vector<DrivenJoint> joints;
+  std::vector<std::string> closures;
   for (std::size_t i = 0; i < kRods; ++i) {
     DrivenJoint joint{chain.axes[i].name, {}, false};
     if (options_.play && as_built_.axis_play[i] > 0) joint.play.push_back(chain_play(chain.axes[i].name));
     joints.push_back(joint);
+    closures.push_back(rod_name(chain.axes[i].name));
   }
   load(write_rod_mjcf(machine_, as_built_, X_WT, options_), joints, displacement);
   carried_qpos_ = model_->jnt_qposadr[find_id(*model_, mjOBJ_JOINT, fmt::format("{} x", kPlatformBody))];
-  // closure_error() reads the first rows of constraints: three a closure.
-  for (int i = 0; i < kRods; ++i)
-    if (find_id(*model_, mjOBJ_EQUALITY, rod_name(chain.axes[static_cast<std::size_t>(i)].name)) != i)
-      throw MachineError("engine failure: the constraints are not in the order in which they were written");
+  set_closures(closures);
   settle(displacement);
 }
 

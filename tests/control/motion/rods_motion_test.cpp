@@ -9,6 +9,7 @@
 #include "control/motion/motion_planner.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "tests/control/motion/planning_for_test.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::control {
@@ -28,15 +29,7 @@ struct DeltaForTest {
 
   std::vector<PlannedPoint> plan(const std::string& text) const {
     MotionPlanner planner(*mechanism, machine.X_WB, limits, {X_WT_home});
-    std::vector<PlannedPoint> points;
-    PlannedPoint point;
-    for (const toolpath::Step& step : program(text).steps) {
-      planner.push(step);
-      while (planner.next(point)) points.push_back(point);
-    }
-    planner.finish();
-    while (planner.next(point)) points.push_back(point);
-    return points;
+    return stream(planner, program(text).steps);
   }
 };
 

@@ -8,6 +8,7 @@
 #include "control/motion/motion_planner.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/control/motion/planning_for_test.h"
 
 namespace understudy::control {
 namespace {
@@ -36,15 +37,7 @@ class SelfMotion : public ::testing::Test {
 
   std::vector<PlannedPoint> plan(const std::vector<Step>& steps) {
     MotionPlanner planner(*mechanism_, machine_.X_WB, limits_, {machine_.X_WB * machine_.X_BT_home});
-    std::vector<PlannedPoint> points;
-    PlannedPoint point;
-    for (const Step& step : steps) {
-      planner.push(step);
-      while (planner.next(point)) points.push_back(point);
-    }
-    planner.finish();
-    while (planner.next(point)) points.push_back(point);
-    return points;
+    return stream(planner, steps);
   }
 
   Pose pose_of(const PlannedPoint& point) const {

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <thread>
@@ -94,6 +96,27 @@ TEST_F(OutputFolderTest, WhatIsTakenAwayGoesWholeWhileItIsWrittenTo) {
     writer.join();
     fs::remove_all(root_ / "out.part");
   }
+}
+
+/// The old result, once exchanged, goes whole: an interrupt that runs out of patience meanwhile waits for
+/// that.
+TEST_F(OutputFolderTest, WhatIsDoneLastIsDoneBeforeAnInterruptEndsTheProcess) {
+  EXPECT_EXIT(
+      {
+        PartialResult partial(root_ / "out.part");
+        std::thread end;
+        partial.keep_after([&] {
+          end = std::thread([] {
+            remove_partial_results();
+            std::_Exit(0);
+          });
+          std::this_thread::sleep_for(std::chrono::milliseconds(200));
+          std::ofstream(root_ / "last") << "done";
+        });
+        end.join();
+      },
+      testing::ExitedWithCode(0), "");
+  EXPECT_TRUE(fs::exists(root_ / "last"));
 }
 
 TEST_F(OutputFolderTest, TheManifestIsWhatSha256sumChecks) {

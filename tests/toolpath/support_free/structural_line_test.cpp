@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "models/parts/swept_part.h"
+#include "tests/toolpath/support_free/bent_parts_for_test.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -34,12 +34,6 @@ double farthest_off(const StructuralLine& line, const std::vector<SweptPiece>& p
   return farthest;
 }
 
-struct Bent {
-  const char* name;
-  std::vector<Vec2> outline;
-  std::vector<SweptPiece> pieces;
-};
-
 class FoundLine : public testing::TestWithParam<Bent> {};
 
 /// A section across the axis of a swept part has its middle on the axis; a step of the test's own axis is 15
@@ -58,13 +52,12 @@ TEST_P(FoundLine, IsTheAxisAlongWhichThePartWasSwept) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(StructuralLine, FoundLine,
-                         testing::Values(Bent{"straight", circle_mm(6), {straight_mm(20)}},
-                                         Bent{"bend", circle_mm(6), one_bend()},
-                                         Bent{"rectangle", rectangle_mm(16, 10), one_bend()},
-                                         Bent{"s", circle_mm(6), s_bend()},
-                                         Bent{"twoplanes", circle_mm(6), bends_in_two_planes()}),
-                         [](const auto& each) { return std::string(each.param.name); });
+INSTANTIATE_TEST_SUITE_P(StructuralLine, FoundLine, testing::ValuesIn(bent_parts()), name_of_part);
+
+TEST(StructuralLine, OfAStraightPartIsItsAxis) {
+  const std::vector<SweptPiece> pieces{straight_mm(20)};
+  EXPECT_LT(farthest_off(find_structural_line(*swept_part(circle_mm(6), pieces), 1e-3), pieces), 60e-6);
+}
 
 /// A first walk in long steps cuts corners; sections across the line as it is by then put that right.
 TEST(StructuralLine, IsTheAxisEvenWhereTheStepsAreLong) {
@@ -94,11 +87,33 @@ TEST(StructuralLine, RefusesPointsThatMakeNone) {
   EXPECT_THROW(StructuralLine({Vec3(0, 0, 0), Vec3(0, 0, 0)}), InputError);
 }
 
+/// 10 mm thick; the column, 20 mm high, stands under one end of a bar of 60 mm.
+geometry::Mesh column_under_a_bar() {
+  const std::vector<Vec2> outline{Vec2(-0.005, -0.02), Vec2(0.005, -0.02), Vec2(0.005, -0.005),
+                                  Vec2(0.055, -0.005), Vec2(0.055, 0.005), Vec2(-0.005, 0.005)};
+  const int n = static_cast<int>(outline.size());
+  std::vector<Vec3> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  for (const double y : {-0.005, 0.005}) {
+    for (const Vec2& p : outline) vertices.emplace_back(p.x(), y, p.y());
+    vertices.emplace_back(0, y, 0);  // from which all of the outline is seen
+  }
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n, back = n + 1;
+    triangles.push_back({n, i, j});
+    triangles.push_back({back + n, back + j, back + i});
+    triangles.push_back({i, back + i, back + j});
+    triangles.push_back({i, back + j, j});
+  }
+  return {vertices, triangles};
+}
+
 TEST(StructuralLine, RefusesPartsThatHaveNone) {
   const auto tube = swept_part(circle_mm(6), one_bend());
   EXPECT_THAT(refusal(*tube, 0), HasSubstr("step of the structural line"));
   EXPECT_THAT(refusal(*swept_part(circle_mm(6), {straight_mm(1.5)}), 1e-3),
               HasSubstr("shorter than three steps"));
+  EXPECT_THAT(refusal(column_under_a_bar()), HasSubstr("the part forks at"));
   auto triangles = tube->triangles();
   triangles.pop_back();
   EXPECT_THAT(refusal(geometry::Mesh(tube->vertices(), triangles)), HasSubstr("open edges"));

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "models/parts/swept_part.h"
+#include "tests/toolpath/support_free/bent_parts_for_test.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::toolpath {
@@ -25,12 +25,6 @@ SupportFreePlan coarse() {
   plan.temperature = 478;
   return plan;
 }
-
-struct Bent {
-  const char* name;
-  std::vector<Vec2> outline;
-  std::vector<SweptPiece> pieces;
-};
 
 class SupportFree : public testing::TestWithParam<Bent> {};
 
@@ -121,12 +115,7 @@ TEST_P(SupportFree, WhatIsWrittenIsReadBack) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Han, SupportFree,
-                         testing::Values(Bent{"circle", circle_mm(6), one_bend()},
-                                         Bent{"rectangle", rectangle_mm(16, 10), one_bend()},
-                                         Bent{"s", circle_mm(6), s_bend()},
-                                         Bent{"two_planes", circle_mm(6), bends_in_two_planes()}),
-                         [](const auto& each) { return std::string(each.param.name); });
+INSTANTIATE_TEST_SUITE_P(Han, SupportFree, testing::ValuesIn(bent_parts()), name_of_part);
 
 std::string refusal(const geometry::Mesh& part, const StructuralLine& line, const SupportFreePlan& plan) {
   try {

@@ -1,4 +1,4 @@
-// Whether a machine can follow the ways that the planner of lattices asks about.
+// Whether a machine can follow the ways that a planner asks about.
 #pragma once
 
 #include "machine/description.h"
@@ -9,6 +9,6 @@ namespace understudy::cli {
 /// Every limit of a pose along the way, and no leap of an axis, as the motion planner asks for
 /// (control/motion/path_kinematics.h); at the first pose the axes stand on the branch of the machine's home.
 /// Looks at every 2 mm and 2 degrees, or at every 8 mm and 6 degrees where that is enough.
-toolpath::WayCheck lattice_reach(const machine::MachineDescription& machine);
+toolpath::WayCheck machine_reach(const machine::MachineDescription& machine);
 
 }  // namespace understudy::cli

@@ -1,4 +1,4 @@
-#include "cli/plan/lattice_reach.h"
+#include "cli/plan/machine_reach.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,7 @@ class LatticeReach {
 
 }  // namespace
 
-toolpath::WayCheck lattice_reach(const machine::MachineDescription& machine) {
+toolpath::WayCheck machine_reach(const machine::MachineDescription& machine) {
   return [reach = LatticeReach(machine)](const std::vector<Pose>& way, bool fine) {
     return reach.walk(way, fine);
   };
