@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double kStretch = 50e-3;     // [m], of path that shares a layer
 constexpr double kLowest = 0.1;        // quantile of its gaps
+constexpr double kWidest = 0.9;        // quantile of the widths that they give its beads
 constexpr double kSpacing = 2e-3;      // [m], between two looks along a line
 constexpr int kMostLooks = 25;         // on one line
 constexpr double kLeastLayer = 20e-6;  // [m]: what is nearer is the side of a bead of the same layer
@@ -94,6 +96,7 @@ struct ProgrammedLayers::Stretch {
   Layer layer;
   double length = 0;  // [m], with something below
   int first_line = 0, last_line = 0;
+  std::map<int, Layer> thicker;  // by line
 };
 
 ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
@@ -137,27 +140,41 @@ ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
     length_so_far = 0;
   }
   stretches.push_back(close(samples));
-  for (const Stretch& stretch : stretches) {
-    const auto last = static_cast<std::size_t>(std::max(0, stretch.last_line));
-    if (layers_.size() <= last) layers_.resize(last + 1);
-    for (auto line = static_cast<std::size_t>(std::max(0, stretch.first_line)); line <= last; ++line)
-      layers_[line] = stretch.layer;
-  }
+  for (const Stretch& stretch : stretches) assign(stretch);
   typical_ = typical(stretches);
+}
+
+void ProgrammedLayers::assign(const Stretch& stretch) {
+  const auto last = static_cast<std::size_t>(std::max(0, stretch.last_line));
+  if (layers_.size() <= last) layers_.resize(last + 1);
+  for (auto line = static_cast<std::size_t>(std::max(0, stretch.first_line)); line <= last; ++line)
+    layers_[line] = stretch.layer;
+  for (const auto& [line, layer] : stretch.thicker) layers_[static_cast<std::size_t>(line)] = layer;
 }
 
 /// Ends a stretch of path: the layer of its samples, which are taken out.
 ProgrammedLayers::Stretch ProgrammedLayers::close(std::vector<Sample>& samples) {
   Stretch stretch;
   if (samples.empty()) return stretch;
-  std::vector<std::pair<double, double>> gaps, areas;
+  std::vector<std::pair<double, double>> gaps, areas, widths;
+  std::map<int, Layer> lines;  // the lowest gap of each
   for (const Sample& sample : samples) {
     gaps.emplace_back(sample.gap, sample.length);
     areas.emplace_back(sample.area, sample.length);
+    widths.emplace_back(sim::bead_width(sample.area, sample.gap), sample.length);
     stretch.length += sample.length;
+    const Layer own{static_cast<float>(sample.gap), static_cast<float>(sample.area)};
+    const auto [line, is_new] = lines.emplace(sample.line, own);
+    if (!is_new) line->second.layer = std::min(line->second.layer, own.layer);
   }
   stretch.layer = {static_cast<float>(quantile_by_length(std::move(gaps), kLowest)),
                    static_cast<float>(quantile_by_length(std::move(areas), 0.5))};
+  const double width = quantile_by_length(std::move(widths), kWidest);
+  for (auto [line, own] : lines) {
+    own.layer =
+        std::min(own.layer, static_cast<float>(sim::bead_height(static_cast<double>(own.area), width)));
+    if (line >= 0 && own.layer > stretch.layer.layer) stretch.thicker.emplace(line, own);
+  }
   stretch.first_line = samples.front().line;
   stretch.last_line = samples.back().line;
   samples.clear();

@@ -13,7 +13,9 @@ namespace understudy::rehearsal {
 
 /// The program laid on the part as drawn, or on a flat table, by a machine without errors: what the program
 /// means, whatever the twin then does. A line's layer is the tenth percentile of the gaps over 50 mm of path
-/// about it, so that a line over a hollow has the layer of those beside it.
+/// about it, so that a line over a hollow has the layer of those beside it. Where layers are wedges, a line
+/// with more filament lies higher: its layer is as high as its own gap, as far as its filament is enough for
+/// the width of the stretch's beads.
 class ProgrammedLayers {
  public:
   /// The part may be null. `told` [m]: the layer of lines whose path does not tell one; 0: the machine's
@@ -38,6 +40,7 @@ class ProgrammedLayers {
   struct Sample;
   struct Stretch;
   static Stretch close(std::vector<Sample>& samples);
+  void assign(const Stretch& stretch);
   static Layer typical(const std::vector<Stretch>& stretches);
 
   machine::GapLimits limits_;

@@ -46,6 +46,28 @@ TEST(ProgrammedLayers, ALineOverAHollowHasTheLayerOfThoseBeside) {
   EXPECT_NEAR(layers_of(text).band(44).low, 0.15e-3, 1e-6) << "0.8 mm above the table";
 }
 
+/// Rows 0.7 mm apart on a level layer, from 0.15 to 0.4 mm higher, each with the filament of its height; or
+/// all with that of the lowest.
+std::string wedge(bool starved) {
+  std::string text;
+  for (int i = 0; i < 6; ++i) {
+    const double h = 0.15 + 0.05 * i, volume = 20 * 0.7 * (starved ? 0.15 : h);  // [mm], [mm3]
+    text += fmt::format("G0 X0 Y{0} Z{1}\nG1 X20 Y{0} Z{1} E{2}\n", 0.1 + 0.7 * i, 0.2 + h, volume);
+  }
+  return text;
+}
+
+TEST(ProgrammedLayers, AWedgeIsAsHighAtEachLineAsItsFilamentIsEnoughFor) {
+  const ProgrammedLayers layers = layers_of(rows({0.2}) + wedge(false));
+  for (int i = 3; i < 6; ++i) {
+    const double h = 0.15e-3 + 0.05e-3 * i;
+    EXPECT_GT(layers.band(24 + 2 * i).high, h) << i;
+    EXPECT_LT(layers.band(24 + 2 * i).high, h + 0.1e-3) << i;
+  }
+  EXPECT_LT(layers_of(rows({0.2}) + wedge(true)).band(24 + 2 * 5).high, 0.4e-3)
+      << "filament of 0.15 mm does not reach 0.4 mm";
+}
+
 TEST(ProgrammedLayers, WhatHangsInTheAirHasTheBandOfTheMachine) {
   const ProgrammedLayers layers = layers_of(rows({30}));
   EXPECT_EQ(layers.typical_layer(), 0);
