@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "control/motion/rotary_turns.h"
 #include "core/error.h"
 #include "core/file/number_table.h"
 #include "core/file/output_file.h"
@@ -39,6 +40,10 @@ void add_nozzle_options(CLI::App& command, PlanOptions& options) {
 
 void add_output_option(CLI::App& command, PlanOptions& options) {
   command.add_option("-o,--output", options.output, "G-code to write")->required();
+  command.add_flag(
+      "--rotary-words", options.rotary_words,
+      "state the tool's orientation by the turning axes of the machine, such as B and C, instead of "
+      "W I J K");
 }
 
 void check_option(const char* name, double value, double limit) {
@@ -48,6 +53,7 @@ void check_option(const char* name, double value, double limit) {
 
 void check_options(const PlanOptions& o) {
   check_writable(o.output);
+  if (o.rotary_words) control::rotary_style(machine::load_machine(o.machine));
   check_option("--feed", o.feed_mm_per_s, 500);
   check_option("--approach-feed", o.approach_mm_per_s, 50);
   check_option("--clearance", o.clearance_mm, 100);
@@ -83,9 +89,12 @@ void write_program(const toolpath::Program& program, const machine::MachineDescr
                    const PlanOptions& options, const std::vector<std::string>& notes) {
   std::vector<std::string> header = {"planned by: " + command_line()};
   header.insert(header.end(), notes.begin(), notes.end());
+  toolpath::GcodeStyle style = options.rotary_words ? control::rotary_style(machine) : toolpath::GcodeStyle();
+  style.extruder_letter = machine.dialect.extruder_letter;
+  style.commands = machine.dialect.commands_for_tips();
   write_file(options.output,
-             toolpath::write_gcode(program, header,
-                                   {machine.dialect.extruder_letter, machine.dialect.commands_for_tips()}));
+             toolpath::write_gcode(options.rotary_words ? control::with_turns(program, machine) : program,
+                                   header, style));
 }
 
 }  // namespace understudy::cli

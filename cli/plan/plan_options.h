@@ -18,6 +18,7 @@ struct PlanOptions {
   double feed_mm_per_s = 5, approach_mm_per_s = 1, clearance_mm = 8;
   double bead_width_mm = 0.48, bead_height_mm = 0;  ///< height 0: the machine's gap
   double temperature_c = 230, fan = 0;
+  bool rotary_words = false;
 };
 
 void add_machine_option(CLI::App& command, PlanOptions& options);

@@ -100,12 +100,17 @@ Program parse_gcode(const std::string& text, const std::string& file, const Gcod
 struct GcodeStyle {
   char extruder_letter = 'E';
   std::vector<std::string> commands = {};  ///< before the first step, such as "G43.4"
+  /// Steps with turns state the tool's orientation by these letters, up to two, in place of W I J K; each
+  /// with its unit [rad].
+  std::string turn_letters = {};
+  std::vector<double> turn_units = {};
 };
 
 /// Text that read_gcode turns into the same program: lengths within 0.5e-6 mm, quaternion components within
-/// 0.5e-9, orientation within 2e-9 rad. Turning axes are left out: the poses say where the tool goes, not by
-/// which turns of the table. `header` lines become comments at the top.
-/// Throws InputError for a step that G-code cannot say: a print or move without feed, a value not finite.
+/// 0.5e-9, orientation within 2e-9 rad, or turns within 0.5e-6 of their unit. Without `turn_letters`, turning
+/// axes are left out: the poses say where the tool goes, not by which turns of the table. `header` lines
+/// become comments at the top. Throws InputError for a step that G-code cannot say: a print or move without
+/// feed, a value not finite.
 std::string write_gcode(const Program& program, const std::vector<std::string>& header,
                         const GcodeStyle& style = {});
 

@@ -42,7 +42,7 @@ class Writer {
   void write(const Step& step) {
     switch (step.kind) {
       case StepKind::travel:
-        return line("G0" + pose(step.X_WT));
+        return line("G0" + pose(step));
       case StepKind::move:
       case StepKind::print:
         return linear(step);
@@ -67,7 +67,7 @@ class Writer {
       throw InputError(
           fmt::format("step {}: a feed of {} cannot be written, it must be above 0", steps_ + 1, per_minute));
     set_timed(timed);
-    std::string text = "G1" + pose(step.X_WT);
+    std::string text = "G1" + pose(step);
     if (step.filament != 0) {
       // The reading is what is rounded, so the error does not add up over the program.
       extruder_ += checked(step.filament);
@@ -86,7 +86,8 @@ class Writer {
     timed_ = timed;
   }
 
-  std::string pose(const Pose& X_WT) const {
+  std::string pose(const Step& step) const {
+    const Pose& X_WT = step.X_WT;
     if (!X_WT.matrix().allFinite())
       throw InputError(fmt::format("step {}: a pose that is not finite cannot be written", steps_ + 1));
     const Vec3 p = X_WT.translation();
@@ -94,11 +95,23 @@ class Writer {
       throw InputError(fmt::format("step {}: ({:g}, {:g}, {:g}) mm cannot be written, beyond {:g} mm",
                                    steps_ + 1, to_mm(p.x()), to_mm(p.y()), to_mm(p.z()),
                                    to_mm(kLargestCoordinate)));
-    Quat q(X_WT.linear());
+    return fmt::format(" X{} Y{} Z{}", millimetres(p.x()), millimetres(p.y()), millimetres(p.z())) +
+           (step.rotary && !style_.turn_letters.empty() ? turns(*step.rotary) : orientation(X_WT.linear()));
+  }
+
+  static std::string orientation(const Mat3& R_WT) {
+    Quat q(R_WT);
     if (q.w() < 0) q.coeffs() *= -1;
-    return fmt::format(" X{} Y{} Z{} W{} I{} J{} K{}", millimetres(p.x()), millimetres(p.y()),
-                       millimetres(p.z()), number(q.w(), 9), number(q.x(), 9), number(q.y(), 9),
+    return fmt::format(" W{} I{} J{} K{}", number(q.w(), 9), number(q.x(), 9), number(q.y(), 9),
                        number(q.z(), 9));
+  }
+
+  std::string turns(const RotaryTurns& turns) const {
+    std::string text;
+    for (std::size_t i = 0; i < style_.turn_letters.size(); ++i)
+      text += fmt::format(" {}{}", style_.turn_letters[i],
+                          number(checked(i == 0 ? turns.b : turns.c) / style_.turn_units.at(i), 6));
+    return text;
   }
 
   double checked(double value) const {
