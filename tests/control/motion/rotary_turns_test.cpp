@@ -44,8 +44,9 @@ TEST(RotaryTurns, ReadBackAsTheSameTipsAndToolAxes) {
     EXPECT_LT((is.translation() - meant.translation()).norm(), 1e-6) << k;
     EXPECT_LT(is.linear().col(2).cross(meant.linear().col(2)).norm(), 1e-6) << k;
     ASSERT_TRUE(read.steps[k].rotary.has_value());
-    if (k > 1)
+    if (k > 1) {
       EXPECT_LT(std::abs(read.steps[k].rotary->c - before), 20 * kDegree) << k << ": no leap of a turn";
+    }
     before = read.steps[k].rotary->c;
   }
   EXPECT_GT(std::abs(before), 8 * 2 * std::numbers::pi) << "ten times round";
