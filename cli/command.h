@@ -47,6 +47,8 @@ std::vector<std::string> left_out_commands();
 
 /// Words of the command line, quoted where a shell needs it: how a user repeats this run.
 void remember_command_line(int argc, char** argv);
+void remember_command_line(const std::vector<std::string>& words);  ///< without the first, `understudy`
+void restore_command_line(const std::string& line);                 ///< as command_line() gave it
 const std::string& command_line();
 /// The words again.
 std::vector<std::string> split_command_line(const std::string& line);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,9 +22,15 @@ std::string quoted(std::string_view word) {
 }  // namespace
 
 void remember_command_line(int argc, char** argv) {
-  remembered = "understudy";
-  for (int i = 1; i < argc; ++i) remembered += " " + quoted(argv[i]);
+  remember_command_line(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
 }
+
+void remember_command_line(const std::vector<std::string>& words) {
+  remembered = "understudy";
+  for (const std::string& word : words) remembered += " " + quoted(std::string_view(word));
+}
+
+void restore_command_line(const std::string& line) { remembered = line; }
 
 const std::string& command_line() { return remembered; }
 

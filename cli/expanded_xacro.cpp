@@ -1,8 +1,5 @@
 #include "cli/expanded_xacro.h"
 
-#include <unistd.h>
-
-#include <cstdlib>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -63,17 +60,8 @@ ExpandedXacro::ExpandedXacro(const fs::path& file, const std::vector<std::string
                      "is a xacro file, and xacro is not installed: install it, which ROS brings, or "
                      "expand the file where it is (`xacro FILE -o arm.urdf`)");
   const std::string urdf = expand(file, arguments);
-  std::string name = (fs::temp_directory_path() / "understudy-xacro-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw MachineError("cannot make a folder in " + fs::temp_directory_path().string());
-  folder_ = name;
-  path_ = folder_ / file.stem();
+  path_ = folder_.path() / file.stem();
   write_file(path_, urdf);
-}
-
-ExpandedXacro::~ExpandedXacro() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
 }
 
 }  // namespace understudy::cli

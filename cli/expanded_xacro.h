@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/file/scratch_folder.h"
+
 namespace understudy::cli {
 
 /// Runs xacro in the box of plug-ins (calibration/plugin/box.h), for a file can make it evaluate Python.
@@ -12,15 +14,13 @@ namespace understudy::cli {
 class ExpandedXacro {
  public:
   ExpandedXacro(const std::filesystem::path& file, const std::vector<std::string>& arguments);
-  ~ExpandedXacro();
-  ExpandedXacro(const ExpandedXacro&) = delete;
-  ExpandedXacro& operator=(const ExpandedXacro&) = delete;
 
   /// Gone with the object.
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  std::filesystem::path folder_, path_;
+  ScratchFolder folder_{"xacro"};
+  std::filesystem::path path_;
 };
 
 }  // namespace understudy::cli

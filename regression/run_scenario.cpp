@@ -1,6 +1,7 @@
 #include "regression/run_scenario.h"
 
 #include "core/error.h"
+#include "core/file/scratch_folder.h"
 
 namespace understudy::regression {
 namespace {
@@ -8,14 +9,15 @@ namespace {
 constexpr double kShareOfOneRun = 0.1;  // of the progress shown when a series follows
 
 /// `result` says why there is no summary, when there is none.
-Metrics run_once(const Scenario& scenario, const RecordSink& sink, const Progress& progress,
-                 ScenarioResult& result) {
+Metrics run_once(const Scenario& scenario, const std::function<void()>& plan, const RecordSink& sink,
+                 const Progress& progress, ScenarioResult& result) {
   const auto fail = [&](const std::exception& error, int status) {
     result.error = error.what();
     result.error_status = status;
     return failed_run(status);
   };
   try {
+    plan();
     rehearsal::RehearsalRequest request = request_of(scenario);
     request.keep_scene = static_cast<bool>(sink);
     const rehearsal::Record record = rehearsal::rehearse(request, progress);
@@ -66,7 +68,15 @@ Metrics metrics_of(const SweepRow& row) {
   return metrics;
 }
 
-ScenarioResult run_scenario(const Scenario& scenario, const ScenarioRun& run) {
+ScenarioResult run_scenario(const Scenario& described, const ScenarioRun& run) {
+  Scenario scenario = described;
+  std::optional<ScratchFolder> planned;
+  const auto plan = [&] {
+    if (scenario.plan.empty()) return;
+    planned.emplace("plan");
+    scenario.program = planned->path() / kPlannedProgram;
+    run.plan(scenario, scenario.program);
+  };
   ScenarioResult result;
   result.name = scenario.name;
   result.file = scenario.file.string();
@@ -75,7 +85,7 @@ ScenarioResult run_scenario(const Scenario& scenario, const ScenarioRun& run) {
     if (run.progress) run.progress(share, what);
   };
   const Metrics own = run_once(
-      scenario, run.sink, [&](double s, const std::string& what) { report(one * s, what); }, result);
+      scenario, plan, run.sink, [&](double s, const std::string& what) { report(one * s, what); }, result);
   if (!result.error.empty()) {
     if (!expects_refusal(scenario)) return result;
     result.error.clear(), result.error_status = 0;

@@ -10,6 +10,9 @@
 
 namespace understudy::regression {
 
+/// Name of the program that a plan makes.
+inline constexpr const char* kPlannedProgram = "planned.gcode";
+
 rehearsal::RehearsalRequest request_of(const Scenario& scenario);
 
 /// Metrics of one machine of a series: those of its record, and `approach.min_gap_mm`.
@@ -18,10 +21,14 @@ Metrics metrics_of(const SweepRow& row);
 /// Takes the record of the scenario's own run, to write it as files. What it throws is told of the run.
 using RecordSink = std::function<void(const rehearsal::Record&)>;
 
+/// Writes the program of a scenario that has a plan; what it throws is told of the run.
+using Planner = std::function<void(const Scenario&, const std::filesystem::path& output)>;
+
 struct ScenarioRun {
   int threads = 1;  ///< of the series; the result does not depend on it
   RecordSink sink;  ///< may be empty; then no scene is kept
   Progress progress;
+  Planner plan;  ///< may be empty where no scenario has a plan
 };
 
 /// One rehearsal, and one for each machine of the series. A rehearsal that throws is judged by its exit

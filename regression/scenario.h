@@ -39,10 +39,11 @@ struct MachineSeries {
 struct Scenario {
   std::filesystem::path file;
   std::string name, description, source;
-  std::string machine;  ///< name of a model, or a path
-  std::filesystem::path program;
-  std::string fixture;   ///< name or path of an STL; empty: none
-  std::string as_built;  ///< nominal, sampled, manufactured, calibrated or a path
+  std::string machine;            ///< name of a model, or a path
+  std::filesystem::path program;  ///< empty: `plan` makes it
+  std::string plan;               ///< what follows `understudy plan`; empty: there is a file
+  std::string fixture;            ///< name or path of an STL; empty: none
+  std::string as_built;           ///< nominal, sampled, manufactured, calibrated or a path
   std::uint64_t seed = 0;
   std::string gap_control, engine;
   std::optional<double> tip_tolerance_mm, orientation_tolerance_deg;  ///< without one, the machine's

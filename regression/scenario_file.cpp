@@ -267,7 +267,12 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   scenario.description = map.text("description", "what it shows");
   scenario.source = map.text("source", "where the case comes from");
   scenario.machine = name_or_path(map, "machine", folder, ".yaml", "name of a model, or a path");
-  scenario.program = existing_file(map, "program", folder, "path of the G-code file");
+  if (map.has("plan"))
+    scenario.plan = map.text("plan", "in place of `program`: what follows `understudy plan`");
+  if (map.has("program") || scenario.plan.empty())
+    scenario.program = existing_file(map, "program", folder, "path of the G-code file");
+  if (!scenario.program.empty() && !scenario.plan.empty() && !map.recording())
+    map.fail("plan", "plan and program exclude each other: which is to be printed?");
   if (map.has("fixture"))
     scenario.fixture =
         name_or_path(map, "fixture", folder, ".stl", "part that is printed on: a name or an STL");

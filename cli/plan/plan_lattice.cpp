@@ -129,8 +129,8 @@ int plan_lattice(const LatticeRequest& r) {
   write_program(result.program, machine, r.options, result.sequence.warnings);
   const auto tilted = std::count_if(result.sequence.prints.begin(), result.sequence.prints.end(),
                                     [](const toolpath::StrutPrint& p) { return p.axis.z() < 1 - 1e-9; });
-  fmt::print("{}: {} struts, {:.1f} mm, {} with the tool tilted\n", r.options.output, lattice.struts.size(),
-             to_mm(result.printed), tilted);
+  print_written(r.options, fmt::format("{} struts, {:.1f} mm, {} with the tool tilted", lattice.struts.size(),
+                                       to_mm(result.printed), tilted));
   return kGood;
 }
 

@@ -18,7 +18,7 @@ struct PlanOptions {
   double feed_mm_per_s = 5, approach_mm_per_s = 1, clearance_mm = 8;
   double bead_width_mm = 0.48, bead_height_mm = 0;  ///< height 0: the machine's gap
   double temperature_c = 230, fan = 0;
-  bool rotary_words = false;
+  bool rotary_words = false, quiet = false;
 };
 
 void add_machine_option(CLI::App& command, PlanOptions& options);
@@ -45,6 +45,9 @@ double bead_height(const PlanOptions& options, const machine::MachineDescription
 /// it and further `notes` at its top.
 void write_program(const toolpath::Program& program, const machine::MachineDescription& machine,
                    const PlanOptions& options, const std::vector<std::string>& notes = {});
+
+/// One line about what was written, unless --quiet.
+void print_written(const PlanOptions& options, const std::string& what);
 
 void add_plan_surface(CLI::App& plan, Action& action);
 void add_plan_planar(CLI::App& plan, Action& action);

@@ -40,8 +40,8 @@ int plan_planar(const PlanarRequest& r) {
   plan.fan = r.options.fan;
   const auto result = toolpath::plan_planar(*part, core.get(), plan);
   write_program(result.program, machine, r.options);
-  fmt::print("{}: {} layers of {:g} mm, {} strokes, {:.1f} mm of bead\n", r.options.output, result.layers,
-             r.layer_mm, result.strokes, to_mm(result.printed));
+  print_written(r.options, fmt::format("{} layers of {:g} mm, {} strokes, {:.1f} mm of bead", result.layers,
+                                       r.layer_mm, result.strokes, to_mm(result.printed)));
   return kGood;
 }
 

@@ -43,8 +43,8 @@ int plan_spiral(const SpiralRequest& r) {
   plan.fan = r.options.fan;
   const auto program = toolpath::plan_spiral(plan);
   write_program(program, machine, r.options);
-  fmt::print("{}: a helix of {:.1f} mm, {} steps\n", r.options.output, to_mm(toolpath::spiral_length(plan)),
-             program.steps.size());
+  print_written(r.options, fmt::format("a helix of {:.1f} mm, {} steps", to_mm(toolpath::spiral_length(plan)),
+                                       program.steps.size()));
   return kGood;
 }
 

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,27 +23,6 @@ struct SupportFreeRequest {
   int walls = 1;
   bool ignore_reach = false;
 };
-
-/// Which bead the machine cannot lay, and how far it would have to lean there.
-void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine) {
-  const toolpath::WayCheck reach = machine_reach(machine);
-  std::vector<Pose> way;
-  for (const toolpath::Step& step : program.steps) {
-    if (!toolpath::moves(step)) continue;
-    way.push_back(step.X_WT);
-    if (way.size() < 2) continue;
-    if (const std::string why = reach(way, false); !why.empty()) {
-      const Vec3 p = step.X_WT.translation();
-      throw InputError(fmt::format(
-          "at ({:.2f}, {:.2f}, {:.2f}) mm the part leans by {:.1f} deg, which {} cannot follow: {}; lay the "
-          "part "
-          "otherwise, or --ignore-reach",
-          to_mm(p.x()), to_mm(p.y()), to_mm(p.z()),
-          to_deg(std::acos(std::clamp(step.X_WT.linear().col(2).z(), -1.0, 1.0))), machine.name, why));
-    }
-    way.erase(way.begin());
-  }
-}
 
 int plan_support_free(const SupportFreeRequest& r) {
   check_options(r.options);
@@ -76,7 +53,7 @@ int plan_support_free(const SupportFreeRequest& r) {
       result.layers, to_mm(result.thinnest), to_mm(result.thickest), to_mm(result.printed),
       1e9 * result.volume, result.travels, to_deg(result.tilt_max), to_deg(result.lag_max));
   write_program(result.program, machine, r.options, {notes});
-  fmt::print("{}: {}\n", r.options.output, notes);
+  print_written(r.options, notes);
   return kGood;
 }
 

@@ -54,8 +54,8 @@ int plan_waypoints(const WaypointRequest& r) {
     fmt::print(stderr,
                "warning: {} waypoints are more than {:g} mm from both neighbours; nothing is printed there\n",
                result.single_points, r.gap_limit_mm);
-  fmt::print("{}: {} layers, {} strokes, {:.1f} mm of bead\n", r.options.output, layers.size(),
-             result.strokes, to_mm(result.printed));
+  print_written(r.options, fmt::format("{} layers, {} strokes, {:.1f} mm of bead", layers.size(),
+                                       result.strokes, to_mm(result.printed)));
   return kGood;
 }
 

@@ -9,9 +9,11 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/progress.h"
+#include "cli/twin/planned_program.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
+#include "core/file/read_file.h"
 #include "regression/junit.h"
 #include "regression/run_scenario.h"
 #include "regression/scenario_file.h"
@@ -43,12 +45,25 @@ void print_result(const regression::ScenarioResult& result) {
     fmt::print("     {} {}\n", check.ok ? "ok  " : "FAIL", check.ok ? check.name : check.message);
 }
 
-regression::RecordSink results_in(const fs::path& folder) {
-  return [folder](const rehearsal::Record& record) {
+/// With the program that a plan has made: nobody else has it.
+regression::RecordSink results_in(const fs::path& folder, const std::string& planned) {
+  return [folder, &planned](const rehearsal::Record& record) {
     OutputFolder out(folder);
     report::write_results(record, report::draw_scene(*record.scene), out.path());
+    if (!planned.empty()) write_file(out.path() / regression::kPlannedProgram, planned);
     out.commit();
   };
+}
+
+/// A failure names a scenario by its name.
+void check_names(const std::vector<regression::Scenario>& scenarios) {
+  std::map<std::string, fs::path> taken;
+  for (const auto& scenario : scenarios) {
+    const auto [other, is_new] = taken.emplace(scenario.name, scenario.file);
+    if (!is_new)
+      throw InputError(fmt::format("{} and {} are both named '{}': rename one", other->second.string(),
+                                   scenario.file.string(), scenario.name));
+  }
 }
 
 /// Each has a folder of its file's name, whose older result may be replaced.
@@ -67,6 +82,7 @@ int run(const ScenarioRequest& request) {
   check_jobs(request.threads);
   std::vector<regression::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
   for (const auto& file : scenario_files(request.paths)) scenarios.push_back(regression::load_scenario(file));
+  check_names(scenarios);
   if (!request.folder.empty()) check_folders(scenarios, request.folder);
   if (!request.junit.empty()) check_writable(request.junit);
   std::vector<regression::ScenarioResult> results;
@@ -76,11 +92,17 @@ int run(const ScenarioRequest& request) {
     regression::ScenarioResult result;
     {
       ProgressLine line;
-      regression::ScenarioRun how{request.threads, {}, {}};
+      regression::ScenarioRun how{request.threads, {}, {}, {}};
       how.progress = [&](double share, const std::string& what) {
         line.show(share, scenario.name + ": " + what);
       };
-      if (!request.folder.empty()) how.sink = results_in(fs::path(request.folder) / scenario.file.stem());
+      std::string planned;
+      how.plan = [&](const regression::Scenario& each, const fs::path& output) {
+        write_planned(each, output);
+        planned = read_file(output);
+      };
+      if (!request.folder.empty())
+        how.sink = results_in(fs::path(request.folder) / scenario.file.stem(), planned);
       result = regression::run_scenario(scenario, how);
     }
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -8,9 +8,11 @@
 #include "cli/jobs_option.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
+#include "cli/twin/planned_program.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
+#include "core/file/scratch_folder.h"
 #include "core/interrupt.h"
 #include "core/units.h"
 #include "machine/description.h"
@@ -43,8 +45,14 @@ std::string journal_of(const SweepRequest& r) {
   return journal;
 }
 
-rehearsal::RehearsalRequest print_of(const SweepRequest& r) {
-  auto print = regression::request_of(regression::load_scenario(r.scenario));
+/// `scratch`: where the program of a plan lies until all machines have printed it.
+rehearsal::RehearsalRequest print_of(const SweepRequest& r, const ScratchFolder& scratch) {
+  regression::Scenario scenario = regression::load_scenario(r.scenario);
+  if (!scenario.plan.empty()) {
+    scenario.program = scratch.path() / regression::kPlannedProgram;
+    write_planned(scenario, scenario.program);
+  }
+  auto print = regression::request_of(scenario);
   if (!r.as_built.empty()) print.as_built = r.as_built;
   print.command = command_line();
   return print;
@@ -56,7 +64,8 @@ int run_budget(const SweepRequest& r) {
   request.first_seed = r.first_seed;
   request.threads = r.threads;
   check_jobs(r.threads);
-  request.print = print_of(r);
+  const ScratchFolder scratch("plan");
+  request.print = print_of(r, scratch);
   fmt::print(stderr, "{}\n", report::budget_cost(studies::plan_budget(request), request.samples));
   OutputFolder out(r.folder);
   request.journal = journal_of(r);
@@ -83,7 +92,8 @@ int run_sweep(const SweepRequest& r) {
   if (samples < 1 || samples > 1000000)
     throw InputError(fmt::format("--samples {} is outside 1..1000000", samples));
   check_jobs(r.threads);
-  const auto request = print_of(r);
+  const ScratchFolder scratch("plan");
+  const auto request = print_of(r, scratch);
   const auto machine = machine::load_machine(request.machine);
   OutputFolder out(r.folder);
   const std::string journal = journal_of(r);

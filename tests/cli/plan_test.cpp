@@ -123,19 +123,30 @@ TEST(PlanSupportFree, LaysABentCylinderInOnePath) {
   EXPECT_THAT(outcome.out, HasSubstr(", 0 travels; the tool leans by up to "));
 }
 
-TEST(SlowPlanSupportFree, TheMachinePrintsWhatOverhangsWithoutSupports) {
+TEST(PlanSurface, WritesTheTurningAxesOfTheMachineOnRequest) {
   const Folder folder;
-  for (const char* part : {"bent_cylinder", "bent_bar", "s_tube"}) {
-    const std::string program = folder / "part.gcode";
-    ASSERT_EQ(
-        understudy(std::string("plan support-free ") + part + " --machine five-axis -o " + program).status,
-        0);
-    const Outcome rehearsal =
-        understudy("rehearse " + program + " --machine five-axis --engine quasistatic --no-pictures --out " +
-                   (folder / part));
-    EXPECT_EQ(rehearsal.status, 0) << rehearsal.out << rehearsal.err;
-    EXPECT_THAT(rehearsal.out, HasSubstr(": GO"));
-  }
+  const std::string plan = "plan surface crown_core --tilt -17 17 --machine five-axis --rotary-words -o ";
+  ASSERT_EQ(understudy(plan + (folder / "a.gcode")).status, 0);
+  const std::string program = read_file(folder / "a.gcode");
+  EXPECT_THAT(program, ::testing::ContainsRegex("\nG1 X[-0-9.]+ Y[-0-9.]+ Z[-0-9.]+ B[-0-9.]+ C[-0-9.]+ E"));
+  const Outcome rehearsed =
+      understudy("rehearse " + (folder / "a.gcode") +
+                 " --machine five-axis --fixture crown_core --engine quasistatic --no-pictures --out " +
+                 (folder / "out"));
+  EXPECT_EQ(rehearsed.status, 0) << rehearsed.out << rehearsed.err;
+  const Outcome none = understudy("plan surface bottle --rotary-words -o " + (folder / "b.gcode"));
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("hexapod has no rotary words"));
+}
+
+TEST(PlanSurface, RefusesATiltThatTheMachineCannotTakeAndSaysWhichItCould) {
+  const Folder folder;
+  const std::string plan = "plan surface bottle --tilt -60 60 -o " + (folder / "a.gcode");
+  const Outcome refused = understudy(plan);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("which hexapod cannot follow: "));
+  EXPECT_THAT(refused.err, ::testing::ContainsRegex("it could lean by [0-9.]+ deg there"));
+  EXPECT_EQ(understudy(plan + " --ignore-reach").status, 0);
 }
 
 TEST(PlanSupportFree, NamesTheTiltThatTheMachineCannotFollow) {
@@ -145,8 +156,9 @@ TEST(PlanSupportFree, NamesTheTiltThatTheMachineCannotFollow) {
   // A printer that does not tilt at all, and the hexapod, which tilts by some degrees.
   const Outcome level = understudy(plan + " --machine corexy");
   EXPECT_EQ(level.status, 2);
-  EXPECT_THAT(level.err, HasSubstr("the part leans by 0."));
+  EXPECT_THAT(level.err, HasSubstr("the tool leans by 0."));
   EXPECT_THAT(level.err, HasSubstr("deg, which corexy cannot follow: "));
+  EXPECT_THAT(level.err, HasSubstr("it could lean by 0.0 deg there"));
   EXPECT_EQ(understudy(plan + " --machine hexapod").status, 2);
   EXPECT_EQ(understudy(plan + " --machine corexy --ignore-reach").status, 0);
 }

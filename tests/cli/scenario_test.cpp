@@ -38,6 +38,12 @@ TEST(ScenarioRun, EveryShippedScenarioHoldsWhatIsExpectedOfIt) {
   EXPECT_THAT(read_file(folder / "junit.xml"), HasSubstr("<testsuite"));
 }
 
+TEST(SlowScenarioRun, TheExperimentsOfThePapersHoldWhatIsExpectedOfThem) {
+  const Outcome outcome = understudy("scenario run " + kSource + "/scenarios/papers");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("3 passed, 0 failed"));
+}
+
 TEST(ScenarioRun, AnExpectationThatFailsIsStatusOneAndSaysByHowMuch) {
   const Folder folder;
   const auto file =
@@ -46,6 +52,62 @@ TEST(ScenarioRun, AnExpectationThatFailsIsStatusOneAndSaysByHowMuch) {
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("below 0.5 mm"));
   EXPECT_THAT(read_file(folder / "junit.xml"), HasSubstr("<failure"));
+}
+
+/// A scenario on the five-axis printer; `what` is its program or plan.
+std::string bent(const Folder& folder, const std::string& file, const std::string& what,
+                 const std::string& expect) {
+  return folder.write(
+      file, "name: " + file + "\ndescription: a bent part\nsource: none\nmachine: five-axis\n" + what +
+                "\nas_built: nominal\nseed: 1\ngap_control: \"off\"\nengine: quasistatic\nexpect:\n  - {" +
+                expect + ", source: a test}\n");
+}
+
+TEST(ScenarioRun, APlanStandsForTheProgramThatItMakes) {
+  const Folder folder;
+  std::filesystem::copy_file(kSource + "/models/parts/bent_bar.stl", folder / "bar.stl");
+  const std::string words = "support-free bar.stl --layer 0.5 --layer-range 0.2,0.8 --width 1";
+  const auto file = bent(folder, "bar.yaml", "plan: " + words, "metric: print.duration_s, min: 60, unit: s");
+  const Outcome planned = understudy("scenario run " + file + " --out " + (folder / "out"));
+  ASSERT_EQ(planned.status, 0) << planned.out << planned.err;
+  EXPECT_EQ(planned.out.find("planned.gcode"), std::string::npos) << "only the scenario's own lines";
+  const std::string program = read_file(folder / "out/bar/planned.gcode");
+  EXPECT_THAT(program, ::testing::StartsWith("; planned by: understudy plan " + words));
+  const auto lines_after_first = [](const std::string& text) { return text.substr(text.find('\n')); };
+  ASSERT_EQ(understudy("plan support-free " + (folder / "bar.stl") +
+                       " --layer 0.5 --layer-range 0.2,0.8 --width 1 --machine five-axis -o " +
+                       (folder / "direct.gcode"))
+                .status,
+            0);
+  EXPECT_EQ(lines_after_first(program), lines_after_first(read_file(folder / "direct.gcode")));
+}
+
+TEST(ScenarioRun, APlanThatIsRefusedIsARunWithStatusTwo) {
+  const Folder folder;
+  const std::string refused = "plan: support-free none.stl";
+  EXPECT_EQ(
+      understudy("scenario run " + bent(folder, "a.yaml", refused, "metric: exit_status, equals: 2")).status,
+      0);
+  const Outcome outcome =
+      understudy("scenario run " + bent(folder, "b.yaml", refused, "metric: verdict, equals: go"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.out, HasSubstr("b.yaml: plan: "));
+  EXPECT_THAT(outcome.out, HasSubstr("none.stl"));
+  for (const std::string words :
+       {"spiral -o x.gcode", "spiral --machine arm", "spirale", "spiral --radiuss 3"}) {
+    const Outcome wrong =
+        understudy("scenario run " + bent(folder, "c.yaml", "plan: " + words, "metric: verdict, equals: go"));
+    EXPECT_EQ(wrong.status, 2) << words;
+    EXPECT_THAT(wrong.out, HasSubstr("c.yaml: plan: ")) << words;
+  }
+}
+
+TEST(ScenarioRun, TwoScenariosOfOneNameAreRefused) {
+  const Folder folder;
+  const auto one = changed(folder, "seed: 1", "seed: 2");
+  const Outcome outcome = understudy("scenario run " + one + " " + one);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("are both named 'song-bottle'"));
 }
 
 TEST(ScenarioRun, BadScenariosAreRefusedBeforeAnythingRuns) {

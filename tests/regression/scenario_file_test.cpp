@@ -83,6 +83,17 @@ using testing::AnyOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
+TEST_F(ScenarioFile, HasAProgramOrAPlanOfOne) {
+  const std::string good = std::string(kHead) + kExpect;
+  const Scenario planned =
+      load(replaced(good, "program: ../parts/line.gcode", "plan: planar ../parts/box.stl --layer 0.2"));
+  EXPECT_EQ(planned.plan, "planar ../parts/box.stl --layer 0.2");
+  EXPECT_TRUE(planned.program.empty());
+  EXPECT_THAT(error_of(replaced(good, "fixture:", "plan: spiral\nfixture:")),
+              AllOf(HasSubstr("s.yaml:6"), HasSubstr("exclude each other")));
+  EXPECT_THAT(error_of(replaced(good, "program: ../parts/line.gcode\n", "")), HasSubstr("program"));
+}
+
 TEST_F(ScenarioFile, ThePartIsRegisteredWhereTheFileSaysSo) {
   const std::string head = kHead, rest = kExpect;
   EXPECT_FALSE(load(head + rest).registration.wanted);

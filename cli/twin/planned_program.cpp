@@ -1,0 +1,71 @@
+#include "cli/twin/planned_program.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "core/error.h"
+
+namespace understudy::cli {
+namespace {
+namespace fs = std::filesystem;
+
+/// The program's first line repeats the plan, wherever the scenario is run.
+class AsCommandLine {
+ public:
+  explicit AsCommandLine(const std::vector<std::string>& words) : before_(command_line()) {
+    remember_command_line(words);
+  }
+  ~AsCommandLine() { restore_command_line(before_); }
+  AsCommandLine(const AsCommandLine&) = delete;
+  AsCommandLine& operator=(const AsCommandLine&) = delete;
+
+ private:
+  std::string before_;
+};
+
+std::string beside(const regression::Scenario& scenario, const std::string& word) {
+  const fs::path path = scenario.file.parent_path() / word;
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) ? path.string() : word;
+}
+
+int run_plan(std::vector<std::string> words) {
+  CLI::App app;
+  Action action;
+  add_plan(app, action);
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  app.parse(words);
+  return action();
+}
+
+}  // namespace
+
+void write_planned(const regression::Scenario& scenario, const fs::path& output) {
+  const auto fail = [&](const std::string& why) {
+    throw InputError(fmt::format("{}: plan: {}", scenario.file.string(), why));
+  };
+  std::vector<std::string> words{"plan"}, shown = words;
+  for (const std::string& word : split_command_line(scenario.plan)) {
+    if (word == "-o" || word.starts_with("--output") || word.starts_with("--machine"))
+      fail(fmt::format("'{}' is the scenario's to say: leave it out", word));
+    shown.push_back(word);
+    words.push_back(beside(scenario, word));
+  }
+  for (auto* each : {&words, &shown})
+    each->insert(each->end(), {"--quiet", "--machine", scenario.machine, "-o"});
+  words.push_back(output.string());
+  shown.push_back(output.filename().string());
+  const AsCommandLine as(shown);
+  try {
+    if (run_plan(words) != kGood) fail("no program came of it");
+  } catch (const CLI::ParseError& error) {
+    fail(error.what());
+  } catch (const InputError& error) {
+    fail(error.what());
+  }
+}
+
+}  // namespace understudy::cli
