@@ -8,12 +8,15 @@
 #include <fmt/format.h>
 
 #include "control/motion/path_kinematics.h"
+#include "core/error.h"
 #include "core/units.h"
 
 namespace understudy::cli {
 namespace {
 
 using kinematics::SolveStatus;
+
+constexpr double kTiltShare = 1e-3;  // to which a possible tilt is found
 
 struct Spacing {
   double path, turn;  // [m], [rad]
@@ -78,12 +81,50 @@ class LatticeReach {
   std::size_t axes_;
 };
 
+double tilt_of(const Pose& X_WT) { return std::acos(std::clamp(X_WT.linear().col(2).z(), -1.0, 1.0)); }
+
+/// What the machine could do at this place, leaning the same way.
+std::string possible_tilt(const Pose& X_WT, const toolpath::WayCheck& reach) {
+  const auto leaning = [&](double share) {
+    const Vec3 axis = X_WT.linear().col(2), across = Vec3::UnitZ().cross(axis);
+    const double tilt = share * tilt_of(X_WT);
+    const Mat3 R = across.norm() > 0 ? Mat3(Eigen::AngleAxisd(tilt, across.normalized())) : Mat3::Identity();
+    return make_pose(R, Vec3(X_WT.translation()));
+  };
+  const auto can = [&](double share) { return reach({leaning(share)}, false).empty(); };
+  if (!can(0)) return "it does not get there upright either";
+  double good = 0, bad = 1;
+  if (can(1)) return "it could stand there, but is not led there without a leap";
+  while (bad - good > kTiltShare) (can((good + bad) / 2) ? good : bad) = (good + bad) / 2;
+  return fmt::format("it could lean by {:.1f} deg there", to_deg(good * tilt_of(X_WT)));
+}
+
 }  // namespace
 
 toolpath::WayCheck machine_reach(const machine::MachineDescription& machine) {
   return [reach = LatticeReach(machine)](const std::vector<Pose>& way, bool fine) {
     return reach.walk(way, fine);
   };
+}
+
+void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine) {
+  const toolpath::WayCheck reach = machine_reach(machine);
+  std::vector<Pose> way;
+  for (const toolpath::Step& step : program.steps) {
+    if (!toolpath::moves(step)) continue;
+    way.push_back(step.X_WT);
+    if (way.size() < 2) continue;
+    if (const std::string why = reach(way, false); !why.empty()) {
+      const Vec3 p = step.X_WT.translation();
+      throw InputError(
+          fmt::format("at ({:.2f}, {:.2f}, {:.2f}) mm the tool leans by {:.1f} deg, which {} cannot follow: "
+                      "{}; {}; place "
+                      "the part otherwise, or --ignore-reach",
+                      to_mm(p.x()), to_mm(p.y()), to_mm(p.z()), to_deg(tilt_of(step.X_WT)), machine.name, why,
+                      possible_tilt(step.X_WT, reach)));
+    }
+    way.erase(way.begin());
+  }
 }
 
 }  // namespace understudy::cli

@@ -3,6 +3,7 @@
 
 #include "machine/description.h"
 #include "toolpath/lattice/lattice_sequence.h"
+#include "toolpath/program.h"
 
 namespace understudy::cli {
 
@@ -10,5 +11,9 @@ namespace understudy::cli {
 /// (control/motion/path_kinematics.h); at the first pose the axes stand on the branch of the machine's home.
 /// Looks at every 2 mm and 2 degrees, or at every 8 mm and 6 degrees where that is enough.
 toolpath::WayCheck machine_reach(const machine::MachineDescription& machine);
+
+/// Throws InputError for the first pose of the program that the machine cannot take, or cannot be led to:
+/// with the place, the tilt there, the limit, and the tilt that it could take at this place.
+void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine);
 
 }  // namespace understudy::cli

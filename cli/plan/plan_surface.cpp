@@ -1,7 +1,9 @@
 #include <memory>
+#include <numbers>
 
 #include <fmt/format.h>
 
+#include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
@@ -15,7 +17,9 @@ namespace {
 
 struct SurfaceRequest {
   PlanOptions options;
-  std::string part, curve;
+  std::string part;
+  std::vector<std::string> curves;
+  bool upright = false, ignore_reach = false;
   std::vector<double> section{0, 0, 0, 0, 1, 0};  ///< point [mm] and normal of the cutting plane
   std::vector<double> tilt_deg{-20, 20};
   double step_mm = 0.5, chord_um = 2;
@@ -29,7 +33,7 @@ void check(const SurfaceRequest& r) {
   check_option("--chord", r.chord_um, 1000);
   if (!(r.pitch_mm >= 0 && r.pitch_mm <= 100))
     throw InputError(fmt::format("--pitch {:g} is outside 0..100", r.pitch_mm));
-  if (r.rows > 1 && !r.curve.empty())
+  if (r.rows > 1 && !r.curves.empty())
     throw InputError(fmt::format("--rows {} and --curve exclude each other: rows are cut by planes", r.rows));
   if (r.tilt_deg[0] >= r.tilt_deg[1])
     throw InputError(
@@ -38,7 +42,11 @@ void check(const SurfaceRequest& r) {
 
 std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const SurfaceRequest& r,
                                          const toolpath::SurfacePlan& plan) {
-  if (!r.curve.empty()) return {toolpath::read_curve_csv(r.curve)};
+  if (!r.curves.empty()) {
+    std::vector<std::vector<Vec3>> read;
+    for (const std::string& file : r.curves) read.push_back(toolpath::read_curve_csv(file));
+    return read;
+  }
   toolpath::SectionRows rows;
   rows.point = from_mm(1) * Vec3(r.section[0], r.section[1], r.section[2]);
   const Vec3 normal(r.section[3], r.section[4], r.section[5]);
@@ -69,10 +77,12 @@ int plan_surface(const SurfaceRequest& r) {
   plan.filament_diameter = machine.tool.filament_diameter;
   plan.temperature = r.options.temperature_c + kCelsiusZero;
   plan.fan = r.options.fan;
-  plan.tilt_max = from_deg(30);
+  plan.tilt_max = std::numbers::pi;  // the machine says
+  plan.upright = r.upright;
   const auto program = toolpath::plan_surface(*mesh, curves_on(*mesh, r, plan), r.layers, plan);
+  if (!r.ignore_reach) check_reach(program, machine);
   write_program(program, machine, r.options);
-  fmt::print("{}: {} steps on {}\n", r.options.output, program.steps.size(), r.part);
+  print_written(r.options, fmt::format("{} steps on {}", program.steps.size(), r.part));
   return kGood;
 }
 
@@ -84,7 +94,9 @@ void add_plan_surface(CLI::App& plan, Action& action) {
       plan.add_subcommand("surface", "Curves on any surface, the tool along the surface's normal");
   surface->add_option("part", request->part, "STL in mm, or a name under models/parts")->required();
   add_machine_option(*surface, request->options);
-  surface->add_option("--curve", request->curve, "CSV x_mm,y_mm,z_mm of a curve near the surface");
+  surface->add_option("--curve", request->curves,
+                      "CSV x_mm,y_mm,z_mm of a curve near the surface; several, one after the other, are the "
+                      "strokes of a drawing");
   surface->add_option("--section", request->section, "without --curve: cut by the plane x y z nx ny nz (mm)")
       ->expected(6)
       ->capture_default_str();
@@ -102,6 +114,8 @@ void add_plan_surface(CLI::App& plan, Action& action) {
   surface->add_option("--layers", request->layers, "one on the other, each a bead's height farther out")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  surface->add_flag("--upright", request->upright, "the tool stays vertical: to compare with");
+  surface->add_flag("--ignore-reach", request->ignore_reach, "do not ask the machine whether it gets there");
   surface->add_option("--step", request->step_mm, "mm between points at most")->capture_default_str();
   surface->add_option("--chord", request->chord_um, "um between chord and surface at most")
       ->capture_default_str();

@@ -47,7 +47,8 @@ void check_tilt(const std::vector<SurfacePoint>& path, double tilt_max) {
 void add_stroke(ProgramBuilder& program, const std::vector<SurfacePoint>& path, double base,
                 const SurfacePlan& plan) {
   const auto tool = [&](const SurfacePoint& s, double height) {
-    return tool_at(s.position, s.normal, base + height);
+    return plan.upright ? make_pose(Mat3::Identity(), s.position + (base + height) * s.normal)
+                        : tool_at(s.position, s.normal, base + height);
   };
   const Pose above = tool(path.front(), plan.gap + plan.clearance);
   if (program.empty()) program.begin(above, plan.temperature, plan.fan);
@@ -78,7 +79,7 @@ Program plan_surface(const geometry::Mesh& mesh, const std::vector<std::vector<V
   const double outermost = plan.gap + (layers - 1) * plan.bead_height;
   for (const auto& curve : curves) {
     paths.push_back(sample_curve(mesh, curve, {outermost, plan.step, plan.chord_tolerance}));
-    check_tilt(paths.back(), plan.tilt_max);
+    if (!plan.upright) check_tilt(paths.back(), plan.tilt_max);
   }
   ProgramBuilder program(plan.filament_diameter);
   for (int layer = 0; layer < layers; ++layer)

@@ -23,17 +23,18 @@ struct SurfacePlan {
   double temperature = 0;        ///< [K]
   double fan = 0;                ///< 0..1
   double tilt_max = 0;           ///< [rad], largest tilt from vertical that the machine allows
+  bool upright = false;          ///< the tool stays vertical whatever the normal: to compare with
 };
 
 /// `curve` is a polyline near the surface. Its smooth stretches are divided into equal steps, each point is
 /// projected to the nearest surface point, steps are halved where the chord leaves the surface or the normal
 /// swings more than 5 degrees, and each point gets the shortest-arc orientation that puts the tool on the
-/// surface's normal. The tip runs `gap` above the surface along the normal. Filament per step is the bead's
-/// area times its length (taken half a bead height above the surface) over the filament's area. Order of
-/// steps: temperature and wait, fan, travel above, S' (travel), S (move: the approach), print moves, retreat
-/// (travel, straight along the tool axis). Throws InputError when a value of the plan is out of range, the
-/// curve has no length, leaves the mesh by more than 5 mm, crosses a sharp edge (normals of neighbours more
-/// than 20 degrees apart however close they are), or tilts the tool beyond tilt_max.
+/// surface's normal, or stays upright. The tip runs `gap` above the surface along the normal. Filament per
+/// step is the bead's area times its length (taken half a bead height above the surface) over the filament's
+/// area. Order of steps: temperature and wait, fan, travel above, S' (travel), S (move: the approach), print
+/// moves, retreat (travel, straight along the tool axis). Throws InputError when a value of the plan is out
+/// of range, the curve has no length, leaves the mesh by more than 5 mm, crosses a sharp edge (normals of
+/// neighbours more than 20 degrees apart however close they are), or tilts the tool beyond tilt_max.
 Program plan_surface(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, const SurfacePlan& plan);
 
 /// The same for several curves, each with its own approach and retreat, and for `layers` layers of them:
