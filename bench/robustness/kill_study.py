@@ -218,8 +218,8 @@ class Study:
             time.sleep(min(1e-3, max(0.0, after - (time.monotonic() - began))))
         if process.poll() is None:
             process.send_signal(self.signal)
-        sent, used = time.monotonic(), processor_seconds(process.pid)
-        errors, own = self.end_of(process, used)
+        sent = time.monotonic()
+        errors, own = self.end_of(process)
         if process.returncode in (0, 1):
             self.lies_there = variant
             return False
@@ -232,8 +232,11 @@ class Study:
         self.look_at(variant)
         return True
 
-    def end_of(self, process, used):
-        """What it printed, and the seconds of processor since it had `used` that many."""
+    def end_of(self, process):
+        """What it printed, and the seconds of processor that it took from now on."""
+        if process.returncode is not None:  # it was waited for
+            return process.communicate()[1], 0.0
+        used = processor_seconds(process.pid)
         errors = process.stderr.read()  # until it ends
         os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
         own = processor_seconds(process.pid) - used

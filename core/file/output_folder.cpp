@@ -131,11 +131,11 @@ void remove_empty_folders(const fs::path& folder) {
   for (const fs::path& inner : folders) fs::remove(inner, ignored);  // where it is empty
 }
 
-/// Removes what its manifest names; whatever else has come into it stays, with the folders that it lies in.
-/// The mark goes last: until then the next run removes what is left here.
-void remove_result(const fs::path& folder) {
+/// Removes what its manifest named, `ours`; whatever else has come into it stays, with the folders that it
+/// lies in. The mark goes last: until then the next run removes what is left here.
+void remove_result(const fs::path& folder, const Digests& ours) {
   std::error_code ignored;
-  for (const auto& [name, digest] : read_manifest(folder)) fs::remove(folder / name, ignored);
+  for (const auto& [name, digest] : ours) fs::remove(folder / name, ignored);
   fs::remove(folder / kManifest, ignored);
   remove_empty_folders(folder);
   fs::remove(folder / kUnfinished, ignored);
@@ -149,7 +149,8 @@ fs::path old_name(const fs::path& working) { return working.string() + ".old"; }
 void restore_old(const fs::path& working, const fs::path& target) {
   std::error_code ignored;
   if (fs::exists(fs::symlink_status(target, ignored))) {
-    if (fs::exists(old_name(working) / kUnfinished, ignored)) remove_result(old_name(working));
+    if (fs::exists(old_name(working) / kUnfinished, ignored))
+      remove_result(old_name(working), read_manifest(old_name(working)));
     return;
   }
   (void)::renameat2(AT_FDCWD, old_name(working).c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE);
@@ -250,16 +251,18 @@ void OutputFolder::commit() {
         fmt::format("cannot write {}: {}; the result is in {}", target_.string(), why, working_.string()));
   };
   const bool replaces = fs::exists(fs::symlink_status(target_, error));
+  const Digests old = replaces ? read_manifest(target_) : Digests();
   // What came into it while we worked is a user's.
   if (const std::string why = why_not_replaceable(target_); !why.empty()) stays(why);
   // Both are marked: whichever lies under TARGET.part when the process dies is taken away by the next run.
   if (replaces && !mark(target_)) stays(text_of(errno));
   if (const int failure = replaces ? exchange(working_, target_) : move_new(working_, target_); failure != 0)
     stays(text_of(failure));
-  // An interrupt does not end the process between these: what lies under TARGET.part is the old result now.
+  // An interrupt neither ends the process between these nor stops them, as it would stop the reading of a
+  // file: what lies under TARGET.part is the old result now.
   partial_->keep_after([&] {
     fs::remove(target_ / kUnfinished, error);
-    if (replaces) remove_result(working_);
+    if (replaces) remove_result(working_, old);
   });
 }
 

@@ -50,7 +50,8 @@ bool runs(const std::string& program, const std::string& word) {
   std::error_code error;
   for (fs::directory_iterator entry("/proc", error), end; !error && entry != end; entry.increment(error)) {
     std::ifstream file(entry->path() / "cmdline", std::ios::binary);
-    const std::string line{std::istreambuf_iterator<char>(file), {}};
+    std::string line;
+    std::getline(file, line, '\xff');  // all of it, or nothing of a process that ends meanwhile
     if (line.starts_with(program) && line.find(word) != std::string::npos) return true;
   }
   return false;
