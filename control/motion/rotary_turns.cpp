@@ -50,8 +50,8 @@ toolpath::Program with_turns(const toolpath::Program& program, const machine::Ma
 
 toolpath::GcodeStyle rotary_style(const machine::MachineDescription& machine) {
   toolpath::GcodeStyle style;
-  for (const kinematics::AxisWord& word : turning_mechanism(machine)->rotary_words())
-    style.turn_letters += word.letter;
+  const auto mechanism = turning_mechanism(machine);
+  for (const kinematics::AxisWord& word : mechanism->rotary_words()) style.turn_letters += word.letter;
   style.turn_units = machine.dialect.turn_units;
   return style;
 }
