@@ -82,8 +82,8 @@ int run(const ScenarioRequest& request) {
   check_jobs(request.threads);
   std::vector<regression::Scenario> scenarios;  // all are read before the first runs: a typo costs no time
   for (const auto& file : scenario_files(request.paths)) scenarios.push_back(regression::load_scenario(file));
-  check_names(scenarios);
   if (!request.folder.empty()) check_folders(scenarios, request.folder);
+  check_names(scenarios);
   if (!request.junit.empty()) check_writable(request.junit);
   std::vector<regression::ScenarioResult> results;
   int failed = 0;

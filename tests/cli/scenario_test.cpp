@@ -104,7 +104,7 @@ TEST(ScenarioRun, APlanThatIsRefusedIsARunWithStatusTwo) {
 
 TEST(ScenarioRun, TwoScenariosOfOneNameAreRefused) {
   const Folder folder;
-  const auto one = changed(folder, "seed: 1", "seed: 2");
+  const auto one = changed(folder, "engine: mujoco", "engine: quasistatic");
   const Outcome outcome = understudy("scenario run " + one + " " + one);
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("are both named 'song-bottle'"));
