@@ -36,31 +36,14 @@ void check(const geometry::Mesh& part, const SupportFreePlan& plan) {
                     to_mm(part.lower().z())));
 }
 
-/// Closed: from the point nearest to `first`, or from half a turn further.
-FlatPath begun(const FlatPath& loop, const Vec2& first, bool halfway) {
+/// Closed: from the point nearest to `first`.
+FlatPath begun(const FlatPath& loop, const Vec2& first) {
   Contour points(loop.begin(), loop.end() - 1);
   const auto nearest = std::min_element(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) {
     return (a - first).norm() < (b - first).norm();
   });
   std::rotate(points.begin(), nearest, points.end());
   points.push_back(points.front());
-  if (!halfway) return points;
-  double length = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
-  double passed = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const double side = (points[i] - points[i - 1]).norm();
-    if (passed + side < 0.5 * length) {
-      passed += side;
-      continue;
-    }
-    const Vec2 middle = points[i - 1] + (0.5 * length - passed) / side * (points[i] - points[i - 1]);
-    FlatPath path{middle};
-    path.insert(path.end(), points.begin() + static_cast<std::ptrdiff_t>(i), points.end());
-    path.insert(path.end(), points.begin() + 1, points.begin() + static_cast<std::ptrdiff_t>(i));
-    path.push_back(middle);
-    return path;
-  }
   return points;
 }
 
@@ -79,12 +62,11 @@ class SupportFreePrint {
     // Carried from layer to layer in the frames' own axes, which turn as little as can be.
     const BoundingRectangle box = bounding_rectangle(outline, along_);
     along_ = box.along;
-    const bool even = result_.layers % 2 != 0;
-    const Vec2 corner = box.centre - 0.5 * box.length * box.along;
+    const Vec2 first = beginning(box);
     bool any = false;
     for (int wall = 0; wall < plan_.walls; ++wall)
       for (const FlatPath& loop : inset(0.5 + wall)) {
-        stroke(begun(loop, corner, even), pitch_);
+        stroke(begun(loop, first), pitch_);
         any = true;
       }
     std::vector<Contour> region;
@@ -108,6 +90,16 @@ class SupportFreePrint {
   }
 
  private:
+  /// On a short side of the section, on the other one than in the layer before, where the tool is.
+  Vec2 beginning(const BoundingRectangle& box) const {
+    const Vec2 across(-box.along.y(), box.along.x());
+    const double side = result_.layers % 2 == 0 ? -0.5 : 0.5;
+    const Vec2 end = box.centre + side * box.length * box.along;
+    if (builder_.empty()) return end;
+    const Vec2 tip = layer_->middle.in(builder_.tool().translation());
+    return end + std::clamp((tip - end).dot(across), -0.5 * box.width, 0.5 * box.width) * across;
+  }
+
   /// Loops so many beads inside the outline.
   std::vector<FlatPath> inset(double beads) const {
     std::vector<FlatPath> loops = inset_paths(layer_->section.contours, beads * pitch_, plan_.bead_width,

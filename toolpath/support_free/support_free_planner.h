@@ -29,8 +29,8 @@ struct SupportFreeProgram {
 };
 
 /// The part stands on z = 0 of W and `line` begins at its foot. Contours of odd layers begin at one end of
-/// the section's longer side, those of even layers half a turn further; each is closed, a zigzag between them
-/// fills the section and ends near the next layer's beginning (Han 2024, 3.2). The tool stands across the
+/// the section's longer side, those of even layers at the other; each is closed, a zigzag between them fills
+/// the section and ends where the next layer begins (Han 2024, 3.2). The tool stands across the
 /// layer, its tip on the layer's top; beads are as thick as the layer at their place. Throws InputError for
 /// values out of range, an open part, and as curved_layers() does; for a part of which the layers hold less
 /// than `kLeastCovered`.

@@ -26,6 +26,21 @@ SupportFreePlan coarse() {
   return plan;
 }
 
+/// [m], after the first bead, without the last retreat.
+double moved_without_filament(const Program& program) {
+  double moved = 0;
+  Vec3 tip = Vec3::Zero();
+  bool printed = false;
+  for (const Step& step : program.steps) {
+    if (!moves(step)) continue;
+    const Vec3 next = step.X_WT.translation();
+    if (printed && step.kind == StepKind::move) moved += (next - tip).norm();
+    printed = printed || step.kind == StepKind::print;
+    tip = next;
+  }
+  return moved;
+}
+
 class SupportFree : public testing::TestWithParam<Bent> {};
 
 /// A bead of the section's area is as much material as the part; Pappus: area times the axis' length.
@@ -35,6 +50,8 @@ TEST_P(SupportFree, LaysThePartInOnePathWithoutTravel) {
   const SupportFreePlan plan = coarse();
   const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3), plan);
   EXPECT_EQ(result.travels, 0);
+  // From contour to lines, and from the last line up to the next layer's contour: two beads' width each.
+  EXPECT_LT(moved_without_filament(result.program), result.layers * 4 * 0.9e-3);
   EXPECT_EQ(result.layers, std::lround(swept_length(pieces) / 0.4e-3));
   EXPECT_NEAR(result.volume / part->volume(), 1, 0.04);
   EXPECT_LT(result.lag_max, 0.1 * kDegree);
