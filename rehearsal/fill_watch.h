@@ -22,8 +22,8 @@ struct FillFigures {
   Vec3 place_W{0, 0, 0};
 };
 
-/// Looks to both sides of every bead for one of the same layer that runs alongside, no farther than 1.3 bores
-/// from middle to middle: lines so near are meant to touch, for the narrowest that a nozzle presses is a bore
+/// Looks to both sides of every bead for one of the same layer that runs alongside, no farther than 1.5 bores
+/// from middle to middle: lines so near are meant to touch, for slicers plan them a bore to one and a half
 /// wide.
 class FillWatch {
  public:
@@ -35,7 +35,7 @@ class FillWatch {
   std::optional<FillFigures> figures() const;
 
  private:
-  static constexpr double kNeighbours = 1.3;
+  static constexpr double kNeighbours = 1.5;
   struct Sample {
     float factor = 0, length = 0, time = 0;
     int line = 0;

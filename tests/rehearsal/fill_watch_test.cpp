@@ -66,7 +66,7 @@ TEST(FillWatch, ThreeFifthsOfTheFlowFillThreeFifths) {
 
 TEST(FillWatch, LinesFartherApartAreNoNeighbours) {
   Lines lines;
-  for (int i = 0; i < 20; ++i) lines.add(i * 0.6e-3, kArea);
+  for (int i = 0; i < 20; ++i) lines.add(i * 0.65e-3, kArea);
   EXPECT_FALSE(lines.figures());
 }
 
