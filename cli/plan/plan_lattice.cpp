@@ -17,13 +17,14 @@
 #include "toolpath/lattice/lattice_fill.h"
 #include "toolpath/lattice/lattice_json.h"
 #include "toolpath/lattice/lattice_planner.h"
+#include "toolpath/lattice/strut_range.h"
 
 namespace understudy::cli {
 namespace {
 
 struct LatticeRequest {
   PlanOptions options;
-  std::string part, place = "0,0,0";
+  std::string part, place = "0,0,0", directions = "free";
   double strut_mm = 5, scale = 1, diameter_mm = 0.48, dwell_s = 3, margin_mm = 0.1, tilt_max_deg = 90,
          time_limit_s = 600, joint_press_mm = to_mm(-geometry::contact_with_printed(true));
   bool force = false, ignore_reach = false;
@@ -55,8 +56,29 @@ Vec3 box_size(const std::string& text) {
   return size;
 }
 
+/// On z = 0, centred in x and y.
+std::shared_ptr<const geometry::Mesh> box_mesh(const Vec3& size) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(size.cwiseProduct(Vec3(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 1 : 0)));
+  return std::make_shared<geometry::Mesh>(corners, std::vector<std::array<int, 3>>{{0, 2, 3},
+                                                                                   {0, 3, 1},
+                                                                                   {4, 5, 7},
+                                                                                   {4, 7, 6},
+                                                                                   {0, 1, 5},
+                                                                                   {0, 5, 4},
+                                                                                   {2, 6, 7},
+                                                                                   {2, 7, 3},
+                                                                                   {0, 4, 6},
+                                                                                   {0, 6, 2},
+                                                                                   {1, 3, 7},
+                                                                                   {1, 7, 5}});
+}
+
+bool is_frame(const LatticeRequest& r) { return std::filesystem::path(r.part).extension() == ".json"; }
+
 toolpath::Lattice lattice_of(const LatticeRequest& r) {
-  if (std::filesystem::path(r.part).extension() == ".json") return toolpath::read_lattice(r.part);
+  if (is_frame(r)) return toolpath::read_lattice(r.part);
   const double strut = from_mm(r.strut_mm);
   const auto fill = r.part.starts_with("box:")
                         ? toolpath::fill_box(box_size(r.part), strut)
@@ -116,8 +138,36 @@ toolpath::LatticePlan plan_of(const LatticeRequest& r, const machine::MachineDes
   return plan;
 }
 
+// Ishak 2018: the part's own cubes, printed upwards and from four sides.
+int plan_five_directions(const LatticeRequest& r) {
+  if (is_frame(r)) throw InputError("--directions five needs a part, " + r.part + " is a frame");
+  const auto machine = printing_machine(r.options.machine);
+  const auto plan = plan_of(r, machine);
+  const double strut = from_mm(r.strut_mm) * r.scale;
+  const auto ranges = toolpath::strut_ranges(toolpath::ToolEnvelope(plan.limits.tool),
+                                             plan.limits.strut_diameter, plan.limits.margin);
+  if (!toolpath::in_ranges(strut, ranges))
+    throw InputError(fmt::format("a strut of {:g} mm is outside {}, for which the nozzle of {} leaves room",
+                                 to_mm(strut), toolpath::to_string(ranges), machine.name));
+  const auto part = r.part.starts_with("box:") ? box_mesh(box_size(r.part))
+                                               : geometry::read_stl(machine::find_fixture(r.part));
+  const auto segmented = toolpath::segment_part(*part, from_mm(r.strut_mm));
+  auto segments = toolpath::segment_lattice(segmented);
+  toolpath::place_lattice(segments.lattice, r.scale,
+                          place_from("--place", r.place) + from_mm(0.5 * r.diameter_mm) * Vec3::UnitZ());
+  const auto result = toolpath::plan_segments(segments, plan);
+  write_program(result.program, machine, r.options);
+  fmt::print("{}: {} struts, {:.1f} mm; the cubes take {:.0f} % of the part; struts of {} can be printed\n",
+             r.options.output, segments.lattice.struts.size(), to_mm(result.printed), 100 * segmented.share,
+             toolpath::to_string(ranges));
+  for (const auto& segment : segments.segments)
+    fmt::print("  {}: {} struts\n", toolpath::name_of(segment.direction), segment.struts.size());
+  return kGood;
+}
+
 int plan_lattice(const LatticeRequest& r) {
   check(r);
+  if (r.directions == "five") return plan_five_directions(r);
   const auto machine = printing_machine(r.options.machine);
   toolpath::Lattice lattice = lattice_of(r);
   const Vec3 place = place_from("--place", r.place);
@@ -151,7 +201,17 @@ void add_plan_lattice(CLI::App& plan, Action& action) {
                    "box:20x20x15")
       ->required();
   add_machine_option(*lattice, request->options);
-  lattice->add_option("--strut", request->strut_mm, "mm, 5..11: side of the cubes that fill a part")
+  lattice
+      ->add_option(
+          "--directions", request->directions,
+          "free: each strut with an axis that is clear; five: a base upwards and what protrudes from its "
+          "four sides along Y-, Y+, X-, X+ (Ishak 2018)")
+      ->check(CLI::IsMember({"free", "five"}))
+      ->capture_default_str();
+  lattice
+      ->add_option("--strut", request->strut_mm,
+                   "mm: side of the cubes that fill a part, 5..11; with five directions what the nozzle "
+                   "leaves room for")
       ->capture_default_str();
   lattice->add_option("--scale", request->scale, "of the lattice")->capture_default_str();
   lattice->add_option("--place", request->place, "X,Y,Z mm: the middle of its lower side stands there")

@@ -5,8 +5,11 @@
 #include <limits>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "core/units.h"
 #include "geometry/printed_clearance.h"
+#include "toolpath/planners/plan_checks.h"
 #include "toolpath/polyline.h"
 #include "toolpath/program_builder.h"
 
@@ -291,6 +294,26 @@ bool StrutAccess::find(const Removal& removal, const std::vector<char>& standing
     if (highest != from_top_.end()) c.obstacle = *highest;
   }
   return false;
+}
+
+std::string StrutAccess::blocked(const Removal& removal, const Vec3& axis, const std::vector<char>& standing,
+                                 StrutPrint& print) const {
+  print = print_along(removal, axis, standing);
+  if (std::string why = meets_itself(print); !why.empty()) return why;
+  std::vector<StrutBody> built;
+  for (const int other : from_top_) {
+    if (!standing[at(other)] || other == removal.strut) continue;
+    if (!clears(print, other)) {
+      const Obstacle near = lacks(print, other, 0, kStated);
+      const auto& [a, b] = lattice_.struts[at(other)];
+      return fmt::format("the tool comes to {:.3f} mm from the strut from {} to {}, the limit is {:.3f} mm",
+                         to_mm(near.distance), in_mm(lattice_.nodes[at(a)].position),
+                         in_mm(lattice_.nodes[at(b)].position), to_mm(near.limit));
+    }
+    built.push_back(body(other));
+  }
+  raise(print, built);
+  return "";
 }
 
 bool StrutAccess::never(int strut, std::string& why) const {

@@ -25,6 +25,14 @@ class StrutAccess {
   /// are built. False when there is none. Fills everything of `print`.
   bool find(const Removal& removal, const std::vector<char>& standing, StrutPrint& print);
 
+  /// What is in the way of printing the strut with the tool along `axis`, from in along the axis until out
+  /// along it, or nothing; the machine is not asked. Fills `print` but for arrival and departure.
+  std::string blocked(const Removal& removal, const Vec3& axis, const std::vector<char>& standing,
+                      StrutPrint& print) const;
+
+  /// A strut as it is printed.
+  const StrutBody& body(int strut) const { return bodies_[static_cast<std::size_t>(strut)]; }
+
   /// More struts stand again than at the last find().
   void put_back() { ++round_; }
 
@@ -59,7 +67,6 @@ class StrutAccess {
   bool lies(int strut) const;
   bool meets_another(int node, int strut, const std::vector<char>& standing) const;
   Vec3 tip_at(int node, const Vec3& axis, bool on_top) const;
-  const StrutBody& body(int strut) const { return bodies_[static_cast<std::size_t>(strut)]; }
   StrutBody as_printed(int strut) const;
   StrutBody fresh(const StrutPrint& print) const;
   StrutPrint print_along(const Removal& removal, const Vec3& axis, const std::vector<char>& standing) const;

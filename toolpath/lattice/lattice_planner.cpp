@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
 #include "core/units.h"
 #include "toolpath/bead.h"
+#include "toolpath/lattice/segment_sequence.h"
 #include "toolpath/planners/plan_checks.h"
 #include "toolpath/program_builder.h"
 
@@ -62,9 +66,8 @@ class LatticePrint {
   void come_to(const StrutPrint& print) {
     if (!last_) {
       builder_.begin(print.arrival.front(), plan_.temperature, plan_.fan);
-    } else if (upright(*last_) && upright(print)) {
-      travel_level(tool_at(last_->tip_to, last_->axis, last_->out_to),
-                   tool_at(print.tip_from, print.axis, print.out_from));
+    } else if (print.arrival.empty() || (upright(*last_) && upright(print))) {
+      travel_along(level_travel(*last_, print));  // what is built lies below that level
       return;
     } else {
       travel_along(last_->departure);
@@ -73,14 +76,6 @@ class LatticePrint {
   }
 
   static bool upright(const StrutPrint& print) { return print.axis.z() > 1 - kSameAxis; }
-
-  // Along the level of the higher one: what is built lies below both.
-  void travel_level(const Pose& from, const Pose& to) {
-    const double level = std::max(from.translation().z(), to.translation().z());
-    Pose above_from = from, above_to = to;
-    above_from.translation().z() = above_to.translation().z() = level;
-    travel_along({from, above_from, above_to, to});
-  }
 
   void travel_along(const std::vector<Pose>& way) {
     for (const Pose& X_WT : way) travel(X_WT);
@@ -99,17 +94,70 @@ class LatticePrint {
   std::vector<bool> there_;  // nodes that something was printed to
 };
 
-}  // namespace
-
-LatticeProgram plan_lattice(const Lattice& lattice, const LatticePlan& plan) {
-  check(plan);
+LatticeProgram print_all(const Lattice& lattice, const LatticePlan& plan, StrutSequence sequence) {
   LatticeProgram result;
-  result.sequence = sequence_struts(lattice, plan.limits);
+  result.sequence = std::move(sequence);
   LatticePrint print(lattice, plan);
   for (const StrutPrint& strut : result.sequence.prints) print.add(strut);
   result.program = print.finish();
   result.printed = print.printed();
   return result;
+}
+
+const char* segment_of(int strut, const SegmentLattice& segments) {
+  for (const SegmentOrder& segment : segments.segments)
+    if (std::any_of(segment.struts.begin(), segment.struts.end(),
+                    [&](const Removal& r) { return r.strut == strut; }))
+      return name_of(segment.direction);
+  return "";
+}
+
+// Asks for ever shorter programs until it is known which strut the machine does not get to.
+void require_reached(const LatticeProgram& planned, const SegmentLattice& segments, const WayCheck& way) {
+  std::vector<Pose> poses;
+  std::vector<std::size_t> struts;  // printed by then
+  std::size_t printed = 0;
+  for (const Step& step : planned.program.steps) {
+    if (!moves(step)) continue;
+    poses.push_back(step.X_WT);
+    struts.push_back(printed);
+    if (step.kind == StepKind::print) ++printed;
+  }
+  std::string why = way(poses, true);
+  if (why.empty()) return;
+  std::size_t good = 1, bad = poses.size();
+  while (bad - good > 1) {
+    const std::size_t half = (good + bad) / 2;
+    std::string said = way({poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(half)}, true);
+    if (said.empty()) {
+      good = half;
+    } else {
+      bad = half;
+      why = std::move(said);
+    }
+  }
+  const auto& prints = planned.sequence.prints;
+  const StrutPrint& strut = prints[std::min(struts[bad - 1], prints.size() - 1)];
+  const auto place = [&](int node) {
+    return in_mm(segments.lattice.nodes[static_cast<std::size_t>(node)].position);
+  };
+  throw InputError(fmt::format("segment {}, strut from {} to {}: {}", segment_of(strut.strut, segments),
+                               place(strut.from), place(strut.to), why));
+}
+
+}  // namespace
+
+LatticeProgram plan_segments(const SegmentLattice& segments, const LatticePlan& plan) {
+  check(plan);
+  check_sequence(segments.lattice, plan.limits);
+  LatticeProgram result = print_all(segments.lattice, plan, sequence_segments(segments, plan.limits));
+  if (plan.limits.way) require_reached(result, segments, plan.limits.way);
+  return result;
+}
+
+LatticeProgram plan_lattice(const Lattice& lattice, const LatticePlan& plan) {
+  check(plan);
+  return print_all(lattice, plan, sequence_struts(lattice, plan.limits));
 }
 
 }  // namespace understudy::toolpath

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "toolpath/lattice/lattice_sequence.h"
+#include "toolpath/lattice/segment_lattice.h"
 #include "toolpath/program.h"
 
 namespace understudy::toolpath {
@@ -29,5 +30,9 @@ struct LatticeProgram {
 /// built, upright, on the ways that sequence_struts has checked. Throws InputError as sequence_struts does
 /// and for values out of range.
 LatticeProgram plan_lattice(const Lattice& lattice, const LatticePlan& plan);
+
+/// The same for a segmented part, in the order of sequence_segments. The machine is asked for every pose of
+/// the program (`plan.limits.way`).
+LatticeProgram plan_segments(const SegmentLattice& segments, const LatticePlan& plan);
 
 }  // namespace understudy::toolpath

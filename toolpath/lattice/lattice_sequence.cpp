@@ -162,7 +162,9 @@ class Sequence {
   std::vector<std::string> warnings_;
 };
 
-void check(const Lattice& lattice, const SequenceLimits& limits) {
+}  // namespace
+
+void check_sequence(const Lattice& lattice, const SequenceLimits& limits) {
   check_positive("strut diameter", to_mm(limits.strut_diameter), "mm");
   check_positive("nozzle flat", to_mm(limits.nozzle_flat), "mm");
   check_positive("gap at the ground", to_mm(limits.ground_gap), "mm");
@@ -182,10 +184,8 @@ void check(const Lattice& lattice, const SequenceLimits& limits) {
                                    in_mm(p), to_mm(0.5 * limits.strut_diameter)));
 }
 
-}  // namespace
-
 StrutSequence sequence_struts(const Lattice& lattice, const SequenceLimits& limits) {
-  check(lattice, limits);
+  check_sequence(lattice, limits);
   return Sequence(lattice, limits).run();
 }
 

@@ -59,4 +59,7 @@ struct StrutSequence {
 /// answered within its limits.
 StrutSequence sequence_struts(const Lattice& lattice, const SequenceLimits& limits);
 
+/// Throws InputError for limits out of range, nodes that hang in the air, and nodes below the table.
+void check_sequence(const Lattice& lattice, const SequenceLimits& limits);
+
 }  // namespace understudy::toolpath
