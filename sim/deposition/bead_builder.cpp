@@ -18,6 +18,7 @@ constexpr double kPause = 10e-6;       // [m], path without feed that ends an el
 constexpr double kSettled = 1e-3;      // [m], path without feed after which an element is done
 constexpr double kStraight = 5e-6;     // [m], a path farther beside the element's line begins a new one
 constexpr double kSteepest = 1.5;      // surface's path over the tip's
+constexpr double kAlong = 0.5;         // likewise, at least, of a line
 constexpr double kSameGap = 2e-6;      // [m]
 constexpr double kSameSection = 0.03;  // of the area
 constexpr double kSameAxis = 0.02;     // [rad]
@@ -127,7 +128,9 @@ void BeadBuilder::settle_section() {
   // Wider than long by itself, or wider than any line: a blob. A short piece of a line is as wide as the
   // line.
   const bool alone = !bead.follows && !continuous_;
-  if (bead.length == 0 || (bead.width > bead.length && (alone || bead.width > widest_line_)))
+  // A tip that rises from where it begins draws no line on the ground.
+  const bool rises = pressed && !bead.follows && bead.length < kAlong * bead.path;
+  if (bead.length == 0 || rises || (bead.width > bead.length && (alone || bead.width > widest_line_)))
     settle_blob(pressed && !std::isfinite(element_->carrier) ? gap : 0);
   last_width_ = bead.width;
 }

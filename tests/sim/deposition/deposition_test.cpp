@@ -268,6 +268,22 @@ TEST(Deposition, ABlobStaysWhereTheTipLeavesIt) {
   EXPECT_NEAR(observer.summary().length, 1e-3, 1e-12);
 }
 
+// A strut begins on what carries it: the first of it comes out slowly (the extruder's lag) while the tip, not
+// quite straight, leaves. 2e-4 mm^3 in a gap of 0.175 mm are a disc of 38 um; a line of a micrometre with
+// that volume would be 1.1 mm wide.
+TEST(Deposition, ATipThatRisesLeavesADiscOfItsVolumeAndNoWideLine) {
+  Laying observer(printer());
+  constexpr double kFirst = 2e-4 * 1e-9, kGap = 0.175e-3;
+  observer.observe(at(0, Vec3(0, 0, 0.15e-3), 0));
+  observer.observe(at(0.01, Vec3(1e-6, 0, 0.2e-3), kFirst / kFilamentArea));
+  for (int i = 1; i <= 100; ++i)
+    observer.observe(at(0.01 + 0.01 * i, Vec3(1e-6, 0, 0.2e-3 + i * 0.02e-3),
+                        (kFirst + i * 0.02e-3 * 0.18e-6) / kFilamentArea));
+  const LaidBead& first = observer.beads().front();
+  EXPECT_EQ(first.adhesion, Adhesion::sticks);
+  EXPECT_NEAR(first.width, std::sqrt(4 * kFirst / (std::numbers::pi * kGap)), 1e-6);
+}
+
 // Over the edge of a plate, 10 mm above the table, the gap jumps: the strand hangs, and no bead runs down.
 TEST(Deposition, OverAnEdgeTheStrandIsLooseAndNotTallerThanItsPath) {
   std::vector<Vec3> vertices{Vec3(-0.02, -0.02, 0.01), Vec3(0.01, -0.02, 0.01), Vec3(0.01, 0.02, 0.01),
