@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -26,7 +27,7 @@ struct LatticeRequest {
   PlanOptions options;
   std::string part, place = "0,0,0", directions = "free";
   double strut_mm = 5, scale = 1, diameter_mm = 0.48, dwell_s = 3, margin_mm = 0.1, tilt_max_deg = 90,
-         time_limit_s = 600, joint_press_mm = to_mm(-geometry::contact_with_printed(true));
+         turn_deg = 0, time_limit_s = 600, joint_press_mm = to_mm(-geometry::contact_with_printed(true));
   bool force = false, ignore_reach = false;
 };
 
@@ -38,6 +39,8 @@ void check(const LatticeRequest& r) {
   if (!(r.joint_press_mm >= 0 && r.joint_press_mm <= 10))
     throw InputError(fmt::format("--joint-press {:g} is outside 0..10", r.joint_press_mm));
   check_option("--time-limit", r.time_limit_s, 86400);
+  if (!(std::abs(r.turn_deg) <= 360))
+    throw InputError(fmt::format("--turn {:g} is outside -360..360", r.turn_deg));
   if (!(r.tilt_max_deg >= 0 && r.tilt_max_deg <= 90))
     throw InputError(fmt::format("--tilt {:g} is outside 0..90", r.tilt_max_deg));
 }
@@ -153,6 +156,7 @@ int plan_five_directions(const LatticeRequest& r) {
                                                : geometry::read_stl(machine::find_fixture(r.part));
   const auto segmented = toolpath::segment_part(*part, from_mm(r.strut_mm));
   auto segments = toolpath::segment_lattice(segmented);
+  toolpath::turn(segments, from_deg(r.turn_deg));
   toolpath::place_lattice(segments.lattice, r.scale,
                           place_from("--place", r.place) + from_mm(0.5 * r.diameter_mm) * Vec3::UnitZ());
   const auto result = toolpath::plan_segments(segments, plan);
@@ -215,6 +219,8 @@ void add_plan_lattice(CLI::App& plan, Action& action) {
       ->capture_default_str();
   lattice->add_option("--scale", request->scale, "of the lattice")->capture_default_str();
   lattice->add_option("--place", request->place, "X,Y,Z mm: the middle of its lower side stands there")
+      ->capture_default_str();
+  lattice->add_option("--turn", request->turn_deg, "degrees about Z, of a part in five directions")
       ->capture_default_str();
   lattice->add_option("--diameter", request->diameter_mm, "mm, of a strut")->capture_default_str();
   lattice->add_option("--dwell", request->dwell_s, "s at the end of each strut, for it to solidify")

@@ -40,8 +40,10 @@ class LatticePrint {
       builder_.move(tool_at(print.tip_from, print.axis, gap_at(print.from)), plan_.approach_feed);
     }
     const double length = lattice_.length(static_cast<std::size_t>(print.strut));
-    builder_.print(tool_at(print.tip_to, print.axis, gap_at(print.to)), plan_.feed,
-                   strand_area(plan_.limits.strut_diameter) * length);
+    const Pose end = tool_at(print.tip_to, print.axis, gap_at(print.to));
+    // Drawn as thick as it is to be all along the tip's way, which gaps make shorter than the strut.
+    const double drawn = (end.translation() - builder_.tool().translation()).norm();
+    builder_.print(end, plan_.feed, strand_area(plan_.limits.strut_diameter) * drawn);
     builder_.dwell(plan_.dwell);
     printed_ += length;
     there_[static_cast<std::size_t>(print.from)] = there_[static_cast<std::size_t>(print.to)] = true;

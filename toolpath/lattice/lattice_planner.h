@@ -25,10 +25,10 @@ struct LatticeProgram {
 };
 
 /// Each strut: travel to where the tool is clear of what is built, in along the tool's axis, the strut in one
-/// move with pi d^2 / 4 of it as volume, a dwell, out along the axis. Two struts in a row with one axis, the
-/// second from the first one's end, are printed without leaving. Else the tool travels above everything
-/// built, upright, on the ways that sequence_struts has checked. Throws InputError as sequence_struts does
-/// and for values out of range.
+/// move with pi d^2 / 4 of the tip's way as volume, a dwell, out along the axis. Two struts in a row with one
+/// axis, the second from the first one's end, are printed without leaving. Else the tool travels above
+/// everything built, upright, on the ways that sequence_struts has checked. Throws InputError as
+/// sequence_struts does and for values out of range.
 LatticeProgram plan_lattice(const Lattice& lattice, const LatticePlan& plan);
 
 /// The same for a segmented part, in the order of sequence_segments. The machine is asked for every pose of

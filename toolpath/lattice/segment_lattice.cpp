@@ -23,7 +23,7 @@ class LatticeBuilder {
 
   SegmentLattice build() {
     for (const Segment& segment : part_.segments) {
-      result_.segments.push_back({segment.direction, {}});
+      result_.segments.push_back({segment.direction, axis_of(segment.direction), {}});
       add(segment);
     }
     return std::move(result_);
@@ -138,5 +138,11 @@ class LatticeBuilder {
 }  // namespace
 
 SegmentLattice segment_lattice(const SegmentedPart& part) { return LatticeBuilder(part).build(); }
+
+void turn(SegmentLattice& segments, double angle) {
+  const Eigen::AngleAxisd by(angle, Vec3::UnitZ());
+  for (LatticeNode& node : segments.lattice.nodes) node.position = by * node.position;
+  for (SegmentOrder& segment : segments.segments) segment.axis = by * segment.axis;
+}
 
 }  // namespace understudy::toolpath

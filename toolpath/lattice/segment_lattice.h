@@ -9,7 +9,8 @@ namespace understudy::toolpath {
 
 /// Struts of one segment in their order: each begins where something stands.
 struct SegmentOrder {
-  BuildDirection direction = BuildDirection::z_up;
+  BuildDirection direction = BuildDirection::z_up;  ///< seen from the part
+  Vec3 axis{0, 0, 1};                               ///< unit, the same in the frame of the lattice
   std::vector<Removal> struts;
 };
 
@@ -23,5 +24,8 @@ struct SegmentLattice {
 /// the grid that they carry; the base begins with its grid on the ground. Within a layer each strut begins
 /// where the last one ended, if possible, else at the nearest node that has one left.
 SegmentLattice segment_lattice(const SegmentedPart& part);
+
+/// Turns everything by `angle` [rad] about z.
+void turn(SegmentLattice& segments, double angle);
 
 }  // namespace understudy::toolpath

@@ -28,7 +28,7 @@ class SegmentSequence {
   StrutSequence run() {
     for (const SegmentOrder& segment : segments_.segments) {
       name_ = name_of(segment.direction);
-      axis_ = axis_of(segment.direction);
+      axis_ = segment.axis;
       require_room_above_table(segment);
       for (const Removal& strut : segment.struts) add(strut, &strut == &segment.struts.front());
     }
