@@ -128,8 +128,8 @@ void BeadBuilder::settle_section() {
   // Wider than long by itself, or wider than any line: a blob. A short piece of a line is as wide as the
   // line.
   const bool alone = !bead.follows && !continuous_;
-  // A tip that rises from where it begins draws no line on the ground.
-  const bool rises = pressed && !bead.follows && bead.length < kAlong * bead.path;
+  // A tip that rises draws no line on the ground; some micrometres tell nothing.
+  const bool rises = pressed && bead.length < kAlong * bead.path && (!bead.follows || bead.path >= kShort);
   if (bead.length == 0 || rises || (bead.width > bead.length && (alone || bead.width > widest_line_)))
     settle_blob(pressed && !std::isfinite(element_->carrier) ? gap : 0);
   last_width_ = bead.width;

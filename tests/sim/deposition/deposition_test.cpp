@@ -284,6 +284,30 @@ TEST(Deposition, ATipThatRisesLeavesADiscOfItsVolumeAndNoWideLine) {
   EXPECT_NEAR(first.width, std::sqrt(4 * kFirst / (std::numbers::pi * kGap)), 1e-6);
 }
 
+// It may begin pressed into the strand that carries it, and rise through the band after that: a strut of
+// 0.48 mm from 0.03 mm over another one, leaning by 5 degrees. A disc of what comes out up to the band's end,
+// 0.2 mm of it in the gap of a bead, is less than 0.6 mm wide.
+TEST(Deposition, AStrutThatRisesFromAStrandStaysThin) {
+  Laying observer(printer());
+  const double area = std::numbers::pi / 4 * 0.48e-3 * 0.48e-3, fed = area / kFilamentArea;
+  constexpr double kTop = 5e-3, kUp = 2e-3, kFirst = 10e-3;
+  observer.run(1000, [&](double t) { return at(t, Vec3((t - 0.5) * kFirst, 0, kTop), t * kFirst * fed); });
+  observer.observe(at(1.1, Vec3(5e-3, 0, 10e-3), kFirst * fed));
+  observer.observe(at(1.2, Vec3(0, 0, kTop + 0.03e-3), kFirst * fed));
+  observer.run(1000, [&](double t) {
+    return at(1.2 + t, Vec3(0, t * kUp * std::tan(5 * kDegree), kTop + 0.03e-3 + t * kUp),
+              (kFirst + t * kUp) * fed);
+  });
+  int pressed = 0;
+  for (const LaidBead& bead : observer.beads()) {
+    if (bead.start_time < 1.2 || bead.adhesion == Adhesion::unsupported) continue;
+    ++pressed;
+    EXPECT_LT(bead.height, 0.6e-3);
+    EXPECT_LT(bead.width, 0.6e-3);
+  }
+  EXPECT_GE(pressed, 2);
+}
+
 // Over the edge of a plate, 10 mm above the table, the gap jumps: the strand hangs, and no bead runs down.
 TEST(Deposition, OverAnEdgeTheStrandIsLooseAndNotTallerThanItsPath) {
   std::vector<Vec3> vertices{Vec3(-0.02, -0.02, 0.01), Vec3(0.01, -0.02, 0.01), Vec3(0.01, 0.02, 0.01),
