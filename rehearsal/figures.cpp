@@ -131,6 +131,9 @@ void add(const SagFigures& sag, Figures& to) {
   to.put("max_um", sag.max_um);
   to.count("strands", sag.strands);
   to.put("unsupported_mm", sag.unsupported_mm);
+  if (sag.strands == 0) return;
+  to.put("diameter_min_mm", sag.diameter_min_mm);
+  to.put("diameter_max_mm", sag.diameter_max_mm);
 }
 
 void add(const CollisionFigures& collision, Figures& to) {

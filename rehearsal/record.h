@@ -68,6 +68,8 @@ struct SagFigures {
   double max_um = 0;
   int strands = 0;
   double unsupported_mm = 0;  ///< length of all strands in air
+  /// Thinnest and thickest of them, each round with the material that it has over its path.
+  double diameter_min_mm = 0, diameter_max_mm = 0;
 };
 struct SurfaceFigures {
   std::optional<double> ra_um, rz_um;      ///< along the chosen line

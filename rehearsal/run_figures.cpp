@@ -43,6 +43,10 @@ void fill_strands(const std::vector<sim::AirStrand>& strands, Record& record) {
   for (const sim::AirStrand& strand : strands) {
     sag.max_um = std::max(sag.max_um, to_um(strand.sag));
     sag.unsupported_mm += to_mm(strand.length);
+    const double diameter_mm = to_mm(strand.diameter * std::sqrt(1 + strand.overfeed));
+    const bool first = record.strands.empty();
+    sag.diameter_min_mm = first ? diameter_mm : std::min(sag.diameter_min_mm, diameter_mm);
+    sag.diameter_max_mm = std::max(sag.diameter_max_mm, diameter_mm);
     record.strands.push_back({strand.line, strand.time, to_mm(strand.length), to_mm(strand.diameter),
                               to_mm(strand.speed), to_um(strand.sag), strand.solid_after, strand.duration,
                               strand.held_at_end, strand.solved, strand.small});

@@ -92,7 +92,7 @@ const kFigureLabels = {
   in_band_fraction: 'Path inside the band', frames: 'Laser frames taken',
   believed_mean_mm: 'Believed by the controller, mean', stated_sigma_um: 'Its stated uncertainty, 1 sigma',
   stated_path_fraction: 'Path for which it states one', inside_stated_3_sigma_fraction: 'Of that, true gap within 3 sigma',
-  max_um: 'Sag, largest', strands: 'Strands in air', unsupported_mm: 'Length in air',
+  max_um: 'Sag, largest', strands: 'Strands in air', unsupported_mm: 'Length in air', diameter_min_mm: 'Strand, thinnest', diameter_max_mm: 'Strand, thickest',
   ra_um: 'Roughness Ra', rz_um: 'Roughness Rz', deviation_p95_um: 'Deviation from the intended part, 95th percentile',
   min_clearance_mm: 'Least clearance, but for the nozzle over its work', closest: 'These two',
   nozzle_clearance_mm: 'Nozzle to what it prints on, least', checks: 'Checks', pairs: 'Pairs of bodies',
