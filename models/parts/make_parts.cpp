@@ -10,6 +10,7 @@
 #include "core/file/output_file.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
+#include "models/parts/block_part.h"
 #include "models/parts/swept_part.h"
 
 namespace understudy {
@@ -178,6 +179,9 @@ void make_parts(const std::filesystem::path& folder) {
                                  "16 by 10 mm, bent by 60 degrees, millimetres"));
   write_file(folder / "s_tube.stl", geometry::write_stl(*swept_part(round, s_bend(), kRings),
                                                         "12 mm round, bent like an S, millimetres"));
+  write_file(folder / "column_with_arms.stl",
+             geometry::write_stl(*block_part(column_with_arms(), 5),
+                                 "5 x 5 x 40 mm, an arm of 10 mm on each side, millimetres"));
 }
 
 }  // namespace

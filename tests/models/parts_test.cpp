@@ -23,7 +23,7 @@ TEST(Parts, MakingThemAgainGivesTheSameBytes) {
   std::filesystem::create_directory(folder);
   ASSERT_EQ(std::system(("\"" MAKE_PARTS "\" \"" + folder.string() + "\"").c_str()), 0);
   for (const char* name : {"bottle.stl", "slanted_box.stl", "crown.stl", "crown_core.stl", "crown_base.stl",
-                           "bent_cylinder.stl", "bent_bar.stl", "s_tube.stl"})
+                           "bent_cylinder.stl", "bent_bar.stl", "s_tube.stl", "column_with_arms.stl"})
     EXPECT_TRUE(read_file(folder / name) == read_file(kParts / name)) << name;
   std::filesystem::remove_all(folder);
 }
