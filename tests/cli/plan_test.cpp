@@ -265,6 +265,70 @@ TEST(PlanLattice, EndsItsSearchInTime) {
   EXPECT_EQ(folder.entries(), 0);
 }
 
+// Ishak 2018: the base, then what protrudes in Y-, Y+, X- and X+; 4 x 16 struts on a column of 68.
+TEST(PlanLattice, PlansAPartInFiveDirections) {
+  const Folder folder;
+  const std::string plan = "plan lattice column_with_arms --directions five -o " + (folder / "five.gcode");
+  const Outcome outcome = understudy(plan + " --turn 45");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("132 struts, 660.0 mm; the cubes take 100 % of the part"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("  Z+: 68 struts\n  Y-: 16 struts\n  Y+: 16 struts\n  X-: 16 struts\n  X+: 16"));
+  const std::string gcode = read_file(folder / "five.gcode");
+  EXPECT_THAT(gcode,
+              HasSubstr("W0.707106781 I0.5 J0.5 K0"));  // Y- turned by 45 degrees: the tool on its side
+  EXPECT_THAT(gcode, HasSubstr(" F60\n"));
+  // Without the turn the arm would have to fold up to come from its own side.
+  const Outcome folded = understudy(plan);
+  EXPECT_EQ(folded.status, 2);
+  EXPECT_THAT(folded.err, HasSubstr("segment X-, strut from (-2.500, 2.500, 40.240) mm"));
+  EXPECT_THAT(folded.err, HasSubstr("above 70.0 deg; --turn and --place may help"));
+}
+
+// The nozzle of the scenario's arm has the shape that Ishak 2018 implies: 5 to 11 mm. The slender one of
+// `arm` leaves room for shorter struts.
+TEST(PlanLattice, TheNozzleLimitsTheStruts) {
+  const Folder folder;
+  const std::string plan = "plan lattice box:24x24x12 --directions five -o " + (folder / "box.gcode");
+  const std::string papers = " --machine " + kSource + "/scenarios/ishak-lattice/arm.yaml";
+  for (const char* strut : {"5", "11"})
+    EXPECT_EQ(understudy(plan + papers + " --strut " + strut).status, 0) << strut;
+  for (const char* strut : {"4", "12"}) {
+    const Outcome outcome = understudy(plan + papers + " --strut " + strut);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("a strut of ") + strut + " mm is outside 4.97..11.40"));
+  }
+  EXPECT_EQ(understudy(plan + " --strut 4").status, 0);
+  EXPECT_EQ(understudy(plan + " --strut 12").status, 2);
+}
+
+// 12 mm struts, planned for a tool whose nozzle is 20 mm longer, printed with the arm's: its cooling
+// duct, 11.5 mm above the tip, meets a strut that stands already.
+TEST(PlanLattice, StrutsThatAreTooLongAreFoundByTheRehearsal) {
+  const Folder folder;
+  std::string machine = read_file(kSource + "/models/arm/machine.yaml");
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"bottom_centre_mm: [0, 0, 12]", "bottom_centre_mm: [0, 0, 32]"},
+           {"from_mm: [13, 0, 14], to_mm: [18, 0, 22]", "from_mm: [13, 0, 34], to_mm: [18, 0, 42]"},
+           {"bottom_centre_mm: [0, 0, 24]", "bottom_centre_mm: [0, 0, 44]"}}) {
+    const std::size_t place = machine.find(from);
+    ASSERT_NE(place, std::string::npos) << from;
+    machine.replace(place, from.size(), to);
+  }
+  const std::string program = folder / "long.gcode";
+  ASSERT_EQ(
+      understudy(
+          "plan lattice box:24x12x12 --strut 12 --directions five --dwell 0 --diameter 0.475 --machine " +
+          folder.write("long.yaml", machine) + " -o " + program)
+          .status,
+      0);
+  const Outcome rehearsed = understudy(
+      "rehearse " + program + " --machine arm --as-built nominal --engine quasistatic --no-pictures --out " +
+      (folder / "out"));
+  EXPECT_EQ(rehearsed.status, 1);
+  EXPECT_THAT(rehearsed.out, HasSubstr("cooling duct touches bead of line"));
+}
+
 TEST(PlanWaypoints, SetsALayerOnTheTable) {
   const Folder folder;
   const auto layer = folder.write("layer.txt", "0 5 0 0 1 0\n1 5 0 0 1 0\n2 5 0 0 1 0\n");
@@ -296,6 +360,12 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan lattice box:20x20x20 --joint-press -1", "--joint-press -1 is outside 0..10"},
            {"plan lattice box:20x20x20 --time-limit 0", "--time-limit 0 is outside 0..86400"},
            {"plan lattice box:20x20x20 --tilt 91", "--tilt 91 is outside 0..90"},
+           {"plan lattice box:20x20x20 --directions six", "--directions: six not in {free,five}"},
+           {"plan lattice box:20x20x20 --directions five --turn 400", "--turn 400 is outside -360..360"},
+           {"plan lattice frame.json --directions five",
+            "--directions five needs a part, frame.json is a frame"},
+           {"plan lattice bottle --directions five", "the part stands on no face"},
+           {"plan lattice box:4x20x20 --directions five", "no cube of 5 mm has room on the face"},
            {"plan lattice box:20x20x20 --machine finishing", "its tool does not print"},
            {"plan spiral --lean 80", "lean is 80 deg, outside 0 to 60 deg"},
            {"plan spiral --temperature 20", "--temperature 20 C is outside 100..450 C"},

@@ -59,7 +59,7 @@ class CubeGrid {
         const double width = foot.max()[k] - foot.min()[k];
         const double left = width - std::floor((width + kOnSurface) / strut) * strut;
         first = foot.min()[k] + 0.5 * left;
-        first -= std::ceil((first - part.lower()[k] - kOnSurface) / strut) * strut;
+        first -= std::floor((first - part.lower()[k] + kOnSurface) / strut) * strut;
       }
       origin_[k] = first;
       const double steps = std::floor((part.upper()[k] - first + kOnSurface) / strut);

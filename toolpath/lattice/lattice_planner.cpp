@@ -143,8 +143,8 @@ void require_reached(const LatticeProgram& planned, const SegmentLattice& segmen
   const auto place = [&](int node) {
     return in_mm(segments.lattice.nodes[static_cast<std::size_t>(node)].position);
   };
-  throw InputError(fmt::format("segment {}, strut from {} to {}: {}", segment_of(strut.strut, segments),
-                               place(strut.from), place(strut.to), why));
+  throw InputError(fmt::format("segment {}, strut from {} to {}: {}; --turn and --place may help",
+                               segment_of(strut.strut, segments), place(strut.from), place(strut.to), why));
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ class SegmentSequence {
       if (!limits_.way) return true;
       std::reverse(out_of_it.begin(), out_of_it.end());
       const std::string said = limits_.way(out_of_it, true);
-      if (!said.empty()) why = "between segments " + said;
+      if (!said.empty()) why = "between segments " + said + "; --turn and --place may help";
       return said.empty();
     });
     if (!way) refuse(strut, why);

@@ -12,19 +12,12 @@ namespace {
 
 constexpr double kStep = 0.1 * kMillimetre;  // between lengths that are looked at
 
-// As the strut begins; on its way up the tool only gets farther away.
+// As the strut begins; on its way up the tool only gets farther away. The tool is solid about its axis here,
+// so struts farther away than the next one have more room.
 bool has_room(const ToolEnvelope& tool, double diameter, double margin, double length) {
-  const double radius = 0.5 * diameter;
-  const Vec3 tip(0, 0, radius);
-  const int around = static_cast<int>(std::ceil((tool.radius() + diameter + margin) / length));
-  // The layer is the same in all eight octants.
-  for (int i = 1; i <= around; ++i)
-    for (int k = 0; k <= i; ++k) {
-      const Vec3 foot(i * length, k * length, 0);
-      const StrutBody rising{foot, foot + length * Vec3::UnitZ(), radius};
-      if (!tool.clears(rising, {tip, tip, Vec3::UnitZ()}, margin)) return false;
-    }
-  return true;
+  const Vec3 tip(0, 0, 0.5 * diameter), foot(length, 0, 0);
+  const StrutBody next{foot, foot + length * Vec3::UnitZ(), 0.5 * diameter};
+  return tool.clears(next, {tip, tip, Vec3::UnitZ()}, margin);
 }
 
 }  // namespace

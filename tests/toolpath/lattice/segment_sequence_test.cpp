@@ -159,6 +159,23 @@ TEST(SegmentSequence, BetweenSegmentsTheToolIsUprightAboveAllThatIsPrinted) {
   EXPECT_EQ(transitions, 5);
 }
 
+TEST(SegmentSequence, TravelGoesAcrossAtTheHeightOfTheFartherEnd) {
+  StrutPrint last, next;
+  last.axis = next.axis = Vec3::UnitY();
+  last.tip_to = Vec3(0, 1, 5);
+  last.out_to = 2;
+  next.tip_from = Vec3(4, 6, 5);
+  next.out_from = 1;
+  const auto expect = [](const std::vector<Pose>& way, const std::vector<Vec3>& tips) {
+    ASSERT_EQ(way.size(), tips.size());
+    for (std::size_t i = 0; i < tips.size(); ++i)
+      EXPECT_NEAR((way[i].translation() - tips[i]).norm(), 0, 1e-12) << i;
+  };
+  expect(level_travel(last, next), {{0, 3, 5}, {0, 7, 5}, {4, 7, 5}, {4, 7, 5}});
+  next.tip_from.y() = 0;
+  expect(level_travel(last, next), {{0, 3, 5}, {0, 3, 5}, {4, 3, 5}, {4, 1, 5}});
+}
+
 TEST(SegmentSequence, RefusesWhatTheToolRunsIntoAndSaysWhere) {
   const auto refusal = [](const Cubes& cubes, const LatticePlan& with) -> std::string {
     try {
@@ -179,7 +196,11 @@ TEST(SegmentSequence, RefusesWhatTheToolRunsIntoAndSaysWhere) {
   stubby.limits.tool[0].form = geometry::Frustum{0.5e-3, 1.5e-3, 4e-3};
   stubby.limits.tool[1].X_FS = make_pose(Quat::Identity(), Vec3(0, 0, 9e-3));
   EXPECT_THAT(refusal(column_with_arms(), stubby), HasSubstr("segment Z+, strut from"));
-  EXPECT_THAT(refusal(column_with_arms(), stubby), HasSubstr("the tool comes to -"));
+  EXPECT_THAT(refusal(column_with_arms(), stubby), HasSubstr("mm, the limit is 0.100 mm"));
+  // Travel 0.01 mm above what stands, of which 0.1 mm are to be kept.
+  LatticePlan close = plan();
+  close.limits.lift = 0.01e-3;
+  EXPECT_THAT(refusal(column_with_arms(), close), HasSubstr("on the way to it the tool comes to 0.0"));
   // A machine that cannot lie its tool down.
   LatticePlan upright = plan();
   upright.limits.way = [](const std::vector<Pose>& way, bool) {
@@ -189,6 +210,14 @@ TEST(SegmentSequence, RefusesWhatTheToolRunsIntoAndSaysWhere) {
   };
   EXPECT_THAT(refusal(column_with_arms(), upright), HasSubstr("segment Y-, strut from"));
   EXPECT_THAT(refusal(column_with_arms(), upright), HasSubstr("the wrist does not bend"));
+  // One that follows every piece of the way but not the whole: it is asked for the program, and the strut is
+  // found.
+  LatticePlan tired = plan();
+  tired.limits.way = [](const std::vector<Pose>& way, bool) {
+    return way.size() > 100 ? std::string("tired") : std::string();
+  };
+  EXPECT_THAT(refusal(column_with_arms(), tired), HasSubstr("segment Z+, strut from"));
+  EXPECT_THAT(refusal(column_with_arms(), tired), HasSubstr(": tired;"));
 }
 
 // Bases of 1 to 3 cubes a side with an arm of random size on up to four sides, high enough for the tool.
