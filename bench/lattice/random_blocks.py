@@ -4,7 +4,7 @@
 A block is a base of random size with an arm of random size and place on none to four of its sides; no size is a multiple of the
 strut. The rehearsal's collision check knows nothing of the plan: it holds the machine's bodies against the beads that the twin laid.
 
-usage: random_blocks.py UNDERSTUDY [--seed 1] [--count 20] [--machine arm] [--out FOLDER]
+usage: random_blocks.py UNDERSTUDY [--seed 1] [--count 20] [--first 1] [--machine arm] [--out FOLDER]
 Exit status: 0 where every part is planned and printed without a contact, else 1.
 """
 import argparse
@@ -71,7 +71,8 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("understudy")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--count", type=int, default=20)
+    parser.add_argument("--count", type=int, default=20, help="parts that are drawn")
+    parser.add_argument("--first", type=int, default=1, help="the first of them that is printed")
     parser.add_argument("--machine", default="arm")
     parser.add_argument("--out", type=Path)
     words = parser.parse_args()
@@ -82,6 +83,8 @@ def main():
     bad = 0
     for n in range(1, words.count + 1):
         boxes = random_block(rng)
+        if n < words.first:
+            continue
         part, program, record = folder / f"{n}.stl", folder / f"{n}.gcode", folder / f"{n}"
         write_stl(boxes, part)
         size = " x ".join(f"{high - low:.1f}" for low, high in zip(*boxes[0]))
