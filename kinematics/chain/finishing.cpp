@@ -57,6 +57,23 @@ class Finishing final : public ChainMechanism {
     return SolveStatus::ok;
   }
 
+  // Of the same norm as the steps of inverse().
+  SolveStatus axis_rates(const Pose& X_ST, std::span<const double> axes,
+                         Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 6>> rates) const override {
+    if (axes.size() < kFinishingAxes || rates.rows() < kFinishingAxes || !is_rigid(X_ST))
+      return SolveStatus::bad_input;
+    SolveStatus status = SolveStatus::ok;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      Axes column;
+      const SolveStatus one =
+          minimum_norm_rates(chain(), axes, Twist::Unit(k), description().length_scale, {}, column);
+      if (one == SolveStatus::bad_input) return one;
+      if (one != SolveStatus::ok) status = one;
+      for (std::size_t i = 0; i < kFinishingAxes; ++i) rates(static_cast<Eigen::Index>(i), k) = column[i];
+    }
+    return status;
+  }
+
  private:
   bool follow(const Pose& X_ST, Axes& q) const {
     for (int step = 0; step <= kStepsMax; ++step) {

@@ -43,7 +43,19 @@ bool smallest_solution(const TipAndAxisJacobian& J, const TipAndAxis& wanted, Ax
   return solve_by_singular_values(J, wanted, y);
 }
 
+/// From here on to the end of half a range its weight grows.
+constexpr double kFree = 0.8;
+constexpr double kAtEnd = 0.99;  // of that way: farther out the weight stays what it is here, 10^4
+
 }  // namespace
+
+double range_weight(const ChainAxis& axis, double q) {
+  const double half = (axis.upper - axis.lower) / 2;
+  if (!std::isfinite(half) || !(half > 0)) return 1;
+  const double out = std::abs(q - (axis.lower + half)) / half;
+  const double way = std::clamp((out - kFree) / (1 - kFree), 0.0, kAtEnd);
+  return 1 + std::pow(way / (1 - way), 2);
+}
 
 Twist task_error(const Pose& X_ST, const Pose& X_ST_wanted) {
   Twist error;
@@ -67,11 +79,12 @@ SolveStatus minimum_norm_rates(const Chain& chain, std::span<const double> axes,
     return SolveStatus::bad_input;
   ChainJacobian J;
   const TipAndAxisRows rows = task_rows(forward(chain, axes, J), metric);
-  // In y = W q, with W = metric for angles and 1 for slides, the norm is the plain one.
+  // In y = W q, with W = metric for angles and 1 for slides, more at ends of ranges, the norm is the plain
+  // one.
   AxisColumn weight(chain.size()), y_null = AxisColumn::Zero(chain.size());
   for (std::size_t i = 0; i < n; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    weight[k] = chain.axes[i].angle ? metric : 1.0;
+    weight[k] = (chain.axes[i].angle ? metric : 1.0) * range_weight(chain.axes[i], axes[i]);
     if (some_motion) y_null[k] = weight[k] * null_space_motion[i];
   }
   TipAndAxisJacobian J_scaled = rows * J;

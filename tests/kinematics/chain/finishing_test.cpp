@@ -185,6 +185,58 @@ TEST(MinimumNorm, HeavyRadiansAreSharedBetweenBedAndWrist) {
   EXPECT_NEAR(rates[1] * (kStage.le - kStage.l3) + rates[4] * kStage.le, 0, 1e-5);
 }
 
+ChainDescription with_ranges_of_the_paper() {
+  ChainDescription d = described();
+  d.length_scale = 1;  // plain norm of SI rates
+  const std::array<double, 2> ranges[] = {{-0.02, 0.4},  {},           {-0.05, 0.4}, {-0.15, 0.15},
+                                          {-1.75, 1.75}, {-1.75, 1.75}};
+  for (const std::size_t i : {0u, 2u, 3u, 4u, 5u})
+    d.chain.axes[i].lower = ranges[i][0], d.chain.axes[i].upper = ranges[i][1];
+  d.home = {0, 0, 0.1, 0, 0, 0};
+  return d;
+}
+
+// A level tool goes three times round an ellipse. The plain norm shares the turns between bed and wrist, and
+// takes the wrist past its end within the first.
+TEST(Finishing, GoesRoundAPartAgainAndAgainWithinItsRanges) {
+  const ChainDescription d = with_ranges_of_the_paper();
+  const auto mechanism = make_chain_mechanism(d);
+  Axes q = {0, 0, 0.1, 0, 0, 0};
+  constexpr int kSteps = 1000;
+  for (int n = 0; n <= 3 * kSteps; ++n) {
+    const double t = kPi + 2 * kPi * n / kSteps, turn = std::atan2(std::sin(t) / 0.035, std::cos(t) / 0.05);
+    const Mat3 R = exp_rotation((turn - kPi) * Vec3::UnitZ()) * forward(d.chain, Axes{}).linear();
+    const Pose X = make_pose(R, Vec3(0.05 * std::cos(t), 0.035 * std::sin(t), 0));
+    ASSERT_EQ(mechanism->inverse(X, n > 0 ? q : Axes{0, 0, 0.1, 0, 0, 0}, q), SolveStatus::ok);
+    expect_reached(*mechanism, X, q, n);
+    std::vector<LimitViolation> violations;
+    mechanism->check(X, q, violations);
+    ASSERT_TRUE(violations.empty()) << n << ": " << to_string(violations.front());
+  }
+  EXPECT_NEAR(std::abs(q[1] + q[4]), 6 * kPi, 1e-9) << "bed and wrist together went round three times";
+}
+
+TEST(Finishing, RatesAreTheDerivativesOfTheInverseNearEndsOfRanges) {
+  const ChainDescription d = with_ranges_of_the_paper();
+  const auto mechanism = make_chain_mechanism(d);
+  for (const double yaw : {-1.7, 1.2, 1.6, 1.74}) {
+    const Axes q{0.1, 0.3, 0.38, -0.12, yaw, 0.2};
+    EXPECT_LE(worst_rate_difference(*mechanism, forward(d.chain, q), q), 1e-6) << yaw;
+  }
+}
+
+TEST(MinimumNorm, AnAxisCountsMoreTowardsTheEndsOfItsRange) {
+  ChainAxis axis = turning_axis("yaw", Vec3::UnitZ(), Vec3::Zero(), -1);
+  EXPECT_EQ(range_weight(axis, 100), 1) << "without ends";
+  axis.lower = -1, axis.upper = 3;  // the middle is 1, a half 2
+  for (const double q : {-0.6, 0.0, 1.0, 2.6}) EXPECT_NEAR(range_weight(axis, q), 1, 1e-12) << q;
+  // Half way through the last fifth: 1 + (0.5 / 0.5)^2.
+  EXPECT_NEAR(range_weight(axis, 2.8), 2, 1e-9);
+  EXPECT_NEAR(range_weight(axis, -0.8), 2, 1e-9);
+  EXPECT_GT(range_weight(axis, 3), 9000);
+  EXPECT_EQ(range_weight(axis, 3), range_weight(axis, 4)) << "beyond the end it stays finite";
+}
+
 TEST(Finishing, VerticalToolIsReachedAllTheSame) {
   const auto mechanism = make_chain_mechanism(described());
   for (const double pitch : {kPi / 2, -kPi / 2}) {
