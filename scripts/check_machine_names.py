@@ -17,6 +17,7 @@ FREE = {"kinematics", "models", "tests", "bench", "docs", "examples", "build", "
 ALLOWED = {
     ("machine/default_machine.h", "hexapod"): "the machine of a command or request that names none",
     ("calibration/plugin/hexapod_exchange.cpp", "hexapod"): "a word of the exchange with plug-ins (docs/calibration-plugins.md)",
+    ("cli/plan/plan_finishing.cpp", "finishing"): "the word of the planner, and of what it plans",
     ("cli/plan/plan_lattice.cpp", "arm"): "the default of --machine for lattices, whose struts need the tilt of an arm",
 }
 EVERY_LISTED_MACHINE = "chain"  # the mechanism of no machine in particular

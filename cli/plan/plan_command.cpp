@@ -11,6 +11,7 @@ void add_plan(CLI::App& app, Action& action) {
   add_plan_lattice(*plan, action);
   add_plan_spiral(*plan, action);
   add_plan_support_free(*plan, action);
+  add_plan_finishing(*plan, action);
 }
 
 }  // namespace understudy::cli

@@ -55,5 +55,6 @@ void add_plan_waypoints(CLI::App& plan, Action& action);
 void add_plan_lattice(CLI::App& plan, Action& action);
 void add_plan_spiral(CLI::App& plan, Action& action);
 void add_plan_support_free(CLI::App& plan, Action& action);
+void add_plan_finishing(CLI::App& plan, Action& action);
 
 }  // namespace understudy::cli

@@ -339,6 +339,46 @@ TEST(PlanWaypoints, SetsALayerOnTheTable) {
   EXPECT_THAT(read_file(folder / "layer.gcode"), HasSubstr("G1 X9 Y20 Z0.13 W1 I0 J0 K0"));
 }
 
+// A box of 2 `half` mm each way and 30 mm high on z = 0; the first `count` of its 12 triangles.
+std::string box_stl(double half, int count) {
+  constexpr int kTriangles[][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  std::string text = "solid box\n";
+  for (int t = 0; t < count; ++t) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int i : kTriangles[t])
+      text += fmt::format("vertex {} {} {}\n", i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? 30 : 0);
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid box\n";
+}
+
+TEST(PlanFinishing, GoesRoundACrossAndWritesTheStockToPrint) {
+  const Folder folder;
+  const std::string plan =
+      "plan finishing cross_90 --machine finishing --from 22 -o " + (folder / "cross.gcode");
+  const Outcome outcome = understudy(plan + " --stock " + (folder / "stock.stl"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  // Yu 2023, section 4: 4 W - 24 r + 6 pi r = 308.5 mm round, on five layers. A face of 1.5 mm rests on its
+  // rim in a hollow of 10 mm: 10 - sqrt(100 - 2.25) = 0.113 mm, a little more where the fit leans over the
+  // flat side.
+  EXPECT_THAT(outcome.out, HasSubstr("5 layers, 5 outlines, 1542.3 mm of cutting to a depth of 0.7 mm"));
+  EXPECT_THAT(outcome.out, HasSubstr("stands up to 0.116 mm off"));
+  EXPECT_EQ(read_file(folder / "stock.stl").size(), read_file(kSource + "/models/parts/cross_90.stl").size())
+      << "a triangle for each of the part";
+}
+
+TEST(PlanFinishing, MakesTheShippedProgramsAgain) {
+  const Folder folder;
+  for (const std::string part : {"cross_90", "ellipse_75"}) {
+    const std::string made = folder / (part + ".gcode");
+    ASSERT_EQ(understudy("plan finishing " + part + " --machine finishing --from 24.5 -o " + made).status, 0)
+        << part;
+    EXPECT_EQ(without_comments(read_file(made)),
+              without_comments(read_file(kSource + "/scenarios/finishing/" + part + ".gcode")));
+  }
+}
+
 TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
   const Folder folder, inputs;
   const std::string out = " -o " + (folder / "x.gcode");
@@ -367,6 +407,19 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan lattice bottle --directions five", "the part stands on no face"},
            {"plan lattice box:4x20x20 --directions five", "no cube of 5 mm has room on the face"},
            {"plan lattice box:20x20x20 --machine finishing", "its tool does not print"},
+           {"plan finishing ellipse_50 --machine finishing --depth-of-cut 0",
+            "--depth-of-cut 0 is outside 0..100"},
+           {"plan finishing ellipse_50 --machine finishing --depth-of-cut 4",
+            "depth of cut is 4 mm, more than the end mill's diameter of 3 mm"},
+           {"plan finishing ellipse_50 --machine finishing",
+            "into the table: begin with a higher layer (--from)"},
+           {"plan finishing ellipse_50 --machine arm", "its tool is no end mill"},
+           {"plan finishing " + inputs.write("open.stl", box_stl(20, 11)) + " --machine finishing",
+            "the surface is not closed"},
+           {"plan finishing /nonexistent.stl --machine finishing", "/nonexistent.stl"},
+           {"plan finishing " + inputs.write("large.stl", box_stl(125, 12)) +
+                " --machine finishing --from 22",
+            "out of reach of finishing: axis"},
            {"plan spiral --lean 80", "lean is 80 deg, outside 0 to 60 deg"},
            {"plan spiral --temperature 20", "--temperature 20 C is outside 100..450 C"},
            {"plan spiral --pitch 0.3", "pitch is 0.3 mm, less than two strands of 0.45 mm"}}) {

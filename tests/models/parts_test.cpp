@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 #include <string>
+#include <tuple>
 
 #include <unistd.h>
 
@@ -23,7 +24,8 @@ TEST(Parts, MakingThemAgainGivesTheSameBytes) {
   std::filesystem::create_directory(folder);
   ASSERT_EQ(std::system(("\"" MAKE_PARTS "\" \"" + folder.string() + "\"").c_str()), 0);
   for (const char* name : {"bottle.stl", "slanted_box.stl", "crown.stl", "crown_core.stl", "crown_base.stl",
-                           "bent_cylinder.stl", "bent_bar.stl", "s_tube.stl", "column_with_arms.stl"})
+                           "bent_cylinder.stl", "bent_bar.stl", "s_tube.stl", "cross_90.stl", "cross_150.stl",
+                           "ellipse_50.stl", "ellipse_75.stl", "column_with_arms.stl"})
     EXPECT_TRUE(read_file(folder / name) == read_file(kParts / name)) << name;
   std::filesystem::remove_all(folder);
 }
@@ -49,6 +51,26 @@ TEST(Parts, TheBentPartsAreClosedAndHoldTheirSectionTimesTheirAxis) {
   const auto tube = geometry::read_stl(kParts / "s_tube.stl");
   EXPECT_EQ(tube->open_edges(), 0);
   EXPECT_NEAR(tube->volume() / (circle * s), 1, 4e-3);
+}
+
+// Yu 2023, section 4. Areas of the sections: a cross with arms a third as wide is five squares of W / 3; a
+// rounded corner that stands out has (1 - pi / 4) r^2 less, one in a hollow as much more: 8 and 4 of them.
+TEST(Parts, ThePrismsHaveTheSectionsOfThePaper) {
+  for (const auto& [name, width, radius] :
+       {std::tuple{"cross_90.stl", 90e-3, 10e-3}, std::tuple{"cross_150.stl", 150e-3, 15e-3}}) {
+    const auto cross = geometry::read_stl(kParts / name);
+    EXPECT_NEAR(cross->upper().x() - cross->lower().x(), width, 1e-8) << name;
+    EXPECT_NEAR(cross->upper().y() - cross->lower().y(), width, 1e-8) << name;
+    const double area = 5 * width * width / 9 - 4 * (1 - std::numbers::pi / 4) * radius * radius;
+    EXPECT_NEAR(cross->volume() / (area * 30e-3), 1, 1e-4) << name;
+  }
+  for (const auto& [name, a, b] :
+       {std::tuple{"ellipse_50.stl", 50e-3, 35e-3}, std::tuple{"ellipse_75.stl", 75e-3, 45e-3}}) {
+    const auto ellipse = geometry::read_stl(kParts / name);
+    EXPECT_NEAR(ellipse->upper().x(), a, 1e-8) << name;
+    EXPECT_NEAR(ellipse->upper().y(), b, 1e-8) << name;
+    EXPECT_NEAR(ellipse->volume() / (std::numbers::pi * a * b * 30e-3), 1, 1e-4) << name;
+  }
 }
 
 TEST(Parts, TheBottleIsClosedLiesOnTheTableAndMeasures31Millimetres) {
