@@ -6,10 +6,13 @@ namespace understudy::machine {
 namespace {
 
 constexpr double kOrientation = 5 * kDegree;
+constexpr double kMilled = 0.1e-3;  // [m]
 
 }  // namespace
 
-AcceptedErrors default_accepted_errors(const Tool& tool) { return {tool.nozzle_diameter, kOrientation}; }
+AcceptedErrors default_accepted_errors(const Tool& tool) {
+  return {tool.prints() ? tool.nozzle_diameter : kMilled, kOrientation};
+}
 
 void read_accepted_errors(YamlMap& map, AcceptedErrors& errors) {
   errors.tip = map.quantity("tip_mm", {0.001, 100}, "largest distance of the true tip from the programmed");

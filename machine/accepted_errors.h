@@ -16,7 +16,8 @@ struct AcceptedErrors {
 };
 
 /// Of a file that does not say: a bead that is off by a bore lies where the next one should, and a nozzle
-/// that leans by more than 5 degrees puts its rim half into the smallest gap of 0.1 mm.
+/// that leans by more than 5 degrees puts its rim half into the smallest gap of 0.1 mm. A mill may be off by
+/// 0.1 mm, a medium tolerance of ISO 2768 for what is up to 6 mm.
 AcceptedErrors default_accepted_errors(const Tool& tool);
 
 /// Section `accuracy`.

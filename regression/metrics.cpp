@@ -31,6 +31,8 @@ constexpr Kind kKinds[] = {{"strut_length", ""},
                            {"sag", "sag"},
                            {"flow", "print"},
                            {"accuracy", "accuracy"},
+                           {"gouge", "removal"},
+                           {"left_over", "removal"},
                            {"registration", "registration"},
                            {"reading", ""},
                            {"program", ""},
@@ -105,6 +107,20 @@ constexpr const char* kFigures[] = {"print.duration_s",
                                     "surface.ra_um",
                                     "surface.rz_um",
                                     "surface.deviation_p95_um",
+                                    "removal.spacing_mm",
+                                    "removal.finished_fraction",
+                                    "removal.left_over_mean_um",
+                                    "removal.left_over_p95_um",
+                                    "removal.left_over_max_um",
+                                    "removal.planned_left_over_p95_um",
+                                    "removal.planned_left_over_max_um",
+                                    "removal.gouge_um",
+                                    "removal.planned_gouge_um",
+                                    "removal.gouge_x_mm",
+                                    "removal.gouge_y_mm",
+                                    "removal.gouge_z_mm",
+                                    "removal.gouge_line",
+                                    "removal.volume_mm3",
                                     "engine.timestep_s",
                                     "engine.steps",
                                     "engine.closure_max_um",
@@ -187,7 +203,7 @@ bool metric_is_of_series(const std::string& metric) {
 
 std::string metric_unit(const std::string& metric) {
   if (metric_is_text(metric)) return "";
-  for (const std::string_view unit : {"mm", "um", "mrad", "deg", "s"})
+  for (const std::string_view unit : {"mm", "um", "mrad", "deg", "mm3", "s"})
     if (metric.ends_with("_" + std::string(unit))) return std::string(unit);
   return "1";
 }

@@ -31,7 +31,8 @@ bool metric_is_text(const std::string& metric);
 /// This metric exists for the machines of a series only, not for a single run.
 bool metric_is_of_series(const std::string& metric);
 
-/// The unit that the name ends in: "mm", "um", "mrad", "s"; "1" for counts and fractions; empty for text.
+/// The unit that the name ends in: "mm", "um", "mrad", "mm3", "s"; "1" for counts and fractions; empty for
+/// text.
 std::string metric_unit(const std::string& metric);
 
 }  // namespace understudy::regression

@@ -241,6 +241,11 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
 void read_surface(YamlMap& map, const fs::path& folder, SurfaceRequest& surface) {
   if (map.has("intended"))
     surface.intended = name_or_path(map, "intended", folder, ".stl", "the part that the print should be");
+  if (map.has("depth_of_cut_mm"))
+    surface.depth_of_cut_mm = map.number("depth_of_cut_mm", {0.001, 100},
+                                         "the stock that is milled is larger than 'intended' by this");
+  if (map.has("stock"))
+    surface.stock = name_or_path(map, "stock", folder, ".stl", "the stock that is milled to 'intended'");
   if (map.has("profile_mm"))
     surface.profile_mm = map.numbers("profile_mm", 6, {}, "ends of the profile: x, y, z, x, y, z");
   if (map.has("probe"))

@@ -152,6 +152,25 @@ void add(const SurfaceFigures& surface, Figures& to) {
   if (surface.deviation_p95_um) to.put("deviation_p95_um", *surface.deviation_p95_um);
 }
 
+void add(const RemovalFigures& removal, Figures& to) {
+  to.section("removal");
+  to.put("spacing_mm", removal.spacing_mm);
+  to.put("finished_fraction", removal.finished_fraction);
+  to.put("left_over_mean_um", removal.left_over_mean_um);
+  to.put("left_over_p95_um", removal.left_over_p95_um);
+  to.put("left_over_max_um", removal.left_over_max_um);
+  to.put("planned_left_over_p95_um", removal.planned_left_over_p95_um);
+  to.put("planned_left_over_max_um", removal.planned_left_over_max_um);
+  to.put("gouge_um", removal.gouge_um);
+  to.put("planned_gouge_um", removal.planned_gouge_um);
+  if (removal.gouge_um > 0) {
+    const char* names[] = {"gouge_x_mm", "gouge_y_mm", "gouge_z_mm"};
+    for (std::size_t i = 0; i < 3; ++i) to.put(names[i], removal.gouge_mm[i]);
+    to.count("gouge_line", removal.gouge_line);
+  }
+  to.put("volume_mm3", removal.volume_mm3);
+}
+
 void add(const EngineFigures& engine, Figures& to) {
   to.section("engine");
   to.text("name", engine.name);
@@ -189,6 +208,7 @@ std::vector<Figure> figures(const Record& record) {
   if (record.sag) add(*record.sag, all);
   if (record.collision) add(*record.collision, all);
   if (record.surface) add(*record.surface, all);
+  if (record.removal) add(*record.removal, all);
   if (record.engine) add(*record.engine, all);
   add(record.provenance, all);
   return all.take();

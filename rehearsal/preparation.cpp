@@ -16,6 +16,7 @@
 #include "rehearsal/program/robot_reading.h"
 #include "rehearsal/program/told_process.h"
 #include "rehearsal/registration.h"
+#include "rehearsal/removal.h"
 #include "rehearsal/request/memory_need.h"
 #include "sim/as_built/truth.h"
 #include "toolpath/crowding.h"
@@ -82,6 +83,7 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   }
   if (!request.fixture.empty())
     setup.part = read_fixture(machine::find_fixture(request.fixture), setup.machine);
+  setup.workblank = prepare_workblank(request.surface, setup.machine);
   const sim::TruthSeeds seeds = request.truth_seeds.value_or(request.seed);
   setup.as_built = sim::make_as_built(
       setup.machine, request.as_built.empty() ? sim::default_as_built(setup.machine) : request.as_built,

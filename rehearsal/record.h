@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +17,10 @@
 #include "machine/port.h"
 #include "rehearsal/findings/finding.h"
 #include "rehearsal/scene.h"
+
+namespace understudy::sim {
+struct MilledSurface;
+}
 
 namespace understudy::rehearsal {
 
@@ -74,6 +79,16 @@ struct SagFigures {
 struct SurfaceFigures {
   std::optional<double> ra_um, rz_um;      ///< along the chosen line
   std::optional<double> deviation_p95_um;  ///< of the printed surface from the intended part
+};
+/// What an end mill did to a part (sim::RemovalSummary).
+struct RemovalFigures {
+  double spacing_mm = 0, finished_fraction = 0;
+  double left_over_mean_um = 0, left_over_p95_um = 0, left_over_max_um = 0;
+  double planned_left_over_p95_um = 0, planned_left_over_max_um = 0;
+  double gouge_um = 0, planned_gouge_um = 0;
+  std::array<double, 3> gouge_mm{0, 0, 0};  ///< where it is deepest
+  int gouge_line = 0;
+  double volume_mm3 = 0;
 };
 /// A place that the gap sensor looked at.
 struct RegistrationRow {
@@ -191,6 +206,7 @@ struct Record {
   std::optional<SagFigures> sag;
   std::optional<CollisionFigures> collision;
   std::optional<SurfaceFigures> surface;
+  std::optional<RemovalFigures> removal;            ///< where a stock was asked for
   std::optional<RegistrationFigures> registration;  ///< where it was asked for
   std::optional<EngineFigures> engine;
   std::optional<TimingFigures> timing;
@@ -207,10 +223,11 @@ struct Record {
   std::vector<TracePoint> trace_without_gap_control;  ///< empty when the run itself had none
   std::vector<TracePoint> trace_before_calibration;   ///< without gap control, too
   std::vector<FrameRecord> frames;
-  std::vector<std::array<double, 2>> profile;  ///< position [mm], height [um] along the chosen line
-  std::string profile_note, deviation_note;    ///< in words
-  std::vector<StrandRow> strands;              ///< those that sag most first
-  std::optional<Scene> scene;                  ///< what pictures are drawn from; where it was asked for
+  std::vector<std::array<double, 2>> profile;        ///< position [mm], height [um] along the chosen line
+  std::string profile_note, deviation_note;          ///< in words
+  std::vector<StrandRow> strands;                    ///< those that sag most first
+  std::shared_ptr<const sim::MilledSurface> milled;  ///< before and after; null: nothing was
+  std::optional<Scene> scene;                        ///< what pictures are drawn from; where it was asked for
 };
 
 }  // namespace understudy::rehearsal

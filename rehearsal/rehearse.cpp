@@ -23,11 +23,13 @@
 #include "rehearsal/library_versions.h"
 #include "rehearsal/placement/placement.h"
 #include "rehearsal/preparation.h"
+#include "rehearsal/removal.h"
 #include "rehearsal/request/input_digest.h"
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
 #include "rehearsal/surface.h"
 #include "sim/as_built/as_built_file.h"
+#include "sim/removal/removal.h"
 
 namespace understudy::rehearsal {
 namespace fs = std::filesystem;
@@ -125,7 +127,7 @@ Scene scene_of(const TwinSetup& setup, const std::vector<TracePoint>& trace,
                               point ? sim::Configuration{point->X_WT, point->axes} : home_of(setup.machine));
   scene.simulated = point != nullptr;
   scene.time = point ? point->time : 0;
-  scene.part = setup.built_part;
+  scene.part = setup.workblank ? setup.workblank->part : setup.built_part;
   scene.path = printed_path(setup.program);
   scene.printed = std::move(printed);
   return scene;
@@ -244,7 +246,8 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
     fill(setup, before, options, *runs, record);
     report(0.9, "measuring the surface");
     printed = runs->main.workpiece;
-    study_surface(surface, *printed, record);
+    if (!setup.workblank) study_surface(surface, *printed, record);
+    study_removal(runs->main, setup.accepted, record);
   }
   if (record.placement && !record.placement->refused.empty())
     record.findings.push_back(no_place(*record.placement));

@@ -14,6 +14,7 @@
 #include "sim/deposition/bead_temperature.h"
 #include "sim/plant/drive_errors.h"
 #include "sim/plant/plant.h"
+#include "sim/removal/removal.h"
 #include "sim/sensors/microscope.h"
 #include "sim/surface/beads_near.h"
 #include "sim/twin/observer_thread.h"
@@ -118,9 +119,21 @@ struct Watch {
                    deposition_options(
                        setup, [this](const auto& bead) { laid(bead); }, strands)),
         trace(deposition),
-        collision(setup.truth, setup.as_built, setup.built_part, collision_options(setup)),
-        thread(options.watch_collisions ? std::vector<sim::Observer*>{&deposition, &trace, &collision}
-                                        : std::vector<sim::Observer*>{&deposition, &trace}) {}
+        collision(setup.truth, setup.as_built, setup.workblank ? setup.workblank->stock : setup.built_part,
+                  collision_options(setup)),
+        removal(removal_of(setup)),
+        thread(watching(options)) {}
+
+  std::vector<sim::Observer*> watching(const RunOptions& options) {
+    std::vector<sim::Observer*> all{&deposition, &trace};
+    if (options.watch_collisions) all.push_back(&collision);
+    if (removal) all.push_back(removal.get());
+    return all;
+  }
+
+  static std::unique_ptr<sim::RemovalObserver> removal_of(const TwinSetup& setup) {
+    return setup.workblank ? std::make_unique<sim::RemovalObserver>(*setup.workblank) : nullptr;
+  }
 
   void laid(const sim::LaidBead& bead) {
     flow.add(bead);
@@ -131,6 +144,7 @@ struct Watch {
     sim::CollisionOptions options;
     if (setup.layers) options.bead_press = setup.layers->typical_band().soft_depth;
     options.beads = &workpiece->beads();
+    if (setup.workblank) options.cutter = sim::cutter_of(setup.truth.tool);
     options.fresh_from = [this] { return deposition.fresh_from(); };
     return options;
   }
@@ -148,6 +162,7 @@ struct Watch {
   sim::DepositionObserver deposition;
   TraceObserver trace;
   sim::CollisionObserver collision;
+  std::unique_ptr<sim::RemovalObserver> removal;
   sim::ObserverThread thread;
 };
 
@@ -251,6 +266,10 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   run.fill = watch.fill.figures();
   run.workpiece = watch.workpiece;
   run.strands = watch.strands.finish();
+  if (watch.removal) {
+    run.removal = watch.removal->summary();
+    run.milled = std::make_shared<sim::MilledSurface>(watch.removal->surface());
+  }
   if (options.watch_collisions) {
     run.collisions = watch.collision.collisions();
     run.near_collisions = watch.collision.near_collisions();

@@ -22,8 +22,14 @@
 #include "sim/deposition/deposition.h"
 #include "sim/faults/camera_faults.h"
 #include "sim/faults/faults.h"
+#include "sim/removal/removal_summary.h"
 #include "sim/strand/air_strands.h"
 #include "toolpath/program.h"
+
+namespace understudy::sim {
+struct MilledSurface;
+struct Workblank;
+}  // namespace understudy::sim
 
 namespace understudy::rehearsal {
 
@@ -38,7 +44,8 @@ struct TwinSetup {
   std::shared_ptr<const ProgrammedLayers> layers;  ///< of the program; null: the machine's band is good
   std::shared_ptr<const geometry::Mesh> part;      ///< as drawn: what the controller holds; may be null
   std::shared_ptr<const geometry::Mesh>
-      built_part;  ///< as clamped: what the twin holds; null where `part` is
+      built_part;                                   ///< as clamped: what the twin holds; null where `part` is
+  std::shared_ptr<const sim::Workblank> workblank;  ///< of a mill; null: what it cuts is not asked for
   sim::AsBuilt as_built;
   std::string engine;
   std::uint64_t seed = 0;
@@ -65,6 +72,8 @@ struct TwinRun {
   std::optional<FillFigures> fill;
   std::vector<sim::AirStrand> strands;
   std::shared_ptr<sim::Workpiece> workpiece;  ///< as printed
+  std::optional<sim::RemovalSummary> removal;
+  std::shared_ptr<const sim::MilledSurface> milled;
   EngineFigures engine;
   TimingFigures timing;
 };

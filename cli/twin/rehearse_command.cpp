@@ -48,6 +48,18 @@ void print_print(const rehearsal::PrintFigures& print) {
   fmt::print("\n");
 }
 
+void print_removal(const rehearsal::RemovalFigures& removal) {
+  fmt::print(
+      "  milled {:.1f} mm3 off {:.1f} % of the part; left over {:.0f} um on the mean, {:.0f} um at 95 %, "
+      "{:.0f} um at most",
+      removal.volume_mm3, 100 * removal.finished_fraction, removal.left_over_mean_um,
+      removal.left_over_p95_um, removal.left_over_max_um);
+  if (removal.gouge_um > 0)
+    fmt::print("; {:.0f} um deep into the part, at ({:.2f}, {:.2f}, {:.2f}) mm, line {}", removal.gouge_um,
+               removal.gouge_mm[0], removal.gouge_mm[1], removal.gouge_mm[2], removal.gouge_line);
+  fmt::print("\n");
+}
+
 void print_clearance(const rehearsal::CollisionFigures& figures) {
   const auto distance = [](double mm) {
     return mm < 0 ? fmt::format("{:.3f} mm deep", -mm) : fmt::format("{:.3f} mm", mm);
@@ -112,6 +124,7 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
                record.sag->unsupported_mm, record.sag->max_um);
   if (record.surface && record.surface->ra_um)
     fmt::print("  surface Ra {:.1f} um, Rz {:.1f} um\n", *record.surface->ra_um, *record.surface->rz_um);
+  if (record.removal) print_removal(*record.removal);
   if (record.print) print_print(*record.print);
   fmt::print("report: {}\n", (std::filesystem::path(folder) / "report.html").string());
 }

@@ -130,6 +130,16 @@ void add_surface(CLI::App& command, rehearsal::SurfaceRequest& surface) {
                   "what the print was to become: an STL in mm, or a name "
                   "under models/parts")
       ->group("Surface of the print");
+  command
+      .add_option("--depth-of-cut", surface.depth_of_cut_mm,
+                  "mm: an end mill takes --intended out of a stock that is larger by this")
+      ->check(CLI::Range(0.001, 100.))
+      ->group("Surface of the print");
+  command
+      .add_option("--stock", surface.stock,
+                  "the stock that is milled to --intended: an STL in mm, or a name under models/parts")
+      ->excludes("--depth-of-cut")
+      ->group("Surface of the print");
   command.add_option("--profile", surface.profile_mm, "x,y,z,x,y,z in mm: measure Ra and Rz along this line")
       ->delimiter(',')
       ->expected(6)

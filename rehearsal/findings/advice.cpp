@@ -172,6 +172,12 @@ const std::map<std::string, About>& advice_by_kind() {
       {"near_collision", always("nothing, if the machine's bodies are described as large as they are")},
       {"accuracy", about_accuracy},
       {"gap", about_gap},
+      {"gouge",
+       always("calibrate the machine, take the play out of its axes, or mill with `--depth-of-cut` and "
+              "`--fit` as the part was planned")},
+      {"left_over",
+       always("is it the part that the program was planned for (`--intended`), and the stock "
+              "(`--depth-of-cut`, `--stock`)? Else calibrate the machine, or choose a finer `--pitch`")},
       {"registration", about_registration},
       {"flow", about_flow},
       {"program", about_program},

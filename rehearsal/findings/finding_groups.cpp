@@ -24,7 +24,8 @@ constexpr std::array kFromCauseToConsequence{"program",        "limit",    "stop
 std::string_view stage_of(const Finding& finding, bool tip_error_explains_contacts) {
   if (finding.about == kStopped) return "stop";
   if (finding.kind == "accuracy") return tip_error_explains_contacts ? "accuracy" : "other accuracy";
-  if (finding.kind == "near_collision") return "gap";
+  for (const std::string_view kind : {"near_collision", "gouge", "left_over"})
+    if (finding.kind == kind) return "gap";
   for (const std::string_view kind :
        {"program", "collision", "gap", "flow", "adhesion", "sag", "assumption", "unchecked"})
     if (finding.kind == kind) return kind;

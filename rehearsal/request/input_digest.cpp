@@ -107,6 +107,8 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   const SurfaceRequest& surface = request.surface;
   inputs.bytes_of("intended", surface.intended.empty() ? "" : machine::find_fixture(surface.intended));
   inputs.values("profile", surface.profile_mm, surface.probe);
+  if (surface.depth_of_cut_mm) inputs.values("depth of cut", *surface.depth_of_cut_mm);
+  if (!surface.stock.empty()) inputs.bytes_of("stock", machine::find_fixture(surface.stock));
   inputs.values("registration", request.registration.wanted, request.registration.places);
   inputs.bytes_of("pattern", request.registration.pattern);
   return inputs.sha256();

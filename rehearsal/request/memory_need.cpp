@@ -19,6 +19,7 @@ namespace {
 constexpr double kBase = 150e6, kBaseOfRun = 60e6;
 constexpr double kLine = 300, kLineOfRun = 900;
 constexpr double kTriangle = 300, kTriangleOfRun = 700;
+constexpr double kMilled = 250e6;  // as many samples of the surface as there may be (sim/removal)
 constexpr double kGiga = 1e9;
 
 /// Of a triangle in an STL file, at least: binary, and text without indentation.
@@ -50,8 +51,10 @@ double triangles_in(const std::string& fixture) {
 
 double memory_need(const RehearsalRequest& request, int runs) {
   const double lines = lines_in(request.program);
-  const double triangles = triangles_in(request.fixture) + triangles_in(request.surface.intended);
-  return kBase + kLine * lines + kTriangle * triangles +
+  const double triangles = triangles_in(request.fixture) + triangles_in(request.surface.intended) +
+                           triangles_in(request.surface.stock);
+  const bool mills = request.surface.depth_of_cut_mm || !request.surface.stock.empty();
+  return kBase + (mills ? kMilled : 0) + kLine * lines + kTriangle * triangles +
          runs * (kBaseOfRun + kLineOfRun * lines + kTriangleOfRun * triangles);
 }
 

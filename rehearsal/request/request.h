@@ -46,6 +46,9 @@ struct SurfaceRequest {
   std::string intended;                 ///< STL that the print was to become, or a name under models/parts
   std::vector<double> profile_mm;       ///< line from, to: six numbers in W; empty: none
   std::vector<double> probe{0, 0, -1};  ///< direction in which the line looks for the surface
+  // Of a machine that mills `intended` out of a stock (docs/removal.md): one of these two.
+  std::optional<double> depth_of_cut_mm;  ///< the stock is `intended`, larger by this
+  std::string stock;                      ///< STL of the stock, or a name under models/parts; empty: none
 };
 
 /// Whether the part is found by the gap sensor before the print (docs/registration.md).

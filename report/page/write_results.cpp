@@ -10,6 +10,7 @@
 #include "report/picture/png.h"
 #include "report/summary_json.h"
 #include "report/trace_csv.h"
+#include "sim/removal/removal.h"
 
 namespace understudy::report {
 namespace fs = std::filesystem;
@@ -61,6 +62,11 @@ void write_results(const rehearsal::Record& record, const std::vector<Illustrati
   write_file(folder / "report.html", report_html(record, pictures));
   if (!record.as_built.empty()) write_file(folder / "as-built.yaml", record.as_built);
   if (!record.trace.empty()) write_file(folder / "trace.csv", trace_csv(record));
+  if (record.milled) {
+    const auto& [samples, before, after] = *record.milled;
+    write_file(folder / "surface-before.ply", sim::surface_ply(samples, before, "surface of the stock"));
+    write_file(folder / "surface-after.ply", sim::surface_ply(samples, after, "surface as milled"));
+  }
   if (!record.frames.empty()) write_frames(record.frames, folder / "frames");
   if (pictures.empty()) return;
   fs::create_directory(folder / "pictures");

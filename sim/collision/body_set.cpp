@@ -37,7 +37,8 @@ Pose table_pose(const geometry::TableSurface& top) {
 }  // namespace
 
 BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
-                 std::shared_ptr<const geometry::Mesh> part, const BeadIndex* beads)
+                 std::shared_ptr<const geometry::Mesh> part, const BeadIndex* beads,
+                 const std::string& cutter)
     : X_WB_(machine.X_WB),
       geometry_(as_built.hexapod),
       links_(machine, as_built),
@@ -61,7 +62,7 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
   table.name = "table";
   table.X_FS = table_pose(as_built.table) * table.X_FS;
   add_body(table, Owner::world, 0);
-  add_pairs(machine.is_chain() ? 0 : machine.hexapod().strut_radius);
+  add_pairs(machine.is_chain() ? 0 : machine.hexapod().strut_radius, cutter);
   if (beads_) add_bead_pairs(bodies_.size() - 1);
 }
 
@@ -114,7 +115,7 @@ bool BodySet::kept_apart(const Body& a, const Body& b) const {
   });
 }
 
-void BodySet::add_pairs(double strut_radius) {
+void BodySet::add_pairs(double strut_radius, const std::string& cutter) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     for (std::size_t j = 0; j < bodies_.size(); ++j) {
       const Body &body = bodies_[i], &obstacle = bodies_[j];
@@ -123,6 +124,9 @@ void BodySet::add_pairs(double strut_radius) {
       const bool of_machine = obstacle.owner == Owner::strut || obstacle.owner == Owner::link;
       const bool other_way_round = of_machine && (body.owner == Owner::tool || j < i);
       if (tool_again || other_way_round || joined(body, obstacle, strut_radius)) continue;
+      const bool cuts = part_ && j == part_body_ && body.owner == Owner::tool && !cutter.empty() &&
+                        body.shape.name == cutter;
+      if (cuts) continue;
       const bool at_work = body.nozzle && obstacle.owner == Owner::world;
       pairs_.push_back({i, j, at_work, at_work && (!part_ || j == part_body_)});
     }

@@ -33,8 +33,9 @@ class BodySet {
   /// The part and the beads may be null. Struts and links have the as-built geometry; a link that is a mesh
   /// is its own convex hull. Pairs of links that the machine's file keeps apart (machine/machine_notes.h) are
   /// left out: it is read again for them, where the description came from a file.
+  /// So are those of the tool body `cutter` with the part.
   BodySet(const machine::MachineDescription& machine, const AsBuilt& as_built,
-          std::shared_ptr<const geometry::Mesh> part, const BeadIndex* beads);
+          std::shared_ptr<const geometry::Mesh> part, const BeadIndex* beads, const std::string& cutter = "");
 
   /// Tool bodies, struts and links against part and table, struts and links against each other and against
   /// the tool bodies; without those that a joint holds together.
@@ -73,7 +74,7 @@ class BodySet {
     int fcl = -1;
   };
   void add_body(const geometry::Shape& shape, Owner owner, std::size_t index);
-  void add_pairs(double strut_radius);
+  void add_pairs(double strut_radius, const std::string& cutter);
   void add_bead_pairs(std::size_t table);
   bool carries_joint(const Body& tool, std::size_t strut, double strut_radius) const;
   bool joined(const Body& a, const Body& b, double strut_radius) const;

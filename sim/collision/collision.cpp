@@ -163,8 +163,15 @@ struct CollisionObserver::State {
 CollisionObserver::CollisionObserver(const machine::MachineDescription& machine, const AsBuilt& as_built,
                                      std::shared_ptr<const geometry::Mesh> part,
                                      const CollisionOptions& options)
-    : state_(new State{
-          BodySet(machine, as_built, std::move(part), options.beads), options, {}, {}, 0, {}, {}, {}, {}}) {
+    : state_(new State{BodySet(machine, as_built, std::move(part), options.beads, options.cutter),
+                       options,
+                       {},
+                       {},
+                       0,
+                       {},
+                       {},
+                       {},
+                       {}}) {
   if (!(options.margin > 0))
     throw InputError("collision margin is " + std::to_string(options.margin) + " m, must be above 0");
   state_->looks.resize(state_->bodies.pairs().size());

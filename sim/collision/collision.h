@@ -36,6 +36,8 @@ struct CollisionOptions {
   /// [m]: the nozzle runs level with the beads of its own layer and presses into them by half a usual layer
   /// and a machine's play; deeper is a contact.
   double bead_press = 0.10e-3;
+  /// Name of the tool's body that cuts the part: it may touch that.
+  std::string cutter = {};
 };
 
 /// Watches every snapshot. Between snapshots the motion is bounded by the swept distance of each body, and

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace understudy::sim {
 namespace {
@@ -33,6 +34,46 @@ bool within(const Vec3& origin, const Vec3& direction, const EndMill& mill, doub
   return from < to;
 }
 
+/// Of the triangle itself: a smooth normal may lean over a ray that grazes.
+Vec3 normal_of(const geometry::Mesh& mesh, int triangle) {
+  const auto& t = mesh.triangles()[static_cast<std::size_t>(triangle)];
+  const auto at = [&](std::size_t k) { return mesh.vertices()[static_cast<std::size_t>(t[k])]; };
+  return (at(1) - at(0)).cross(at(2) - at(0));
+}
+
+/// From low to high, where the ray is in material. Shells may overlap, as those of beads do: what counts is
+/// how many hold a place. None does at the ray's end unless that is inside.
+std::vector<std::pair<double, double>> material_on(const geometry::Mesh& stock, const Vec3& p,
+                                                   const Vec3& n) {
+  struct Crossing {
+    double at;
+    int into;
+  };
+  std::vector<Crossing> crossings;
+  int holding = stock.signed_distance(p + kAbove * n) < 0 ? 1 : 0;
+  for (double at = -kBelow; at < kAbove;) {
+    const auto hit = stock.ray_hit(p + at * n, n, kAbove - at);
+    if (!hit) break;
+    at += hit->distance;
+    const int into = normal_of(stock, hit->triangle).dot(n) < 0 ? 1 : -1;
+    crossings.push_back({at, into});
+    holding -= into;
+    at += kNext;
+  }
+  std::vector<std::pair<double, double>> material;
+  double from = -kBelow;
+  const auto add = [&](double to) {
+    if (holding > 0 && to > from) material.emplace_back(from, to);
+  };
+  for (const Crossing& crossing : crossings) {
+    add(crossing.at);
+    holding += crossing.into;
+    from = crossing.at;
+  }
+  add(kAbove);
+  return material;
+}
+
 }  // namespace
 
 MaterialRays::MaterialRays(const std::vector<SurfaceSample>& samples, const geometry::Mesh& stock)
@@ -42,16 +83,8 @@ MaterialRays::MaterialRays(const std::vector<SurfaceSample>& samples, const geom
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const SurfaceSample& s = samples[i];
     lower = lower.cwiseMin(s.position), upper = upper.cwiseMax(s.position);
-    double at = -kBelow;
-    bool inside = stock.signed_distance(s.position - kBelow * s.normal) < 0;
-    while (at < kAbove) {
-      const auto hit = stock.ray_hit(s.position + at * s.normal, s.normal, kAbove - at);
-      const double end = hit ? at + hit->distance : kAbove;
-      if (inside) rays_[i].material.push_back({static_cast<float>(at), static_cast<float>(end)});
-      // By the surface that it meets, not by counting: a ray through an edge may meet two.
-      if (hit) inside = hit->normal.dot(s.normal) < 0;
-      at = end + kNext;
-    }
+    for (const auto& [from, to] : material_on(stock, s.position, s.normal))
+      rays_[i].material.push_back({static_cast<float>(from), static_cast<float>(to)});
     rays_[i].before = rays_[i].material.empty() ? static_cast<float>(-kBelow) : rays_[i].material.back().to;
   }
   while ((upper - lower).array().max(side_).prod() / std::pow(side_, 3) > kMostCells) side_ *= 2;

@@ -36,6 +36,9 @@ struct MilledSurface {
 class RemovalObserver : public Observer {
  public:
   explicit RemovalObserver(const Workblank& blank);
+  // Its rays refer to its samples.
+  RemovalObserver(const RemovalObserver&) = delete;
+  RemovalObserver& operator=(const RemovalObserver&) = delete;
   /// Cuts by the poses from the last snapshot to this one, 0.05 mm apart.
   void observe(const Snapshot& snapshot) override;
 

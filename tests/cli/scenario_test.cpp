@@ -1,10 +1,15 @@
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/file/read_file.h"
+#include "core/units.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {
@@ -110,6 +115,59 @@ TEST(ScenarioRun, TwoScenariosOfOneNameAreRefused) {
   EXPECT_THAT(outcome.err, HasSubstr("are both named 'song-bottle'"));
 }
 
+/// The shipped finish of an ellipse with one replacement.
+std::string finishing_with(const Folder& folder, const std::string& what, const std::string& by) {
+  std::string yaml = read_file(kSource + "/scenarios/yu-ellipse-1.yaml");
+  if (what != "program: finishing/")
+    yaml.replace(yaml.find("program: finishing/"), 19, "program: " + kSource + "/scenarios/finishing/");
+  const auto at = yaml.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  yaml.replace(at, what.size(), by);
+  return folder.write("finishing.yaml", yaml);
+}
+
+/// Every level tool leans up by 4 degrees: W I J K, a quarter turn about an axis in the plane, becomes 86
+/// degrees.
+std::string leaning(const std::string& gcode) {
+  std::istringstream lines(gcode);
+  std::string line, all;
+  while (std::getline(lines, line)) {
+    if (line.find(" W") != std::string::npos) {
+      std::istringstream words(line);
+      std::string word, turned;
+      while (words >> word) {
+        const double value = word.size() > 1 ? std::atof(word.c_str() + 1) : 0;
+        if (word[0] == 'W') word = fmt::format("W{:.9f}", std::cos(43 * kDegree));
+        if (word[0] == 'I' || word[0] == 'J')
+          word = fmt::format("{}{:.9f}", word[0], value * std::sin(43 * kDegree) / std::sqrt(0.5));
+        turned += word + " ";
+      }
+      line = turned;
+    }
+    all += line + "\n";
+  }
+  return all;
+}
+
+// Each expectation is about something: without that it fails.
+TEST(ScenarioRun, AFinishFailsWithoutStockWithoutPlayAndOnWrongNormals) {
+  const Folder folder;
+  const auto fails = [&](const std::string& file, const std::string& why) {
+    const Outcome outcome = understudy("scenario run " + file);
+    EXPECT_EQ(outcome.status, 1) << why << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(why));
+  };
+  fails(finishing_with(folder, "depth_of_cut_mm: 0.7", "stock: ellipse_50"), "removal.volume_mm3");
+  std::string machine = read_file(kSource + "/models/finishing/machine.yaml");
+  for (const std::string play : {"play_um: 10", "play_arcmin: 1"})
+    for (auto at = machine.find(play); at != std::string::npos; at = machine.find(play))
+      machine.replace(at, play.size(), play.substr(0, play.find(':')) + ": 0");
+  fails(finishing_with(folder, "machine: finishing", "machine: " + folder.write("stiff.yaml", machine)),
+        "removal.gouge_um");
+  folder.write("ellipse_50.gcode", leaning(read_file(kSource + "/scenarios/finishing/ellipse_50.gcode")));
+  fails(finishing_with(folder, "program: finishing/", "program: "), "removal.gouge_um");
+}
+
 TEST(ScenarioRun, BadScenariosAreRefusedBeforeAnythingRuns) {
   const Folder folder;
   const Outcome key = understudy("scenario run " + changed(folder, "gap_control:", "gap_controll:"));
@@ -167,8 +225,8 @@ TEST(SlowScenarioRun, ALatticeOfFiveMillimetresStands) {
 TEST(ScenarioList, NamesTheShippedScenarios) {
   const Outcome outcome = understudy("scenario list " + kSource + "/scenarios");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* name :
-       {"song-bottle", "song-bottle-lost-steps", "song-bottle-warm-strut", "arm-square", "five-axis-tilted"})
+  for (const char* name : {"song-bottle", "song-bottle-lost-steps", "song-bottle-warm-strut", "arm-square",
+                           "five-axis-tilted", "yu-cross-1", "yu-cross-2", "yu-ellipse-1", "yu-ellipse-2"})
     EXPECT_THAT(outcome.out, HasSubstr(name));
 }
 

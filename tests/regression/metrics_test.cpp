@@ -85,6 +85,7 @@ TEST(Metrics, NamesSayTheirUnit) {
   EXPECT_EQ(metric_unit("accuracy.tip_max_um"), "um");
   EXPECT_EQ(metric_unit("accuracy.orientation_max_mrad"), "mrad");
   EXPECT_EQ(metric_unit("accuracy.orientation_tolerance_deg"), "deg");
+  EXPECT_EQ(metric_unit("removal.volume_mm3"), "mm3");
   EXPECT_EQ(metric_unit("print.duration_s"), "s");
   EXPECT_EQ(metric_unit("gap.in_band_fraction"), "1");
   EXPECT_EQ(metric_unit("findings.count"), "1");

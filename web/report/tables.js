@@ -62,7 +62,7 @@ function findingRow(finding) {
 }
 
 const kGroupTitles = {
-  placement: 'Placement', print: 'Print', accuracy: 'Accuracy', calibration: 'Calibration', registration: 'Part as found', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', engine: 'Engine',
+  placement: 'Placement', print: 'Print', accuracy: 'Accuracy', calibration: 'Calibration', registration: 'Part as found', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', removal: 'Milling', engine: 'Engine',
 };
 
 const kFigureLabels = {

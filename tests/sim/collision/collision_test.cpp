@@ -212,6 +212,21 @@ TEST(CollisionObserver, TheTableIsAnObstacle) {
   EXPECT_NEAR(hit->place_W.z(), hit->clearance, 1e-9);
 }
 
+TEST(CollisionObserver, ACutterMayTouchThePartAndNothingElse) {
+  const auto block = test::box_mesh(Vec3(0, 0, 20e-3), Vec3(10e-3, 10e-3, 10e-3));
+  for (const bool cuts : {false, true}) {
+    CollisionOptions options;
+    if (cuts) options.cutter = "nozzle";
+    auto observer = watch(block, options);
+    observer.observe(at(0, Vec3(0, 0, 40e-3)));
+    observer.observe(at(1, Vec3(0, 0, 22e-3), 2));
+    observer.observe(at(2, Vec3(0, 0, -0.2e-3), 3));
+    EXPECT_EQ(find(observer.collisions(), "nozzle", "part") == nullptr, cuts);
+    EXPECT_NE(find(observer.collisions(), "nozzle", "table"), nullptr);
+    EXPECT_NE(find(observer.collisions(), "platform", "part"), nullptr) << "what holds it may not";
+  }
+}
+
 TEST(CollisionObserver, StandingStillAndFarFlightsCostFewChecks) {
   const auto part = test::bottle_mesh(Vec3(0, 0, 15.5e-3), 15.5e-3, 0.06, 96, 40);
   auto observer = watch(part);

@@ -102,6 +102,21 @@ TEST(MaterialRays, AgreeWithPointsOnRandomCuts) {
   }
 }
 
+// Beads of a print are shells that run through each other.
+TEST(MaterialRays, OverlappingShellsAreOneMaterial) {
+  const auto shells = geometry::boxes({{from_mm(1) * Vec3(-5, -5, 0), from_mm(1) * Vec3(5, 5, 9.8)},
+                                       {from_mm(1) * Vec3(-5, -5, 9.7), from_mm(1) * Vec3(5, 5, 10.1)},
+                                       {from_mm(1) * Vec3(-5, -5, 10.0), from_mm(1) * Vec3(5, 5, 10.6)},
+                                       {from_mm(1) * Vec3(-5, -5, 11), from_mm(1) * Vec3(5, 5, 11.5)}});
+  const Mesh stock(shells.vertices, shells.triangles);
+  const std::vector<SurfaceSample> samples{on_top(1, 1.3)};
+  MaterialRays rays(samples, stock);
+  EXPECT_NEAR(to_mm(rays.left(0).before), 1.5, 1e-6);
+  rays.cut(mill_at(from_mm(1) * Vec3(0, 0, 10), Vec3::UnitZ()), kMill, 1);
+  EXPECT_NEAR(to_mm(rays.left(0).top), 0, 1e-6);
+  EXPECT_NEAR(to_mm(rays.left(0).removed), 0.6 + 0.5, 1e-6) << "the gap between them is no material";
+}
+
 TEST(MaterialRays, BeginWithTheStockAsItIs) {
   const auto part = box_mm(Vec3(-10, -10, 0), Vec3(10, 10, 10));
   // A print with a step: on one half it is 0.4 mm too low.
