@@ -138,7 +138,7 @@ int plan_finishing(const FinishingRequest& r) {
   if (!r.stock.empty())
     write_file(r.stock,
                geometry::write_stl(*stock, fmt::format("stock {:g} mm larger, millimetres", r.depth_mm)));
-  fmt::print("{}: {}\n", r.options.output, notes);
+  print_written(r.options, notes);
   return kGood;
 }
 

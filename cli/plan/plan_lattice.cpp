@@ -161,9 +161,11 @@ int plan_five_directions(const LatticeRequest& r) {
                           place_from("--place", r.place) + from_mm(0.5 * r.diameter_mm) * Vec3::UnitZ());
   const auto result = toolpath::plan_segments(segments, plan);
   write_program(result.program, machine, r.options);
-  fmt::print("{}: {} struts, {:.1f} mm; the cubes take {:.0f} % of the part; struts of {} can be printed\n",
-             r.options.output, segments.lattice.struts.size(), to_mm(result.printed), 100 * segmented.share,
-             toolpath::to_string(ranges));
+  print_written(
+      r.options,
+      fmt::format("{} struts, {:.1f} mm; the cubes take {:.0f} % of the part; struts of {} can be printed",
+                  segments.lattice.struts.size(), to_mm(result.printed), 100 * segmented.share,
+                  toolpath::to_string(ranges)));
   for (const auto& segment : segments.segments)
     fmt::print("  {}: {} struts\n", toolpath::name_of(segment.direction), segment.struts.size());
   return kGood;
