@@ -167,7 +167,8 @@ int plan_five_directions(const LatticeRequest& r) {
                   segments.lattice.struts.size(), to_mm(result.printed), 100 * segmented.share,
                   toolpath::to_string(ranges)));
   for (const auto& segment : segments.segments)
-    if (!r.options.quiet) fmt::print("  {}: {} struts\n", toolpath::name_of(segment.direction), segment.struts.size());
+    if (!r.options.quiet)
+      fmt::print("  {}: {} struts\n", toolpath::name_of(segment.direction), segment.struts.size());
   return kGood;
 }
 
