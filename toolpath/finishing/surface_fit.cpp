@@ -10,7 +10,12 @@ Vec3 fitted_normal(const geometry::Mesh& mesh, const geometry::SurfacePoint& at,
   constexpr int kHalf = 2;  // places each way
   constexpr int kUnknowns = 6, kPlaces = (2 * kHalf + 1) * (2 * kHalf + 1);
   constexpr int kEnough = 12;  // twice the unknowns
-  const Mat3 R = shortest_arc_from_z(at.normal).toRotationMatrix();
+  // Along the outline and across it, so that an upright wall stays upright whatever the outline does.
+  const Vec3 level = Vec3::UnitZ().cross(at.normal),
+             u = level.norm() > 1e-6 ? level.normalized() : Vec3::UnitX();
+  Mat3 R;
+  R << u, at.normal.cross(u).normalized(), at.normal;
+  R.col(0) = R.col(1).cross(R.col(2));
   Eigen::Matrix<double, kPlaces, kUnknowns> A;
   Eigen::Matrix<double, kPlaces, 1> heights;
   int count = 0;

@@ -37,6 +37,15 @@ TEST(SurfaceFit, PutsRightANormalThatIsSmearedOverAFacet) {
   }
 }
 
+TEST(SurfaceFit, AnUprightWallStaysUprightAcrossItsFacets) {
+  const auto t = geometry::cylinder(from_mm(10), from_mm(20), 180);
+  const Mesh mesh(t.vertices, t.triangles);
+  for (const double turn : {0.013, 0.31, 0.785, 1.9, 3.3}) {
+    const auto at = mesh.nearest(from_mm(10) * Vec3(std::cos(turn), std::sin(turn), 0.1));
+    EXPECT_LE(std::abs(fitted_normal(mesh, at, from_mm(0.25)).z()), 1e-9) << turn;
+  }
+}
+
 TEST(SurfaceFit, DoesNotLookRoundAnEdge) {
   const auto t = geometry::box(from_mm(1) * Vec3(-5, -5, 0), from_mm(1) * Vec3(5, 5, 10));
   const Mesh mesh(t.vertices, t.triangles);
