@@ -109,7 +109,7 @@ TEST(MaterialRays, OverlappingShellsAreOneMaterial) {
                                        {from_mm(1) * Vec3(-5, -5, 10.0), from_mm(1) * Vec3(5, 5, 10.6)},
                                        {from_mm(1) * Vec3(-5, -5, 11), from_mm(1) * Vec3(5, 5, 11.5)}});
   const Mesh stock(shells.vertices, shells.triangles);
-  const std::vector<SurfaceSample> samples{on_top(1, 1.3)};
+  const std::vector<SurfaceSample> samples{on_top(0.7, 0.9)};
   MaterialRays rays(samples, stock);
   EXPECT_NEAR(to_mm(rays.left(0).before), 1.5, 1e-6);
   rays.cut(mill_at(from_mm(1) * Vec3(0, 0, 10), Vec3::UnitZ()), kMill, 1);
