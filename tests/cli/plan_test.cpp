@@ -302,6 +302,19 @@ TEST(PlanLattice, TheNozzleLimitsTheStruts) {
   EXPECT_EQ(understudy(plan + " --strut 12").status, 2);
 }
 
+TEST(PlanLattice, TheScenariosArmIsThatOfTheModelsButForItsNozzle) {
+  const auto but_for_the_nozzle = [](const std::string& file) {
+    const std::string text = read_file(kSource + file);
+    std::string rest;
+    std::istringstream lines(text.substr(text.find("\ngeometry:")));
+    for (std::string line; std::getline(lines, line);)
+      if (line.find("{name: nozzle") == std::string::npos) rest += line + '\n';
+    return rest;
+  };
+  EXPECT_EQ(but_for_the_nozzle("/scenarios/ishak-lattice/arm.yaml"),
+            but_for_the_nozzle("/models/arm/machine.yaml"));
+}
+
 // 12 mm struts, planned for a tool whose nozzle is 20 mm longer, printed with the arm's: its cooling
 // duct, 11.5 mm above the tip, meets a strut that stands already.
 TEST(PlanLattice, StrutsThatAreTooLongAreFoundByTheRehearsal) {

@@ -49,5 +49,21 @@ TEST_F(RunFigures, WhatHangsBetweenHoldsIsToldFromWhatIsLoose) {
   EXPECT_NEAR(print_figures(run, machine_).spanning_mm, 0.4, 1e-9);
 }
 
+// One is drawn thinner; one has 21 % more material than leaves freely, which would be 10 % thicker: 0.48 to
+// 0.528.
+TEST_F(RunFigures, StrandsAreAsThickAsTheMaterialThatTheyHave) {
+  TwinRun run;
+  run.strands.resize(3);
+  run.strands[0].diameter = run.strands[1].diameter = 0.48e-3;
+  run.strands[1].overfeed = 0.21;
+  run.strands[2].diameter = 0.45e-3;
+  Record record;
+  fill_figures(run, nullptr, machine_, record);
+  ASSERT_TRUE(record.sag);
+  EXPECT_EQ(record.sag->strands, 3);
+  EXPECT_NEAR(record.sag->diameter_min_mm, 0.45, 1e-9);
+  EXPECT_NEAR(record.sag->diameter_max_mm, 0.528, 1e-9);
+}
+
 }  // namespace
 }  // namespace understudy::rehearsal
