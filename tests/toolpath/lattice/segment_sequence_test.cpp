@@ -131,7 +131,7 @@ TEST(SegmentSequence, GcodeReadsBackToThePosesFeedsAndVolumes) {
   double drawn = 0, volume = 0;
   for (std::size_t i = 0; i < said.size(); ++i) {
     EXPECT_LT((meant[i].X_WT.translation() - said[i].X_WT.translation()).norm(), 1e-6) << i;
-    EXPECT_LT((meant[i].X_WT.linear().col(2) - said[i].X_WT.linear().col(2)).norm(), 1e-6) << i;
+    EXPECT_LT(angle_between(meant[i].X_WT.linear(), said[i].X_WT.linear()), 1e-6) << i;
     EXPECT_EQ(meant[i].kind, said[i].kind) << i;
     if (said[i].kind != StepKind::print) continue;
     EXPECT_NEAR(said[i].feed, 1e-3, 1e-9);
