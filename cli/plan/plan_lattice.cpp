@@ -39,6 +39,7 @@ void check(const LatticeRequest& r) {
   if (!(r.joint_press_mm >= 0 && r.joint_press_mm <= 10))
     throw InputError(fmt::format("--joint-press {:g} is outside 0..10", r.joint_press_mm));
   check_option("--time-limit", r.time_limit_s, 86400);
+  if (r.turn_deg != 0 && r.directions != "five") throw InputError("--turn needs --directions five");
   if (!(std::abs(r.turn_deg) <= 360))
     throw InputError(fmt::format("--turn {:g} is outside -360..360", r.turn_deg));
   if (!(r.tilt_max_deg >= 0 && r.tilt_max_deg <= 90))

@@ -415,6 +415,7 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan lattice box:20x20x20 --tilt 91", "--tilt 91 is outside 0..90"},
            {"plan lattice box:20x20x20 --directions six", "--directions: six not in {free,five}"},
            {"plan lattice box:20x20x20 --directions five --turn 400", "--turn 400 is outside -360..360"},
+           {"plan lattice box:20x20x20 --turn 45", "--turn needs --directions five"},
            {"plan lattice frame.json --directions five",
             "--directions five needs a part, frame.json is a frame"},
            {"plan lattice bottle --directions five", "the part stands on no face"},
