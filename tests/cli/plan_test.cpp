@@ -431,7 +431,7 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan finishing " + inputs.write("open.stl", box_stl(20, 11)) + " --machine finishing",
             "the surface is not closed"},
            {"plan finishing /nonexistent.stl --machine finishing", "/nonexistent.stl"},
-           {"plan finishing " + inputs.write("large.stl", box_stl(125, 12)) +
+           {"plan finishing " + inputs.write("large.stl", box_stl(350, 12)) +
                 " --machine finishing --from 22",
             "out of reach of finishing: axis"},
            {"plan spiral --lean 80", "lean is 80 deg, outside 0 to 60 deg"},
