@@ -1,6 +1,7 @@
 #include "core/yaml/schema_recording.h"
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 
 namespace understudy {
@@ -16,12 +17,8 @@ SchemaRecording record(const Run& run, std::vector<Decision> path) {
 
 /// Both runs ask for the same, but for the value of `key` itself, which one of them may not have.
 bool same_keys(const SchemaRecording& a, const SchemaRecording& b, const std::string& key) {
-  const auto others = [&key](const SchemaRecording& recording) {
-    std::vector<KeySchema> keys = recording.keys();
-    std::erase_if(keys, [&key](const KeySchema& schema) { return schema.key == key; });
-    return keys;
-  };
-  return others(a) == others(b);
+  const auto other = [&key](const KeySchema& schema) { return schema.key != key; };
+  return std::ranges::equal(a.keys() | std::views::filter(other), b.keys() | std::views::filter(other));
 }
 
 void explore(const Run& run, const std::vector<Decision>& path, std::vector<MapVariant>& variants,

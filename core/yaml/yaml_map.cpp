@@ -139,6 +139,12 @@ void YamlMap::section(const std::string& key, const char* about, const Read& rea
   map.finish();
 }
 
+void YamlMap::record_list(const std::string& key, const char* about, const MapSchema& item) {
+  KeySchema schema = key_schema(key, KeySchema::Type::list, about);
+  schema.maps.push_back(item);
+  recording_->ask(std::move(schema));
+}
+
 void YamlMap::list(const std::string& key, std::size_t count, const char* about, const ReadItem& read) {
   if (recording_) {
     KeySchema schema = key_schema(key, KeySchema::Type::list, about);

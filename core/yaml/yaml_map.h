@@ -59,6 +59,9 @@ class YamlMap {
   /// A sequence of maps, at least one. `count` is how many there should be, where that is known; the reader
   /// checks it, for it can say why.
   void list(const std::string& key, std::size_t count, const char* about, const ReadItem& read);
+  /// In place of `list` while recording, where the items' schema is known: it costs a search over their
+  /// readers.
+  void record_list(const std::string& key, const char* about, const MapSchema& item);
 
   /// Throws InputError when the key is missing: where nothing can be read without it.
   void require(const std::string& key);
