@@ -10,6 +10,7 @@ refused  what a schema refuses the reader refuses too, for slips made on purpose
 
 import argparse
 import copy
+import functools
 import json
 import pathlib
 import re
@@ -22,7 +23,7 @@ import yaml
 
 KINDS = ("machine", "material", "scenario", "as-built", "rig", "columns")
 HEADER = re.compile(r"^# yaml-language-server: \$schema=(\S+)$")
-SLIPS_IN_A_FILE = 12
+SLIPS_IN_A_FILE = 5
 
 
 class Loader(yaml.SafeLoader):
@@ -62,8 +63,9 @@ def check_fresh(understudy, source):
                      f"understudy schema {kind} -o {path.relative_to(source)}")
 
 
-def errors(schema, value):
-    return list(jsonschema.Draft7Validator(schema).iter_errors(value))
+@functools.cache
+def validator(schema):
+    return jsonschema.Draft7Validator(json.loads(schema.read_text()))
 
 
 def check_valid(_, source):
@@ -71,7 +73,7 @@ def check_valid(_, source):
     for path in shipped(source):
         schema = schema_of(path)
         seen.add(schema.stem)
-        for error in errors(json.loads(schema.read_text()), yaml.load(path.read_text(), Loader)):
+        for error in validator(schema).iter_errors(yaml.load(path.read_text(), Loader)):
             where = ".".join(str(part) for part in error.absolute_path)
             sys.exit(f"{path.relative_to(source)}: {where}: {error.message[:300]}")
     if seen != set(KINDS):
@@ -114,7 +116,7 @@ def check_refused(understudy, source):
             schema = schema_of(path)
             value = yaml.load(path.read_text(), Loader)
             for name, slip in slips(value):
-                if not errors(json.loads(schema.read_text()), slip):
+                if validator(schema).is_valid(slip):
                     continue
                 file = pathlib.Path(folder) / "slip.yaml"
                 file.write_text(json.dumps(slip))  # JSON is YAML
