@@ -85,6 +85,9 @@ void add_suite(tinyxml2::XMLElement& suites, const ScenarioResult& result) {
                              {"failures", std::to_string(counts.failures)},
                              {"errors", std::to_string(counts.errors)}});
   if (result.seconds) suite.SetAttribute("time", fmt::format("{:.3f}", *result.seconds).c_str());
+  if (!result.report.empty())
+    add_element(add_element(suite, "properties", {}), "property",
+                {{"name", "report"}, {"value", escape(result.report)}});
   if (counts.errors > 0)
     add_element(add_case(suite, result, "run"), "error", {{"message", escape(result.error)}});
   for (const Check& check : result.checks) {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "core/progress.h"
-#include "regression/scenario_checks.h"
+#include "regression/scenario_outcome.h"
 #include "regression/sweep.h"
 #include "rehearsal/rehearse.h"
 
@@ -33,6 +33,6 @@ struct ScenarioRun {
 
 /// One rehearsal, and one for each machine of the series. A rehearsal that throws is judged by its exit
 /// status (2 bad input, 3 engine), so that a scenario can expect a refusal. Interrupted passes through.
-ScenarioResult run_scenario(const Scenario& scenario, const ScenarioRun& run);
+ScenarioOutcome run_scenario(const Scenario& scenario, const ScenarioRun& run);
 
 }  // namespace understudy::regression

@@ -54,6 +54,7 @@ struct Scenario {
   std::vector<rehearsal::FaultRequest> faults;
   std::vector<rehearsal::CameraFaultRequest> camera_faults;
   std::vector<Expectation> expect;  ///< of the run with `seed`
+  std::vector<Expectation> golden;  ///< figures of an earlier run (golden_file.h); empty: there is no file
   std::optional<MachineSeries> machines;
 };
 

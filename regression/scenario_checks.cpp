@@ -10,6 +10,7 @@
 #include "core/quantile.h"
 
 namespace understudy::regression {
+namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kSeedsNamed = 10;
@@ -161,14 +162,15 @@ Judgement judge_machines(const Expectation& e, std::span<const Metrics> machines
   return judge_number(e, value, aside);
 }
 
-Check make_check(const Expectation& e, const Scenario& scenario, const Judgement& judgement) {
+Check make_check(const Expectation& e, const Scenario& scenario, const Judgement& judgement,
+                 const fs::path& file) {
   Check check;
   check.expectation = e;
   check.value = judgement.value;
   check.ok = judgement.ok;
   check.name = subject(e, scenario) + " " + bounds_text(e);
-  check.message = fmt::format("{}{} ({}:{}; {})", subject(e, scenario), judgement.text,
-                              scenario.file.filename().string(), e.line, e.source);
+  check.message =
+      fmt::format("{}{} ({}:{}; {})", subject(e, scenario), judgement.text, file.string(), e.line, e.source);
   return check;
 }
 
@@ -200,10 +202,15 @@ std::vector<Check> evaluate(const Scenario& scenario, const Metrics& run, std::s
     throw std::logic_error(
         fmt::format("scenario {} has {} machines, not {}", scenario.name, expected, machines.size()));
   std::vector<Check> checks;
-  for (const Expectation& e : scenario.expect) checks.push_back(make_check(e, scenario, judge_run(e, run)));
+  const fs::path file = scenario.file.filename();
+  for (const Expectation& e : scenario.expect)
+    checks.push_back(make_check(e, scenario, judge_run(e, run), file));
   if (scenario.machines)
     for (const Expectation& e : scenario.machines->expect)
-      checks.push_back(make_check(e, scenario, judge_machines(e, machines, scenario.machines->seed_first)));
+      checks.push_back(
+          make_check(e, scenario, judge_machines(e, machines, scenario.machines->seed_first), file));
+  for (const Expectation& e : scenario.golden)
+    checks.push_back(make_check(e, scenario, judge_run(e, run), "golden" / file));
   return checks;
 }
 

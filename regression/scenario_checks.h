@@ -21,7 +21,7 @@ struct Check {
 
 /// A figure that is absent never passes. `machines` holds one entry per seed of the series, in order; a
 /// figure absent on some of them fails every statistic but fraction_within, where it is held against the
-/// bound: outside for a lower bound, inside for an upper one.
+/// bound: outside for a lower bound, inside for an upper one. Last come the figures of the golden file.
 std::vector<Check> evaluate(const Scenario& scenario, const Metrics& run, std::span<const Metrics> machines);
 
 struct ScenarioResult {
@@ -31,6 +31,7 @@ struct ScenarioResult {
   std::string error;              ///< why it could not be judged; empty when it was
   std::optional<double> seconds;  ///< wall time; left out of files that must be reproducible
   int error_status = 0;           ///< of a rehearsal that ended so: 2 bad input, 3 the machine failed
+  std::string report = {};        ///< path of its page; empty: none was written
   bool passed() const;
 };
 

@@ -11,6 +11,7 @@
 #include "core/file/read_file.h"
 #include "core/yaml/yaml_map.h"
 #include "regression/expectation_keys.h"
+#include "regression/golden_file.h"
 #include "regression/scenario_faults.h"
 #include "rehearsal/run_twin.h"
 
@@ -217,6 +218,9 @@ Scenario load_scenario(const fs::path& path) {
   scenario.file = path;
   YamlMap::read_text(read_file(path), path.string(),
                      [&](YamlMap& map) { read_scenario(map, path.parent_path(), scenario); });
+  const fs::path golden = golden_file_of(path);
+  std::error_code ignored;
+  if (fs::exists(golden, ignored)) scenario.golden = load_golden(golden);
   return scenario;
 }
 

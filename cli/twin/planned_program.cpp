@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "core/digest.h"
 #include "core/error.h"
+#include "core/file/read_file.h"
 
 namespace understudy::cli {
 namespace {
@@ -66,6 +68,15 @@ void write_planned(const regression::Scenario& scenario, const fs::path& output)
   } catch (const InputError& error) {
     fail(error.what());
   }
+}
+
+std::string plan_sha256(const regression::Scenario& scenario) {
+  if (scenario.plan.empty()) return {};
+  std::string text = scenario.plan + "\n";
+  for (const std::string& word : split_command_line(scenario.plan))
+    if (const std::string file = beside(scenario, word); file != word)
+      text += sha256_hex(read_file(file)) + "\n";
+  return sha256_hex(text);
 }
 
 }  // namespace understudy::cli

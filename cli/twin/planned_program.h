@@ -1,6 +1,8 @@
 // Programs of scenarios that name a part and a planner in place of a file.
 #pragma once
 
+#include <string>
+
 #include "regression/scenario.h"
 
 namespace understudy::cli {
@@ -9,5 +11,8 @@ namespace understudy::cli {
 /// that is a file beside the scenario stands for that file. Throws InputError that begins with the scenario's
 /// file; Interrupted passes through.
 void write_planned(const regression::Scenario& scenario, const std::filesystem::path& output);
+
+/// Of the plan's words and the files that they name; empty without a plan.
+std::string plan_sha256(const regression::Scenario& scenario);
 
 }  // namespace understudy::cli

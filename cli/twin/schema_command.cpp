@@ -12,6 +12,7 @@
 #include "machine/description.h"
 #include "machine/material.h"
 #include "machine/model_files.h"
+#include "regression/golden_file.h"
 #include "regression/scenario_file.h"
 #include "report/json_schema.h"
 #include "sim/as_built/as_built_file.h"
@@ -38,6 +39,8 @@ const Kind kKinds[] = {
      [](const SchemaRequest& r) { machine::load_material(r.file); }},
     {"scenario", "Understudy: scenario", regression::scenario_schema,
      [](const SchemaRequest& r) { regression::load_scenario(r.file); }},
+    {"golden", "Understudy: golden figures of a scenario", regression::golden_schema,
+     [](const SchemaRequest& r) { regression::load_golden(r.file); }},
     {"as-built", "Understudy: machine as built", sim::as_built_schema,
      [](const SchemaRequest& r) { sim::make_as_built(machine::load_machine(r.machine), r.file, 1); }},
     {"rig", "Understudy: two cameras that measure a machine", vision::rig_schema,

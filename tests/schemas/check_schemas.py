@@ -21,7 +21,7 @@ import tempfile
 import jsonschema
 import yaml
 
-KINDS = ("machine", "material", "scenario", "as-built", "rig", "columns")
+KINDS = ("machine", "material", "scenario", "golden", "as-built", "rig", "columns")
 HEADER = re.compile(r"^# yaml-language-server: \$schema=(\S+)$")
 SLIPS_IN_A_FILE = 5
 
@@ -44,7 +44,9 @@ def shipped(source):
         yield from sorted((source / folder).rglob("*.yaml"))
 
 
-def schema_of(path):
+def schema_of(path, source):
+    if path.parent.name == "golden":  # written by `understudy scenario run --update-golden`
+        return source / "docs" / "schemas" / "golden.json"
     header = HEADER.match(path.read_text().split("\n", 1)[0])
     if not header:
         sys.exit(f"{path}:1: the first line names no schema (# yaml-language-server: $schema=...)")
@@ -71,7 +73,7 @@ def validator(schema):
 def check_valid(_, source):
     seen = set()
     for path in shipped(source):
-        schema = schema_of(path)
+        schema = schema_of(path, source)
         seen.add(schema.stem)
         for error in validator(schema).iter_errors(yaml.load(path.read_text(), Loader)):
             where = ".".join(str(part) for part in error.absolute_path)
@@ -113,7 +115,7 @@ def check_refused(understudy, source):
     tried = 0
     with tempfile.TemporaryDirectory() as folder:
         for path in shipped(source):
-            schema = schema_of(path)
+            schema = schema_of(path, source)
             value = yaml.load(path.read_text(), Loader)
             for name, slip in slips(value):
                 if validator(schema).is_valid(slip):
