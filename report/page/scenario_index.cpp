@@ -21,8 +21,9 @@ constexpr const char* kStyle = R"(
 .scenario { display: grid; grid-template-columns: 220px minmax(0, 1fr); gap: 8px 24px; padding: 20px 0; border-top: 1px solid var(--line); }
 .scenario img { width: 220px; height: auto; border: 1px solid var(--line); border-radius: 4px; }
 .scenario h2 { margin: 0; overflow-wrap: anywhere; }
-.scenario .ok { color: var(--go); } .scenario .fail { color: var(--no-go); font-weight: 600; }
-.checks td:first-child { width: 4em; } .checks td { overflow-wrap: anywhere; }
+.ok { color: var(--go); } .fail { color: var(--no-go); font-weight: 600; }
+.checks td:first-child { width: 4em; } .checks td { overflow-wrap: break-word; }
+.scenario p:not(.note) { margin: 8px 0 4px; }
 .checks .trend { width: 130px; }
 .overview td, .overview th { white-space: nowrap; } .overview td:first-child { white-space: normal; }
 @media (max-width: 640px) { .scenario { grid-template-columns: minmax(0, 1fr); } .overview .wide { display: none; } }
@@ -94,6 +95,16 @@ std::string value_text(const Check& check) {
                      unit == "1" || unit.empty() ? "" : " " + unit);
 }
 
+/// Dotted names may break after a dot or an underscore.
+std::string breakable(const std::string& name) {
+  std::string html;
+  for (const char c : html_text(name)) {
+    html += c;
+    if (c == '.' || c == '_') html += "<wbr>";
+  }
+  return html;
+}
+
 std::string checks_table(const IndexedScenario& scenario, const std::vector<const PastScenario*>& past) {
   std::string html =
       "<table class=\"checks\"><thead><tr><th></th><th>expected</th><th class=\"number\">value</th>"
@@ -101,7 +112,7 @@ std::string checks_table(const IndexedScenario& scenario, const std::vector<cons
   for (const Check& check : scenario.result.checks)
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td>{}</td><td class=\"trend\">{}</td></tr>\n",
-        mark(check.ok), html_text(check.name), value_text(check), html_text(check.expectation.source),
+        mark(check.ok), breakable(check.name), value_text(check), html_text(check.expectation.source),
         trend_drawing(past, check));
   return html + "</tbody></table>\n";
 }

@@ -35,8 +35,8 @@ TEST(ScenarioIndex, FailuresComeFirstWithValueBoundSourceAndTheCommand) {
   EXPECT_THAT(html, HasSubstr("1 passed, 1 failed"));
   EXPECT_LT(html.find("id=\"bad\""), html.find("id=\"good\""));
   for (const char* part :
-       {"0.25 mm", "gap.start_mm &lt;= 0.2 mm", "Song 2015, 3.3", "understudy scenario run bad.yaml",
-        "bad/pictures/picture-01.png", "bad/report.html"})
+       {"0.25 mm", "gap.<wbr>start_<wbr>mm &lt;= 0.2 mm", "Song 2015, 3.3",
+        "understudy scenario run bad.yaml", "bad/pictures/picture-01.png", "bad/report.html"})
     EXPECT_THAT(html, HasSubstr(part));
   EXPECT_THAT(html, Not(HasSubstr("http"))) << "opens without a network";
 }
