@@ -31,6 +31,7 @@ void add_sample_poses(CLI::App& app, Action& action);
 void add_sample_gaps(CLI::App& app, Action& action);
 void add_render(CLI::App& app, Action& action);
 void add_workspace(CLI::App& app, Action& action);
+void add_repeatability(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_export_mjcf(CLI::App& command, Action& action);
 void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap, faults

@@ -31,7 +31,9 @@ void read_unit(YamlMap& map, Expectation& expectation) {
   const std::string of_metric = metric_unit(expectation.metric);
   expectation.unit = of_metric;
   if (of_metric == "1" && !map.has("unit")) return;
-  const std::string unit = map.recording() ? map.word("unit", {of_metric}, kAbout) : map.text("unit", kAbout);
+  const bool told = map.recording() && !expectation.metric.empty();  // a command's figure has any name
+  const std::string unit = told ? map.word("unit", {of_metric}, kAbout) : map.text("unit", kAbout);
+  if (map.recording()) return;
   if (unit.empty())
     map.fail("metric", "the bound on " + expectation.metric + " lacks its unit: " + of_metric);
   if (unit != of_metric)
@@ -81,7 +83,25 @@ void read_statistic(YamlMap& map, Expectation& expectation) {
   expectation.within_max = within[1];
 }
 
-Expectation read_expectation(YamlMap& map, bool over_machines) {
+Expectation read_figure(YamlMap& map) {
+  Expectation expectation;
+  expectation.line = map.place().line;
+  expectation.metric = map.text("metric", "dotted name of a figure in the command's JSON, its file first");
+  map.require("metric");
+  if (map.has("word")) {
+    for (const char* key : {"equals", "min", "max", "tolerance", "unit"})
+      map.refuse(key, fmt::format("'word' excludes '{}'", key));
+    expectation.equals = map.text("word", "the word that it must be");
+  } else {
+    read_number_bounds(map, expectation);
+  }
+  expectation.source = map.text("source", "where the bound comes from");
+  return expectation;
+}
+
+Expectation read_expectation(YamlMap& map, FiguresOf of) {
+  if (of == FiguresOf::command) return read_figure(map);
+  const bool over_machines = of == FiguresOf::machines;
   Expectation expectation;
   expectation.line = map.place().line;
   expectation.metric = read_metric(map, over_machines);
@@ -98,26 +118,26 @@ Expectation read_expectation(YamlMap& map, bool over_machines) {
 }
 
 /// Found once: every variant of a scenario holds the same.
-const MapSchema& expectation_schema(bool over_machines) {
-  const auto of = [](bool over) {
-    return YamlMap::schema([over](YamlMap& map) { read_expectation(map, over); });
+const MapSchema& expectation_schema(FiguresOf of) {
+  const auto found = [](FiguresOf each) {
+    return YamlMap::schema([each](YamlMap& map) { read_expectation(map, each); });
   };
-  static const std::array<MapSchema, 2> schemas{of(false), of(true)};
-  return schemas[over_machines ? 1 : 0];
+  static const std::array<MapSchema, 3> schemas{found(FiguresOf::run), found(FiguresOf::machines),
+                                                found(FiguresOf::command)};
+  return schemas.at(static_cast<std::size_t>(of));
 }
 
 }  // namespace
 
-std::vector<Expectation> read_expectations(YamlMap& parent, bool over_machines) {
+std::vector<Expectation> read_expectations(YamlMap& parent, FiguresOf of) {
   std::vector<Expectation> expectations;
   constexpr const char* kAbout = "what the figures must be";
   if (parent.recording()) {
-    parent.record_list("expect", kAbout, expectation_schema(over_machines));
+    parent.record_list("expect", kAbout, expectation_schema(of));
     return expectations;
   }
-  parent.list("expect", 0, kAbout, [&](YamlMap& map, std::size_t) {
-    expectations.push_back(read_expectation(map, over_machines));
-  });
+  parent.list("expect", 0, kAbout,
+              [&](YamlMap& map, std::size_t) { expectations.push_back(read_expectation(map, of)); });
   return expectations;
 }
 

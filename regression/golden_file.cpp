@@ -17,14 +17,14 @@ namespace {
 constexpr int kVersion = 1;
 constexpr const char* kSource = "golden";
 
-void read_golden(YamlMap& map, std::vector<Expectation>& golden) {
+void read_golden(YamlMap& map, FiguresOf of, std::vector<Expectation>& golden) {
   const int version = map.integer("golden", 0, 1'000'000, "version of this form: 1");
   if (!map.recording() && version != kVersion)
     map.fail("golden",
              fmt::format("golden is version {}, where this program reads {}: write the file again with "
                          "understudy scenario run --update-golden",
                          version, kVersion));
-  golden = read_expectations(map, false);
+  golden = read_expectations(map, of);
   for (const Expectation& e : golden)
     if (!map.recording() && !e.equals)
       map.fail("expect", fmt::format("{} of a golden file has no 'equals'", e.metric));
@@ -44,14 +44,16 @@ double tolerance_of(const std::string& metric, double value) {
   return metric.ends_with("fraction") || value != std::floor(value) ? 0.001 : 0;
 }
 
-std::string entry_text(const std::string& metric, const MetricValue& value, double tolerance) {
-  std::string text = fmt::format("  - {{metric: {}, equals: ", metric);
+/// `word`: the key of a word.
+std::string entry_text(const std::string& metric, const MetricValue& value, double tolerance,
+                       const char* word) {
+  std::string text = fmt::format("  - {{metric: {}, ", yaml_quoted(metric));
   if (const auto* number = std::get_if<double>(&value)) {
-    text += fmt::format("{}", *number);
+    text += fmt::format("equals: {}", *number);
     if (tolerance > 0) text += fmt::format(", tolerance: {}", tolerance);
     if (const std::string unit = metric_unit(metric); unit != "1") text += ", unit: " + unit;
   } else {
-    text += yaml_quoted(std::get<std::string>(value));
+    text += fmt::format("{}: {}", word, yaml_quoted(std::get<std::string>(value)));
   }
   return text + fmt::format(", source: {}}}\n", kSource);
 }
@@ -62,16 +64,16 @@ fs::path golden_file_of(const fs::path& scenario) {
   return scenario.parent_path() / "golden" / scenario.filename();
 }
 
-std::vector<Expectation> load_golden(const fs::path& path) {
+std::vector<Expectation> load_golden(const fs::path& path, FiguresOf of) {
   std::vector<Expectation> golden;
-  YamlMap::read_text(read_file(path), path.string(), [&](YamlMap& map) { read_golden(map, golden); });
+  YamlMap::read_text(read_file(path), path.string(), [&](YamlMap& map) { read_golden(map, of, golden); });
   return golden;
 }
 
 MapSchema golden_schema() {
   return YamlMap::schema([](YamlMap& map) {
     std::vector<Expectation> golden;
-    read_golden(map, golden);
+    read_golden(map, FiguresOf::run, golden);
   });
 }
 
@@ -88,7 +90,8 @@ std::string golden_text(const Scenario& scenario, const Metrics& run,
     if (before.empty() ? is_of_the_computer(metric) : known == before.end()) continue;
     const double* number = std::get_if<double>(&value);
     const double fresh = number ? tolerance_of(metric, *number) : 0;
-    text += entry_text(metric, value, known == before.end() ? fresh : known->tolerance);
+    text += entry_text(metric, value, known == before.end() ? fresh : known->tolerance,
+                       scenario.command.empty() ? "equals" : "word");
   }
   return text;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/yaml/map_schema.h"
+#include "regression/expectation_keys.h"
 #include "regression/scenario.h"
 
 namespace understudy::regression {
@@ -15,7 +16,7 @@ std::filesystem::path golden_file_of(const std::filesystem::path& scenario);
 
 /// Figures that must be equal but for their tolerances. Throws InputError with file and line, also for a file
 /// of another version of the form.
-std::vector<Expectation> load_golden(const std::filesystem::path& path);
+std::vector<Expectation> load_golden(const std::filesystem::path& path, FiguresOf of = FiguresOf::run);
 MapSchema golden_schema();
 
 /// A golden file of `run`. Figures and tolerances are those of `before`, the file that there was; without

@@ -10,21 +10,15 @@ namespace {
 
 constexpr double kShareOfOneRun = 0.1;  // of the progress shown when a series follows
 
-/// `outcome` says why there is no summary, when there is none.
-Metrics run_once(const Scenario& scenario, const std::function<void()>& plan, const RecordSink& sink,
-                 const Progress& progress, ScenarioOutcome& outcome) {
+/// `outcome` says why there are no figures, when there are none.
+Metrics figures_or_failure(const std::function<Metrics()>& figures, ScenarioOutcome& outcome) {
   const auto fail = [&](const std::exception& error, int status) {
     outcome.error = error.what();
     outcome.error_status = status;
     return failed_run(status);
   };
   try {
-    plan();
-    rehearsal::RehearsalRequest request = request_of(scenario);
-    request.keep_scene = static_cast<bool>(sink);
-    const rehearsal::Record record = rehearsal::rehearse(request, progress);
-    if (sink) sink(record);
-    return metrics_of(record);
+    return figures();
   } catch (const InputError& e) {
     return fail(e, 2);
   } catch (const MachineError& e) {
@@ -85,8 +79,18 @@ ScenarioOutcome run_scenario(const Scenario& described, const ScenarioRun& run) 
   const auto report = [&](double share, const std::string& what) {
     if (run.progress) run.progress(share, what);
   };
-  outcome.run = run_once(
-      scenario, plan, run.sink, [&](double s, const std::string& what) { report(one * s, what); }, outcome);
+  outcome.run = figures_or_failure(
+      [&] {
+        if (!scenario.command.empty()) return run.command(scenario);
+        plan();
+        rehearsal::RehearsalRequest request = request_of(scenario);
+        request.keep_scene = static_cast<bool>(run.sink);
+        const rehearsal::Record record =
+            rehearsal::rehearse(request, [&](double s, const std::string& what) { report(one * s, what); });
+        if (run.sink) run.sink(record);
+        return metrics_of(record);
+      },
+      outcome);
   const auto timed = [&] {
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return outcome;

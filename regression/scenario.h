@@ -39,6 +39,7 @@ struct MachineSeries {
 struct Scenario {
   std::filesystem::path file;
   std::string name, description, source;
+  std::string command;            ///< what follows `understudy`, of a study; empty: this is a rehearsal
   std::string machine;            ///< name of a model, or a path
   std::filesystem::path program;  ///< empty: `plan` makes it
   std::string plan;               ///< what follows `understudy plan`; empty: there is a file

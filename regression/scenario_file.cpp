@@ -179,6 +179,11 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   scenario.name = map.text("name", "of the scenario, in reports");
   scenario.description = map.text("description", "what it shows");
   scenario.source = map.text("source", "where the case comes from");
+  if (map.has("command")) {
+    scenario.command = map.text("command", "of a study in place of a rehearsal: what follows `understudy`");
+    scenario.expect = read_expectations(map, FiguresOf::command);
+    return;
+  }
   scenario.machine = name_or_path(map, "machine", folder, ".yaml", "name of a model, or a path");
   if (map.has("plan"))
     scenario.plan = map.text("plan", "in place of `program`: what follows `understudy plan`");
@@ -202,12 +207,12 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   read_registration(map, folder, scenario.registration);
   scenario.faults = read_faults(map);
   scenario.camera_faults = read_camera_faults(map);
-  scenario.expect = read_expectations(map, false);
+  scenario.expect = read_expectations(map, FiguresOf::run);
   if (!map.has("machines")) return;
   map.section("machines", "the same program on machines of many seeds", [&](YamlMap& machines) {
     MachineSeries& series = scenario.machines.emplace();
     read_seeds(machines, series);
-    series.expect = read_expectations(machines, true);
+    series.expect = read_expectations(machines, FiguresOf::machines);
   });
 }
 
@@ -220,7 +225,8 @@ Scenario load_scenario(const fs::path& path) {
                      [&](YamlMap& map) { read_scenario(map, path.parent_path(), scenario); });
   const fs::path golden = golden_file_of(path);
   std::error_code ignored;
-  if (fs::exists(golden, ignored)) scenario.golden = load_golden(golden);
+  if (fs::exists(golden, ignored))
+    scenario.golden = load_golden(golden, scenario.command.empty() ? FiguresOf::run : FiguresOf::command);
   return scenario;
 }
 

@@ -35,7 +35,7 @@ std::string entry_text(const MetricValue& value) {
 std::string figures_text(const Metrics& metrics, const char* indent) {
   std::string text;
   for (const auto& [name, value] : metrics)
-    text += fmt::format("{}- {{metric: {}{}}}\n", indent, name, entry_text(value));
+    text += fmt::format("{}- {{metric: {}{}}}\n", indent, yaml_quoted(name), entry_text(value));
   return text;
 }
 
@@ -96,6 +96,7 @@ ScenarioResult judge(const Scenario& scenario, const ScenarioOutcome& outcome) {
 }
 
 std::string outcome_inputs(const Scenario& scenario, const std::string& plan_sha256) {
+  if (!scenario.command.empty()) return {};
   try {
     std::string text = rehearsal::inputs_sha256(request_of(scenario), plan_sha256) + "\n";
     if (scenario.machines)

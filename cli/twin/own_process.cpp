@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/command.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 
@@ -39,14 +40,14 @@ pid_t start(const std::vector<std::string>& words) {
   return child;
 }
 
-std::string how_it_ended(int status) {
-  if (WIFSIGNALED(status)) return fmt::format("the process ended by signal {}", WTERMSIG(status));
-  return WEXITSTATUS(status) == 0 ? "" : fmt::format("the process ended with status {}", WEXITSTATUS(status));
+ProcessEnd end_of(int status) {
+  if (WIFSIGNALED(status)) return {kFailed, fmt::format("the process ended by signal {}", WTERMSIG(status))};
+  return {WEXITSTATUS(status), fmt::format("the process ended with status {}", WEXITSTATUS(status))};
 }
 
 }  // namespace
 
-std::string run_own_process(const std::vector<std::string>& words) {
+ProcessEnd run_own_process(const std::vector<std::string>& words) {
   stop_if_interrupted();
   const pid_t child = start(words);
   bool told = false;
@@ -62,7 +63,7 @@ std::string run_own_process(const std::vector<std::string>& words) {
     std::this_thread::sleep_for(kPoll);
   }
   stop_if_interrupted();
-  return how_it_ended(status);
+  return end_of(status);
 }
 
 void end_with_parent() {

@@ -28,12 +28,6 @@ class AsCommandLine {
   std::string before_;
 };
 
-std::string beside(const regression::Scenario& scenario, const std::string& word) {
-  const fs::path path = scenario.file.parent_path() / word;
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored) ? path.string() : word;
-}
-
 int run_plan(std::vector<std::string> words) {
   CLI::App app;
   Action action;
@@ -45,6 +39,12 @@ int run_plan(std::vector<std::string> words) {
 
 }  // namespace
 
+std::string file_beside(const regression::Scenario& scenario, const std::string& word) {
+  const fs::path path = scenario.file.parent_path() / word;
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) ? path.string() : word;
+}
+
 void write_planned(const regression::Scenario& scenario, const fs::path& output) {
   const auto fail = [&](const std::string& why) {
     throw InputError(fmt::format("{}: plan: {}", scenario.file.string(), why));
@@ -54,7 +54,7 @@ void write_planned(const regression::Scenario& scenario, const fs::path& output)
     if (word == "-o" || word.starts_with("--output") || word.starts_with("--machine"))
       fail(fmt::format("'{}' is the scenario's to say: leave it out", word));
     shown.push_back(word);
-    words.push_back(beside(scenario, word));
+    words.push_back(file_beside(scenario, word));
   }
   for (auto* each : {&words, &shown})
     each->insert(each->end(), {"--quiet", "--machine", scenario.machine, "-o"});
@@ -74,7 +74,7 @@ std::string plan_sha256(const regression::Scenario& scenario) {
   if (scenario.plan.empty()) return {};
   std::string text = scenario.plan + "\n";
   for (const std::string& word : split_command_line(scenario.plan))
-    if (const std::string file = beside(scenario, word); file != word)
+    if (const std::string file = file_beside(scenario, word); file != word)
       text += sha256_hex(read_file(file)) + "\n";
   return sha256_hex(text);
 }

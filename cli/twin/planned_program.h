@@ -12,6 +12,9 @@ namespace understudy::cli {
 /// file; Interrupted passes through.
 void write_planned(const regression::Scenario& scenario, const std::filesystem::path& output);
 
+/// The path of the file `word` beside the scenario; `word` itself where there is none.
+std::string file_beside(const regression::Scenario& scenario, const std::string& word);
+
 /// Of the plan's words and the files that they name; empty without a plan.
 std::string plan_sha256(const regression::Scenario& scenario);
 

@@ -13,7 +13,8 @@ namespace {
 int list(const ScenarioRequest& request) {
   for (const auto& file : scenario_files(request.paths)) {
     const auto scenario = regression::load_scenario(file);
-    fmt::print("{:<32} {} [{}, {} expectations]\n", file.string(), scenario.name, scenario.machine,
+    fmt::print("{:<32} {} [{}, {} expectations]\n", file.string(), scenario.name,
+               scenario.command.empty() ? scenario.machine : "command",
                scenario.expect.size() + (scenario.machines ? scenario.machines->expect.size() : 0));
   }
   return kGood;

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/progress.h"
+#include "cli/twin/command_figures.h"
 #include "cli/twin/own_process.h"
 #include "cli/twin/planned_program.h"
 #include "cli/twin/scenario_folder.h"
@@ -41,10 +42,19 @@ regression::RecordSink results_in(const fs::path& folder, const std::string& pla
   };
 }
 
+/// `folder` may be empty: nobody else sees then what the command writes.
+regression::Metrics figures_in(const Scenario& scenario, const fs::path& folder) {
+  std::optional<ScratchFolder> scratch;
+  if (folder.empty()) scratch.emplace("command");
+  return command_figures(scenario,
+                         folder.empty() ? scratch->path() / "results" : folder / scenario.file.stem());
+}
+
 /// In this process. `folder`: of all scenarios' reports; empty: none is written.
 ScenarioOutcome run_here(const Scenario& scenario, const fs::path& folder, int threads,
                          const Progress& progress) {
-  regression::ScenarioRun how{threads, {}, progress, {}};
+  regression::ScenarioRun how{threads, {}, progress, {}, {}};
+  how.command = [&](const Scenario& each) { return figures_in(each, folder); };
   std::string planned;
   how.plan = [&](const Scenario& each, const fs::path& output) {
     write_planned(each, output);
@@ -66,9 +76,9 @@ ScenarioOutcome run_in_process(const Scenario& scenario, const fs::path& outcome
   if (!request.folder.empty()) words.insert(words.end(), {"--out", request.folder});
   std::error_code ignored;
   fs::remove(outcome, ignored);
-  if (const std::string ended = run_own_process(words); !ended.empty()) {
+  if (const ProcessEnd end = run_own_process(words); end.status != kGood) {
     ScenarioOutcome lost;
-    lost.error = ended;
+    lost.error = end.text;
     lost.error_status = kFailed;
     return lost;
   }
@@ -96,11 +106,11 @@ void check_options(const ScenarioRequest& request) {
 
 void print_run(const RunScenario& run) {
   const auto& result = run.result;
-  fmt::print("{} {} ({}{:.1f} s)\n", result.passed() ? "pass" : "FAIL", result.name,
-             run.resumed ? "done before, " : "", result.seconds.value_or(0));
+  fmt::print("{} {}\n", result.passed() ? "pass" : "FAIL", result.name);
   if (!result.error.empty()) fmt::print("     error: {}\n", result.error);
   for (const auto& check : result.checks)
     fmt::print("     {} {}\n", check.ok ? "ok  " : "FAIL", check.ok ? check.name : check.message);
+  fmt::print("     time {:.1f} s{}\n", result.seconds.value_or(0), run.resumed ? ", done before" : "");
   for (const auto& change : run.changes) fmt::print("     diff {}\n", regression::text_of(change));
   if (!result.passed()) fmt::print("     alone: {}\n", replay_command(run.scenario));
   std::fflush(stdout);

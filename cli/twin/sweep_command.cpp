@@ -48,6 +48,9 @@ std::string journal_of(const SweepRequest& r) {
 /// `scratch`: where the program of a plan lies until all machines have printed it.
 rehearsal::RehearsalRequest print_of(const SweepRequest& r, const ScratchFolder& scratch) {
   regression::Scenario scenario = regression::load_scenario(r.scenario);
+  if (!scenario.command.empty())
+    throw InputError(scenario.file.string() +
+                     ": has a command, which is not printed: name a scenario with a program");
   if (!scenario.plan.empty()) {
     scenario.program = scratch.path() / regression::kPlannedProgram;
     write_planned(scenario, scenario.program);

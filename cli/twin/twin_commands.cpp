@@ -56,6 +56,7 @@ void add_twin_commands(CLI::App& app, Action& action) {
   add_sample_gaps(app, action);
   add_render(app, action);
   add_workspace(app, action);
+  add_repeatability(app, action);
   add_benchmark(app, action);
   add_schema(app, action);
 }

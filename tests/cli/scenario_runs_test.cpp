@@ -43,20 +43,26 @@ class ScenarioRuns : public ::testing::Test {
   const Folder folder_;
 };
 
-std::string without_times(std::string text) {
-  for (auto at = text.find(" ("); at != std::string::npos; at = text.find(" (", at + 1))
-    if (const auto end = text.find(" s)", at); end != std::string::npos) text.erase(at, end + 3 - at);
-  return text;
+/// What was printed of a scenario, down to the next one.
+std::string told_of(const std::string& name, const std::string& text) {
+  const auto begin = text.find(name + "\n");
+  if (begin == std::string::npos) return "nothing";
+  const auto end = text.find("time ", begin);
+  return text.substr(begin, text.find('\n', end) - begin);
 }
 
 TEST_F(ScenarioRuns, ProcessesAnswerAsOneAfterTheOther) {
   const std::string both = at("one.yaml") + " " + at("two.yaml");
   const std::string here = run(both + " --out " + at("a"));
   const std::string apart = run(both + " --processes 2 --out " + at("b"));
-  EXPECT_EQ(without_times(here.substr(0, here.find("index:"))),
-            without_times(apart.substr(0, apart.find("index:"))));
-  for (const std::string name : {"one", "two"})
+  for (const std::string name : {"one", "two"}) {
+    const auto checks = [&](const std::string& text) {
+      return told_of(name, text).substr(0, text.find("time"));
+    };
+    EXPECT_THAT(checks(here), HasSubstr("ok   gap.start_mm <= 0.5 mm"));
+    EXPECT_THAT(checks(apart), HasSubstr("ok   gap.start_mm <= 0.5 mm"));
     EXPECT_EQ(read_file(at("a/" + name + "/trace.csv")), read_file(at("b/" + name + "/trace.csv")));
+  }
   EXPECT_THAT(run(both + " --processes 0", 2), HasSubstr("--processes 0 is outside 1..1024"));
 }
 
@@ -73,15 +79,15 @@ TEST_F(ScenarioRuns, ResumeRunsOnlyWhatIsNotThereOrHasOtherInputs) {
   run(at("one.yaml") + out);
   const std::string both = at("one.yaml") + " " + at("two.yaml") + out + " --resume";
   std::string told = run(both);
-  EXPECT_THAT(told, HasSubstr("pass one (done before"));
-  EXPECT_THAT(told, Not(HasSubstr("pass two (done before")));
+  EXPECT_THAT(told_of("pass one", told), HasSubstr("done before"));
+  EXPECT_THAT(told_of("pass two", told), Not(HasSubstr("done before")));
   write("one", 3);
   told = run(both);
-  EXPECT_THAT(told, Not(HasSubstr("pass one (done before"))) << "another seed";
-  EXPECT_THAT(told, HasSubstr("pass two (done before"));
+  EXPECT_THAT(told_of("pass one", told), Not(HasSubstr("done before"))) << "another seed";
+  EXPECT_THAT(told_of("pass two", told), HasSubstr("done before"));
   write("one", 3, "0.0001");
   told = run(both, 1);
-  EXPECT_THAT(told, HasSubstr("FAIL one (done before")) << "judged again, not run again";
+  EXPECT_THAT(told_of("FAIL one", told), HasSubstr("done before")) << "judged again, not run again";
   EXPECT_THAT(run(at("one.yaml") + " --resume", 2), HasSubstr("--resume needs --out"));
 }
 
@@ -97,7 +103,7 @@ TEST_F(ScenarioRuns, ABaselineShowsWhatDiffers) {
 TEST_F(ScenarioRuns, GoldenFiguresAreWrittenHeldAndKept) {
   EXPECT_THAT(run(at("one.yaml") + " --update-golden"), HasSubstr("golden/one.yaml"));
   const std::string golden = read_file(at("golden/one.yaml"));
-  EXPECT_THAT(golden, HasSubstr("metric: gap.start_mm, equals: 0."));
+  EXPECT_THAT(golden, HasSubstr("metric: \"gap.start_mm\", equals: 0."));
   EXPECT_THAT(golden, Not(HasSubstr("timing.")));
   EXPECT_THAT(run(at("one.yaml")), HasSubstr("ok   gap.start_mm = 0."));
   write("one", 9);
@@ -119,6 +125,29 @@ TEST_F(ScenarioRuns, AFailureTellsTheCommandThatRunsItAlone) {
   EXPECT_THAT(read_file(at("out/index.html")), HasSubstr("one/report.html"));
   run(at("one.yaml") + " --out " + at("out"), 1);
   EXPECT_THAT(read_file(at("out/index.html")), HasSubstr("in 2 runs"));
+}
+
+TEST_F(ScenarioRuns, ACommandsFiguresAreHeldToTheirBounds) {
+  const auto study = [&](const std::string& command, const std::string& expectation) {
+    folder_.write("study.yaml", "name: study\ndescription: d\nsource: s\ncommand: " + command +
+                                    "\nexpect:\n  - {" + expectation + ", source: a test}\n");
+    return at("study.yaml");
+  };
+  const std::string workspace = "workspace --step 10";
+  const std::string reachable = "metric: workspace.reachable.fraction, ";
+  EXPECT_THAT(run(study(workspace, reachable + "min: 0.5, max: 0.6") + " --out " + at("out")),
+              HasSubstr("ok   workspace.reachable.fraction in 0.5..0.6"));
+  EXPECT_TRUE(fs::exists(at("out/study/workspace.png")));
+  EXPECT_THAT(run(study(workspace, reachable + "min: 0.9"), 1), HasSubstr("below 0.9"));
+  EXPECT_THAT(run(study(workspace, "metric: workspace.machine, word: hexapod")), HasSubstr("1 passed"));
+  EXPECT_THAT(run(study(workspace, "metric: workspace.reachable.friction, min: 0"), 1),
+              HasSubstr("workspace.reachable.friction is absent from the result"));
+  EXPECT_THAT(run(study("workspace --tilt 500", reachable + "min: 0.5"), 2),
+              HasSubstr("ended with status 2"));
+  EXPECT_THAT(run(study("workspace --out elsewhere", reachable + "min: 0.5"), 2), HasSubstr("leave it out"));
+  EXPECT_THAT(run(study("calibrate a.csv", reachable + "min: 0.5"), 2),
+              HasSubstr("'calibrate' is none of the studies"));
+  EXPECT_EQ(understudy("sweep " + at("study.yaml")).status, 2);
 }
 
 TEST_F(ScenarioRuns, APageThatIsNotOursStays) {
