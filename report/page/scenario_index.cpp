@@ -66,7 +66,7 @@ std::string trend_drawing(const std::vector<const PastScenario*>& past, const Ch
       values.push_back(found->second);
   if (values.empty()) return "";
   values.push_back(std::get<double>(*check.value));
-  const auto [least, most] = std::ranges::minmax(values);
+  const double least = std::ranges::min(values), most = std::ranges::max(values);
   constexpr double kWidth = 120, kHeight = 24, kMargin = 3;
   const double span = most > least ? most - least : 1;
   const auto y = [&](double value) {
