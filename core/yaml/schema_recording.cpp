@@ -1,7 +1,6 @@
 #include "core/yaml/schema_recording.h"
 
 #include <algorithm>
-#include <ranges>
 #include <stdexcept>
 
 namespace understudy {
@@ -17,8 +16,14 @@ SchemaRecording record(const Run& run, std::vector<Decision> path) {
 
 /// Both runs ask for the same, but for the value of `key` itself, which one of them may not have.
 bool same_keys(const SchemaRecording& a, const SchemaRecording& b, const std::string& key) {
-  const auto other = [&key](const KeySchema& schema) { return schema.key != key; };
-  return std::ranges::equal(a.keys() | std::views::filter(other), b.keys() | std::views::filter(other));
+  const auto others = [&key](const SchemaRecording& recording) {
+    std::vector<const KeySchema*> keys;
+    for (const KeySchema& schema : recording.keys())
+      if (schema.key != key) keys.push_back(&schema);
+    return keys;
+  };
+  return std::ranges::equal(others(a), others(b),
+                            [](const KeySchema* x, const KeySchema* y) { return *x == *y; });
 }
 
 void explore(const Run& run, const std::vector<Decision>& path, std::vector<MapVariant>& variants,
