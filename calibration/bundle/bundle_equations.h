@@ -16,7 +16,7 @@ struct BundleLayout {
   static constexpr Eigen::Index kPlacement = 7, kPose = 6;
 
   Eigen::Index camera(int i) const { return Eigen::Index{vision::kCameraNumbers} * i; }
-  Eigen::Index print(int i) const { return Eigen::Index{2 * vision::kCameraNumbers} + kPrint * i; }
+  Eigen::Index print(int i) const { return 2 * Eigen::Index{vision::kCameraNumbers} + kPrint * i; }
   Eigen::Index machine() const { return print(2); }
   Eigen::Index lead() const { return machine() + unknowns.count(); }
   Eigen::Index warming() const { return lead() + (leads ? kStruts : 0); }

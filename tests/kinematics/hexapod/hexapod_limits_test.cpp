@@ -26,7 +26,8 @@ TEST(HexapodLimits, ReachableFractionOfTheCubeIsThatOfTheReference) {
   for (const auto& [tilt, fraction] : expected) {
     int inside = 0;
     for (int n = 0; n < kCells * kCells * kCells; ++n) {
-      const Vec3 cell(n % kCells, n / kCells % kCells, n / kCells / kCells);
+      const int column = n % kCells, row = n / kCells % kCells, layer = n / kCells / kCells;
+      const Vec3 cell(column, row, layer);
       const Vec3 p = ((cell.array() + 0.5) * 0.1 / kCells - 0.05).matrix();
       inside += within_limits(g, joints, limits_g4(), tilted(p, from_deg(tilt), 0));
     }
