@@ -140,19 +140,26 @@ constexpr const char* kTexts[] = {"verdict",
                                   "provenance.program_sha256",
                                   "provenance.inputs_sha256"};
 
+/// How many there are of each kind, and the first line that one of the kind names.
 void count_findings(const rehearsal::Record& record, const std::set<std::string>& sections,
                     Metrics& metrics) {
-  std::map<std::string, double> counts{{"findings.error.count", 0}, {"findings.warning.count", 0}};
+  std::map<std::string, double> figures{{"findings.error.count", 0}, {"findings.warning.count", 0}};
   for (const Kind& kind : kKinds)
     if (*kind.section == 0 || sections.contains(kind.section))
-      counts[std::string("findings.") + kind.word + ".count"] = 0;
+      figures[std::string("findings.") + kind.word + ".count"] = 0;
   for (const rehearsal::Finding& finding : record.findings) {
     const bool error = finding.severity == rehearsal::Severity::error;
-    ++counts["findings." + finding.kind + ".count"];
-    ++counts[error ? "findings.error.count" : "findings.warning.count"];
+    ++figures["findings." + finding.kind + ".count"];
+    ++figures[error ? "findings.error.count" : "findings.warning.count"];
+  }
+  for (const rehearsal::Finding& finding : record.findings) {
+    if (finding.gcode_line == 0) continue;
+    const auto [first, is_new] =
+        figures.try_emplace("findings." + finding.kind + ".line", finding.gcode_line);
+    if (!is_new) first->second = std::min(first->second, static_cast<double>(finding.gcode_line));
   }
   metrics["findings.count"] = static_cast<double>(record.findings.size());
-  for (const auto& [name, count] : counts) metrics[name] = count;
+  for (const auto& [name, figure] : figures) metrics[name] = figure;
 }
 
 }  // namespace
@@ -184,7 +191,9 @@ const std::vector<std::string>& metric_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all{"exit_status", "findings.count", "findings.error.count",
                                  "findings.warning.count"};
-    for (const Kind& kind : kKinds) all.push_back(std::string("findings.") + kind.word + ".count");
+    for (const Kind& kind : kKinds)
+      for (const char* figure : {".count", ".line"})
+        all.push_back(std::string("findings.") + kind.word + figure);
     all.insert(all.end(), std::begin(kFigures), std::end(kFigures));
     all.insert(all.end(), std::begin(kSeriesFigures), std::end(kSeriesFigures));
     all.insert(all.end(), std::begin(kTexts), std::end(kTexts));

@@ -61,6 +61,18 @@ TEST(Metrics, CountsFindingsByKindAndSeverity) {
   EXPECT_EQ(number(metrics, "exit_status"), 1);
 }
 
+TEST(Metrics, TellTheFirstLineOfEachKindThatNamesOne) {
+  Record record = printed();
+  for (const int line : {0, 912, 14, 27})
+    record.findings.push_back({"gap", Severity::error, line, 0, 0, 0, "mm", ""});
+  record.findings.push_back({"left_over", Severity::error, 0, 0, 0, 0, "mm", ""});
+  const Metrics metrics = metrics_of(record);
+  EXPECT_EQ(number(metrics, "findings.gap.line"), 14);
+  EXPECT_FALSE(metrics.contains("findings.left_over.line")) << "it is about no line";
+  EXPECT_FALSE(metrics.contains("findings.collision.line")) << "there is none";
+  EXPECT_EQ(number(metrics, "findings.gap.count"), 4) << "the one without a line counts";
+}
+
 // Zero collisions is a finding of the collision check; without the check there is no such figure.
 TEST(Metrics, WhatWasNotLookedForHasNoCount) {
   const Metrics metrics = metrics_of(refused_by_the_constraint_check());
@@ -73,7 +85,9 @@ TEST(Metrics, WhatWasNotLookedForHasNoCount) {
 TEST(Metrics, EveryFigureOfARecordMayBeExpected) {
   const std::vector<std::string>& names = metric_names();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
-  for (const auto& [name, value] : metrics_of(printed())) {
+  Record record = printed();
+  record.findings = refused_by_the_constraint_check().findings;
+  for (const auto& [name, value] : metrics_of(record)) {
     if (name == "provenance.seed" || name == "provenance.version" || name == "provenance.command") continue;
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
     EXPECT_EQ(metric_is_text(name), std::holds_alternative<std::string>(value)) << name;
