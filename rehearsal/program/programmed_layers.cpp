@@ -141,7 +141,22 @@ ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
   }
   stretches.push_back(close(samples));
   for (const Stretch& stretch : stretches) assign(stretch);
+  carry_on(program);
   typical_ = typical(stretches);
+}
+
+/// What still flows as a travel begins belongs to the line before it.
+void ProgrammedLayers::carry_on(const toolpath::Program& program) {
+  Layer before;
+  for (const toolpath::Step& step : program.steps) {
+    const auto line = static_cast<std::size_t>(std::max(0, step.line));
+    if (step.filament > 0) {
+      before = line < layers_.size() ? layers_[line] : Layer{};
+    } else if (before.layer > 0) {
+      if (layers_.size() <= line) layers_.resize(line + 1);
+      layers_[line] = before;
+    }
+  }
 }
 
 void ProgrammedLayers::assign(const Stretch& stretch) {

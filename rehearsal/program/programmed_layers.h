@@ -41,6 +41,7 @@ class ProgrammedLayers {
   struct Stretch;
   static Stretch close(std::vector<Sample>& samples);
   void assign(const Stretch& stretch);
+  void carry_on(const toolpath::Program& program);
   static Layer typical(const std::vector<Stretch>& stretches);
 
   machine::GapLimits limits_;

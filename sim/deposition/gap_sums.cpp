@@ -33,7 +33,8 @@ void GapSums::add(double from, double to, const GapBand& band, double length, do
     min_time_ = time;
     min_line_ = line;
   }
-  if (const double low = std::min(from, to); low - band.low < margin_) {
+  // The first of equals: lines at one height differ by rounding.
+  if (const double low = std::min(from, to); low - band.low < margin_ - kRounding) {
     margin_ = low - band.low;
     lowest_ = {low, band.low, time, line};
   }

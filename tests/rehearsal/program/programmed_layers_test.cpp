@@ -40,6 +40,16 @@ TEST(ProgrammedLayers, AreTheHeightsOverWhatTheProgramLaidBefore) {
   EXPECT_NEAR(layers.band(70).low, 0.15e-3, 1e-6);
 }
 
+// The extruder lags, so filament still flows as the nozzle leaves.
+TEST(ProgrammedLayers, ATravelHasTheLayerOfTheLineBeforeIt) {
+  const ProgrammedLayers layers = layers_of(rows({0.06}) + "G0 Z10\nM400\nG0 X0\n");
+  const double low = 0.06e-3 * 0.1 / 0.13;  // accepted_min over aim
+  EXPECT_NEAR(layers.band(22).low, low, 1e-6) << "the last line that is printed";
+  EXPECT_NEAR(layers.band(23).low, low, 1e-6) << "up from it";
+  EXPECT_NEAR(layers.band(25).low, low, 1e-6);
+  EXPECT_NEAR(layers.band(1).low, 0.1e-3, 1e-9) << "nothing was printed yet";
+}
+
 TEST(ProgrammedLayers, ALineOverAHollowHasTheLayerOfThoseBeside) {
   std::string text = rows({0.2, 0.5});
   text += "G0 X0 Y10 Z0.8\nG1 X20 E2.314\n" + rows({0.8}).substr(12);

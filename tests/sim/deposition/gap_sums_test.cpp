@@ -48,6 +48,16 @@ TEST(GapSums, FractionsAreWeightedByLength) {
   EXPECT_NEAR(summary.gap_mean, (3 * 0.15e-3 + 0.5e-3) / 4, 1e-15);
 }
 
+// Found by a scenario: a level line 0.06 mm too low was told on the travel behind it.
+TEST(GapSums, OfEqualsButForRoundingTheFirstIsTheLowest) {
+  GapSums s;
+  for (int line = 7; line <= 9; ++line)
+    s.add(0.04e-3 - 1e-13 * line, 0.04e-3 - 1e-13 * line, kBand, 1e-3, line, line);
+  EXPECT_EQ(summary_of(s).lowest.line, 7);
+  s.add(0.04e-3, 0.038e-3, kBand, 1e-3, 10, 10);
+  EXPECT_EQ(summary_of(s).lowest.line, 10) << "2 um lower is lower";
+}
+
 TEST(GapSums, TheSmallestGapIsReportedWithItsTimeAndLine) {
   GapSums s;
   s.add(0.15e-3, 0.12e-3, kBand, 1e-3, 1, 11);
