@@ -34,6 +34,8 @@ class ControlCycle {
 
   machine::MachinePort& port() { return streamer_.port(); }
   Pose resting_pose() const;  ///< X_WT at the end of what was pushed
+  /// G-code line that the machine is at, behind what was pushed; 0 before the first.
+  int line_executed() const { return streamer_.line_executed(); }
 
  private:
   Stop run();

@@ -55,7 +55,7 @@ class PrintLoop {
       result_.stop.time = port_.now();
     }
     result_.completed = !result_.stop;
-    if (result_.stop && result_.stop.line == 0) result_.stop.line = last_line_;
+    if (result_.stop && result_.stop.line == 0) result_.stop.line = line_of_stop();
     result_.duration = port_.now() - started_at_;
     if (gap_) result_.following = std::move(gap_->following());
     return std::move(result_);
@@ -195,6 +195,12 @@ class PrintLoop {
     make_safe();
     stop.fault = port_.state().fault;
     if (stop.fault != machine::Fault::none) stop.status = Status::faulted;
+  }
+
+  /// A fault meets the machine where it is, behind what is planned.
+  int line_of_stop() const {
+    const int executed = result_.stop.fault == machine::Fault::none ? 0 : cycle_.line_executed();
+    return executed > 0 ? executed : last_line_;
   }
 
   Stop lift(double height, double filament) {

@@ -23,11 +23,13 @@ SetpointStreamer::SetpointStreamer(machine::MachinePort& port, double cycle_time
       batch_size_(std::clamp<std::size_t>(port.state().free_slots / 2, 1, kBatch)),
       end_time_(port.now()) {
   batch_.reserve(kBatch);
+  lines_.reserve(port.state().free_slots + kBatch);
 }
 
 Stop SetpointStreamer::write() {
   if (batch_.empty()) return {};
   const double deadline = port_.now() + kPatience;
+  const std::uint64_t first = port_.state().accepted;
   Status s = port_.submit(batch_, deadline);
   // The queue empties at the cycle's pace: it has room after one batch, or by rounding a little later. A
   // second batch would let a small queue run dry.
@@ -41,8 +43,28 @@ Stop SetpointStreamer::write() {
   }
   if (s != Status::ok) return stop_of(s, port_);
   end_time_ = batch_.back().time;
+  note_lines(first);
   batch_.clear();
   return {};
+}
+
+/// Of the batch, whose first setpoint is the port's `first`. What was executed is forgotten.
+void SetpointStreamer::note_lines(std::uint64_t first) {
+  const std::uint64_t next = port_.state().executed + dropped_;
+  const auto ahead = std::ranges::find_if(lines_, [&](const LineStart& s) { return s.setpoint > next; });
+  if (ahead - lines_.begin() > 1) lines_.erase(lines_.begin(), ahead - 1);
+  for (const machine::Setpoint& setpoint : batch_) {
+    if (lines_.empty() || lines_.back().line != setpoint.line) lines_.push_back({first, setpoint.line});
+    ++first;
+  }
+}
+
+int SetpointStreamer::line_executed() const {
+  const std::uint64_t next = port_.state().executed + dropped_;
+  int line = 0;
+  for (const LineStart& start : lines_)
+    if (start.setpoint <= next) line = start.line;
+  return line;
 }
 
 Stop SetpointStreamer::wait_until_executed() {

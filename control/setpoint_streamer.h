@@ -1,6 +1,7 @@
 // Hands setpoints to a port: in batches, through a full queue, until they are executed.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "control/stop.h"
@@ -25,10 +26,19 @@ class SetpointStreamer {
   /// Stops the port: the axes brake along what is queued, the rest of it is dropped. Returns when they rest.
   Stop brake();
 
+  /// G-code line of the setpoint that the machine goes to, or rests at; 0 before the first. What was handed
+  /// over last may be seconds ahead.
+  int line_executed() const;
+
   machine::MachinePort& port() { return port_; }
   const machine::MachinePort& port() const { return port_; }
 
  private:
+  struct LineStart {
+    std::uint64_t setpoint = 0;  ///< counted as the port accepts them
+    int line = 0;
+  };
+  void note_lines(std::uint64_t first);
   /// In slices, so that an interrupt (thrown as Interrupted) is not slept through.
   Stop wait_until(double time);
 
@@ -36,8 +46,9 @@ class SetpointStreamer {
   const double cycle_time_;
   const std::size_t batch_size_;
   std::vector<machine::Setpoint> batch_;
-  double end_time_;            ///< [s], of the last setpoint handed over
-  std::uint64_t dropped_ = 0;  ///< setpoints that were handed over and never executed
+  std::vector<LineStart> lines_;  ///< from the one that is executed on
+  double end_time_;               ///< [s], of the last setpoint handed over
+  std::uint64_t dropped_ = 0;     ///< setpoints that were handed over and never executed
 };
 
 }  // namespace understudy::control

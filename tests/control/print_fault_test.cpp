@@ -60,6 +60,8 @@ TEST(Print, AnEmergencyStopInTheBeadEndsIt) {
     const PrintResult result = print(bead_program(), hexapod(), rig.port(), options);
     EXPECT_FALSE(result.completed);
     EXPECT_EQ(result.stop.fault, Fault::emergency_stop);
+    EXPECT_EQ(result.stop.line, rig.port().history().back().line) << "planned is the whole bead";
+    EXPECT_LT(result.stop.line, 8);
     EXPECT_NEAR(result.duration, at, 1e-9);
     EXPECT_EQ(rig.port().outputs().nozzle_temperature, 0) << "left hot";
     EXPECT_NEAR(rig.commanded_now().translation().z(), kTable + kGap, 1e-3);

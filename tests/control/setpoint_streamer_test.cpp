@@ -52,6 +52,30 @@ TEST(SetpointStreamer, ABatchIsHalfOfASmallQueueOr256) {
   }
 }
 
+TEST(SetpointStreamer, TheLineExecutedIsBehindWhatWasHandedOver) {
+  LoopbackPort port({});
+  SetpointStreamer streamer(port, kCycle);
+  EXPECT_EQ(streamer.line_executed(), 0);
+  for (int k = 1; k <= 600; ++k) {  // line 1 up to 100 ms, line 2 up to 200 ms, and so on
+    Setpoint s = setpoint_at(k, 600);
+    s.line = 1 + (k - 1) / 100;
+    streamer.add(s);
+    if (!streamer.full()) continue;
+    ASSERT_FALSE(streamer.write());
+  }
+  ASSERT_FALSE(streamer.write());
+  for (const auto& [time, line] : {std::pair{0.0, 1}, {0.0505, 1}, {0.1505, 2}, {0.5505, 6}, {0.7, 6}}) {
+    ASSERT_EQ(port.wait_until(time), Status::ok);
+    EXPECT_EQ(streamer.line_executed(), line) << time;
+  }
+  Setpoint more = setpoint_at(900, 900);
+  more.position[0] = kVelocity * 0.6;
+  more.line = 9;
+  streamer.add(more);
+  ASSERT_FALSE(streamer.write());
+  EXPECT_EQ(streamer.line_executed(), 9) << "on its way there";
+}
+
 TEST(SetpointStreamer, NothingReachesThePortBeforeItIsWritten) {
   LoopbackPort port({});
   SetpointStreamer streamer(port, kCycle);
