@@ -49,6 +49,13 @@ TEST(SlowScenarioRun, TheExperimentsOfThePapersHoldWhatIsExpectedOfThem) {
   EXPECT_THAT(outcome.out, HasSubstr("3 passed, 0 failed"));
 }
 
+// Which kinds there must be: tests/regression/limits_and_faults_test.cpp.
+TEST(ScenarioRun, EachLimitAndEachFaultIsFoundOnItsLine) {
+  const Outcome outcome = understudy("scenario run " + kSource + "/scenarios/limits --processes 2");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("35 passed, 0 failed"));
+}
+
 TEST(ScenarioRun, AnExpectationThatFailsIsStatusOneAndSaysByHowMuch) {
   const Folder folder;
   const auto file =
