@@ -13,8 +13,8 @@ struct ProcessLimits {
   double cores = 4;                       ///< CPU time of all its processes together, in multiples of `time`
   std::size_t memory = 4'000'000'000;     ///< [bytes] that all its processes together hold at one time
   int processes = 256;                    ///< and threads, at one time
-  std::size_t output = 1024 * 1024;       ///< [bytes] of standard output
-  std::size_t error_output = 64 * 1024;   ///< [bytes] of standard error
+  std::size_t output = 1'048'576;         ///< [bytes] of standard output
+  std::size_t error_output = 65'536;      ///< [bytes] of standard error
   std::size_t file = 256'000'000;         ///< [bytes] of each file that it writes
   std::size_t own_folders = 500'000'000;  ///< [bytes] of each folder that it may write to in the box
   int open_files = 1024;                  ///< of each of its processes
