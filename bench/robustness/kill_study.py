@@ -43,6 +43,7 @@ class Command:
     files: list = field(default_factory=list)
     exact: list = field(default_factory=list)  # files of the folders that are the same in every run of a variant
     may_stay: list = field(default_factory=list)  # after a kill
+    beside: list = field(default_factory=list)  # what runs into one place go on with
 
 
 RESULT = "results/out"
@@ -52,7 +53,8 @@ COMMANDS = {
     "sweep": Command(lambda v: f"sweep bottle.yaml --samples 3 -j 2 --first-seed {4 + v} --out {RESULT}", [RESULT],
                      exact=["sweep.csv", "table.txt"], may_stay=["results/out.journal"]),
     "scenario": Command(lambda v: f"scenario run {v}/short.yaml --out {RESULT} --junit results/junit.xml", [RESULT + "/short"],
-                        ["results/junit.xml"], exact=["trace.csv", "as-built.yaml"]),
+                        ["results/junit.xml"], exact=["trace.csv", "as-built.yaml"],
+                        beside=[RESULT + name for name in ("/index.html", "/history.jsonl", "/outcomes", "/outcomes/short.yaml")]),
     "calibrate": Command(lambda v: f"calibrate poses{v}.csv -o results/calibrated.yaml --report {RESULT}", [RESULT],
                          ["results/calibrated.yaml"]),
     "benchmark": Command(lambda v: f"benchmark calibration --trials 6 -j 2 --poses 12 --noise 20um:0.2mrad --disturbances none "
@@ -188,7 +190,7 @@ class Study:
                 self.fault("lost", f"{name}, a file of the user")
         results = tuple(self.command.folders + self.command.files)
         parents = {parent.as_posix() for name in results for parent in Path(name).parents}
-        strange = {name for name in self.entries() - self.inputs - allowed - parents
+        strange = {name for name in self.entries() - self.inputs - allowed - parents - set(self.command.beside)
                    if not any(name == r or name.startswith(r + "/") for r in results)}
         marks = {name for name in self.entries() if Path(name).name == MARK}
         for name in sorted(strange | marks):

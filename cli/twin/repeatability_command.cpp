@@ -17,7 +17,7 @@ namespace understudy::cli {
 namespace {
 
 struct RepeatabilityCall {
-  std::string machine = "arm", folder;
+  std::string machine, folder;
   std::vector<double> centre_mm{0, 0, 100};
   double edge_mm = 250, lean_deg = 0;
   studies::RepeatabilityOptions options;
@@ -46,7 +46,7 @@ void add_repeatability(CLI::App& app, Action& action) {
   auto call = std::make_shared<RepeatabilityCall>();
   auto* command =
       app.add_subcommand("repeatability", "How far apart positions lie that are approached again (ISO 9283)");
-  add_machine_option(*command, call->machine);
+  add_machine_option(*command, call->machine)->required();
   command->add_option("--centre", call->centre_mm, "of the standard's cube, mm, in the frame of programs")
       ->expected(3)
       ->capture_default_str();

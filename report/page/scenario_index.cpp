@@ -95,12 +95,14 @@ std::string value_text(const Check& check) {
                      unit == "1" || unit.empty() ? "" : " " + unit);
 }
 
-/// Dotted names may break after a dot or an underscore.
+/// Dotted names may break after a dot or an underscore, numbers not.
 std::string breakable(const std::string& name) {
+  const std::string text = html_text(name);
+  const auto letter = [&](std::size_t i) { return i < text.size() && text[i] >= 'a' && text[i] <= 'z'; };
   std::string html;
-  for (const char c : html_text(name)) {
-    html += c;
-    if (c == '.' || c == '_') html += "<wbr>";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    html += text[i];
+    if ((text[i] == '.' || text[i] == '_') && letter(i + 1)) html += "<wbr>";
   }
   return html;
 }

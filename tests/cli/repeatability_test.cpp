@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 TEST(RepeatabilityCommand, TellsWhatItWrites) {
   const Folder folder;
   const std::string out = folder / "out";
-  const Outcome outcome =
-      understudy("repeatability --centre -50 0 100 --lean 45 --cycles 5 --tests 2 --out " + out);
+  const Outcome outcome = understudy(
+      "repeatability --machine arm --centre -50 0 100 --lean 45 --cycles 5 --tests 2 --out " + out);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("2 tests of 5 approaches"));
   const auto json = nlohmann::json::parse(read_file(out + "/repeatability.json"));
@@ -31,7 +31,8 @@ TEST(RepeatabilityCommand, TellsWhatItWrites) {
 
 TEST(RepeatabilityCommand, ACubeOutOfReachIsOneLineAndNothingWritten) {
   const Folder folder;
-  const Outcome outcome = understudy("repeatability --centre 0 0 900 --out " + (folder / "out"));
+  const Outcome outcome =
+      understudy("repeatability --machine arm --centre 0 0 900 --out " + (folder / "out"));
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("arm does not reach"));
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
