@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/App.hpp>
@@ -46,6 +47,8 @@ void add_twin_commands(CLI::App& app, Action& action);
 /// Names of the commands that this build leaves out; empty with the twin.
 std::vector<std::string> left_out_commands();
 
+/// The word as a shell reads it, in single quotes where it needs them.
+std::string shell_quoted(std::string_view word);
 /// Words of the command line, quoted where a shell needs it: how a user repeats this run.
 void remember_command_line(int argc, char** argv);
 void remember_command_line(const std::vector<std::string>& words);  ///< without the first, `understudy`

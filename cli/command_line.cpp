@@ -10,7 +10,9 @@ namespace {
 
 std::string remembered;
 
-std::string quoted(std::string_view word) {
+}  // namespace
+
+std::string shell_quoted(std::string_view word) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) return std::string(word);
@@ -19,15 +21,13 @@ std::string quoted(std::string_view word) {
   return result + "'";
 }
 
-}  // namespace
-
 void remember_command_line(int argc, char** argv) {
   remember_command_line(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
 }
 
 void remember_command_line(const std::vector<std::string>& words) {
   remembered = "understudy";
-  for (const std::string& word : words) remembered += " " + quoted(std::string_view(word));
+  for (const std::string& word : words) remembered += " " + shell_quoted(word);
 }
 
 void restore_command_line(const std::string& line) { remembered = line; }

@@ -31,10 +31,6 @@ void read_golden(YamlMap& map, FiguresOf of, std::vector<Expectation>& golden) {
 }
 
 /// What it does not tell of the machine and the program, but of this computer or of the files' names.
-bool is_of_the_computer(const std::string& metric) {
-  return metric.starts_with("timing.") || metric.starts_with("provenance.") || metric == "engine.version";
-}
-
 double tolerance_of(const std::string& metric, double value) {
   const std::string unit = metric_unit(metric);
   if (unit == "mm") return 0.001;
@@ -87,7 +83,7 @@ std::string golden_text(const Scenario& scenario, const Metrics& run,
   for (const auto& [metric, value] : run) {
     const auto known = std::ranges::find(before, metric, &Expectation::metric);
     if (const auto* word = std::get_if<std::string>(&value); word && word->empty()) continue;
-    if (before.empty() ? is_of_the_computer(metric) : known == before.end()) continue;
+    if (before.empty() ? metric_is_of_the_run(metric) : known == before.end()) continue;
     const double* number = std::get_if<double>(&value);
     const double fresh = number ? tolerance_of(metric, *number) : 0;
     text += entry_text(metric, value, known == before.end() ? fresh : known->tolerance,

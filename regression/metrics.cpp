@@ -4,6 +4,8 @@
 #include <set>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "core/text/stable_number.h"
 #include "rehearsal/figures.h"
 #include "rehearsal/findings/verdict.h"
@@ -215,6 +217,21 @@ std::string metric_unit(const std::string& metric) {
   for (const std::string_view unit : {"mm", "um", "mrad", "deg", "mm3", "s"})
     if (metric.ends_with("_" + std::string(unit))) return std::string(unit);
   return "1";
+}
+
+bool metric_is_of_the_run(const std::string& metric) {
+  return metric.starts_with("timing.") || metric == "engine.version" ||
+         (metric.starts_with("provenance.") && metric != "provenance.as_built");
+}
+
+std::string text_with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.6g}", value) + (unit == "1" || unit.empty() ? "" : " " + unit);
+}
+
+std::string text_of(const std::optional<MetricValue>& value, const std::string& unit) {
+  if (!value) return "absent";
+  if (const auto* word = std::get_if<std::string>(&*value)) return *word;
+  return text_with_unit(std::get<double>(*value), unit);
 }
 
 }  // namespace understudy::regression

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,5 +35,14 @@ bool metric_is_of_series(const std::string& metric);
 /// The unit that the name ends in: "mm", "um", "mrad", "mm3", "s"; "1" for counts and fractions; empty for
 /// text.
 std::string metric_unit(const std::string& metric);
+
+/// Tells of the run or the computer, not of the print: times, the engine's version, hashes and versions of
+/// inputs.
+bool metric_is_of_the_run(const std::string& metric);
+
+/// The number with its unit, "0.41 mm"; alone where the unit is "1" or empty.
+std::string text_with_unit(double value, const std::string& unit);
+/// A number with its unit, a word as it is, or "absent".
+std::string text_of(const std::optional<MetricValue>& value, const std::string& unit);
 
 }  // namespace understudy::regression

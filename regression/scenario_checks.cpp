@@ -21,10 +21,6 @@ std::optional<double> number_in(const Metrics& metrics, const std::string& metri
   return std::get<double>(found->second);
 }
 
-std::string with_unit(double value, const std::string& unit) {
-  return fmt::format("{:.6g}", value) + (unit == "1" || unit.empty() ? "" : " " + unit);
-}
-
 // A fraction has no unit, whatever the metric's.
 std::string bound_unit(const Expectation& e) {
   return e.statistic == Statistic::fraction_within ? "1" : e.unit;
@@ -35,10 +31,10 @@ std::string bounds_text(const Expectation& e) {
   if (e.equals && std::holds_alternative<std::string>(*e.equals))
     return "= " + std::get<std::string>(*e.equals);
   if (e.equals)
-    return "= " + with_unit(std::get<double>(*e.equals), unit) +
-           (e.tolerance > 0 ? fmt::format(" +- {}", with_unit(e.tolerance, unit)) : "");
-  if (e.min && e.max) return fmt::format("in {:.6g}..{}", *e.min, with_unit(*e.max, unit));
-  return e.min ? ">= " + with_unit(*e.min, unit) : "<= " + with_unit(*e.max, unit);
+    return "= " + text_with_unit(std::get<double>(*e.equals), unit) +
+           (e.tolerance > 0 ? fmt::format(" +- {}", text_with_unit(e.tolerance, unit)) : "");
+  if (e.min && e.max) return fmt::format("in {:.6g}..{}", *e.min, text_with_unit(*e.max, unit));
+  return e.min ? ">= " + text_with_unit(*e.min, unit) : "<= " + text_with_unit(*e.max, unit);
 }
 
 std::string subject(const Expectation& e, const Scenario& scenario) {
@@ -47,15 +43,15 @@ std::string subject(const Expectation& e, const Scenario& scenario) {
       fmt::format("seeds {}-{}", scenario.machines->seed_first, scenario.machines->seed_last);
   if (e.statistic == Statistic::fraction_within)
     return fmt::format("fraction with {} in {:.6g}..{} over {}", e.metric, e.within_min,
-                       with_unit(e.within_max, e.unit), seeds);
+                       text_with_unit(e.within_max, e.unit), seeds);
   return fmt::format("{} of {} over {}", to_string(e.statistic), e.metric, seeds);
 }
 
 // What a number breaks, as " is 0.4 mm, above 0.2 mm"; empty when it breaks nothing.
 std::string broken_bound(const Expectation& e, double value) {
   const std::string unit = bound_unit(e);
-  if (e.min && value < *e.min) return ", below " + with_unit(*e.min, unit);
-  if (e.max && value > *e.max) return ", above " + with_unit(*e.max, unit);
+  if (e.min && value < *e.min) return ", below " + text_with_unit(*e.min, unit);
+  if (e.max && value > *e.max) return ", above " + text_with_unit(*e.max, unit);
   if (e.equals && std::abs(value - std::get<double>(*e.equals)) > e.tolerance)
     return ", not " + bounds_text(e).substr(2);
   return "";
@@ -69,7 +65,7 @@ struct Judgement {
 
 Judgement judge_number(const Expectation& e, double value, const std::string& aside) {
   const std::string broken = broken_bound(e, value);
-  return {value, broken.empty(), " is " + with_unit(value, bound_unit(e)) + aside + broken};
+  return {value, broken.empty(), " is " + text_with_unit(value, bound_unit(e)) + aside + broken};
 }
 
 Judgement judge_run(const Expectation& e, const Metrics& run) {
@@ -142,7 +138,7 @@ Judgement judge_fraction(const Expectation& e, const Gathered& gathered) {
   if (!gathered.absent.empty()) aside += ", absent: " + seeds_text(gathered.absent);
   const std::string broken =
       broken_bound(e, sure).empty() ? broken_bound(e, possible) : broken_bound(e, sure);
-  return {sure, broken.empty(), " is " + with_unit(sure, "1") + broken + aside};
+  return {sure, broken.empty(), " is " + text_with_unit(sure, "1") + broken + aside};
 }
 
 Judgement judge_machines(const Expectation& e, std::span<const Metrics> machines, std::uint64_t seed_first) {

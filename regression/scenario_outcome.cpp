@@ -70,18 +70,6 @@ void read_outcome(YamlMap& map, RecordedOutcome& read) {
     });
 }
 
-bool is_of_a_run(const std::string& metric) {
-  return metric.starts_with("timing.") || metric == "engine.version" ||
-         (metric.starts_with("provenance.") && metric != "provenance.as_built");
-}
-
-std::string value_text(const std::string& metric, const std::optional<MetricValue>& value) {
-  if (!value) return "absent";
-  if (const auto* word = std::get_if<std::string>(&*value)) return *word;
-  const std::string unit = metric_unit(metric);
-  return fmt::format("{:.6g}{}", std::get<double>(*value), unit == "1" ? "" : " " + unit);
-}
-
 }  // namespace
 
 ScenarioResult judge(const Scenario& scenario, const ScenarioOutcome& outcome) {
@@ -146,14 +134,15 @@ std::vector<MetricChange> changes(const Metrics& before, const Metrics& after) {
   std::vector<MetricChange> changed;
   for (const auto& [name, unused] : all) {
     const MetricChange change{name, value(before, name), value(after, name)};
-    if (!is_of_a_run(name) && change.before != change.after) changed.push_back(change);
+    if (!metric_is_of_the_run(name) && change.before != change.after) changed.push_back(change);
   }
   return changed;
 }
 
 std::string text_of(const MetricChange& change) {
-  return fmt::format("{} was {}, is {}", change.metric, value_text(change.metric, change.before),
-                     value_text(change.metric, change.after));
+  const std::string unit = metric_unit(change.metric);
+  return fmt::format("{} was {}, is {}", change.metric, text_of(change.before, unit),
+                     text_of(change.after, unit));
 }
 
 }  // namespace understudy::regression

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
@@ -23,46 +24,64 @@ struct Spacing {
 };
 constexpr Spacing kFine{2e-3, 2 * kDegree}, kCoarse{8e-3, 6 * kDegree};
 
-class LatticeReach {
+/// Where and why the machine cannot follow a way.
+struct Obstacle {
+  Pose X_WT;
+  std::string why;
+};
+
+enum class Singular { refused, allowed };
+
+class MachineReach {
  public:
-  explicit LatticeReach(const machine::MachineDescription& machine)
+  MachineReach(const machine::MachineDescription& machine, Singular singular)
       : mechanism_(machine.make_mechanism()),
         X_BW_(machine.X_WB.inverse()),
-        axes_(static_cast<std::size_t>(mechanism_->axis_count())) {}
+        axes_(static_cast<std::size_t>(mechanism_->axis_count())),
+        singular_(singular) {}
 
-  std::string walk(const std::vector<Pose>& way, bool fine) const {
-    const Spacing spacing = fine ? kFine : kCoarse;
-    kinematics::AxisVector storage{};
-    const std::span<double> axes = std::span(storage).first(axes_);
-    if (std::string why = step_to(way.front(), {}, axes); !why.empty()) return why;
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const double path = (way[i].translation() - way[i - 1].translation()).norm(),
-                   turn = angle_between(way[i - 1].linear(), way[i].linear());
-      const int parts =
-          std::max(1, static_cast<int>(std::ceil(std::max(path / spacing.path, turn / spacing.turn))));
-      for (int k = 1; k <= parts; ++k) {
-        const kinematics::AxisVector before = storage;
-        if (std::string why = step_to(interpolate(way[i - 1], way[i], double(k) / parts), before, axes);
-            !why.empty())
-          return why;
-        if (std::string why = leap(before, storage); !why.empty()) return why;
-      }
-    }
-    return "";
-  }
-
- private:
-  std::string step_to(const Pose& X_WT, std::span<const double> near, std::span<double> axes) const {
+  /// Puts `at` on the axes for the pose nearest to them; on the branch of the machine's home without `near`.
+  std::string stand(const Pose& X_WT, std::span<const double> near, kinematics::AxisVector& at) const {
+    const std::span<double> axes = std::span(at).first(axes_);
     const Pose X_BT = X_BW_ * X_WT;
     const SolveStatus status = mechanism_->inverse(X_BT, near.first(std::min(near.size(), axes_)), axes);
     std::vector<kinematics::LimitViolation> violations;
     mechanism_->check(X_BT,
                       status == SolveStatus::ok ? std::span<const double>(axes) : std::span<const double>(),
                       violations);
+    if (singular_ == Singular::allowed)
+      std::erase_if(violations, [](const auto& v) { return v.kind == kinematics::LimitKind::singularity; });
     if (!violations.empty()) return to_string(violations.front());
     return status == SolveStatus::ok ? "" : std::string("the pose is ") + to_string(status);
   }
 
+  /// Leads the axes, which stand at `from`, to `to`.
+  std::optional<Obstacle> lead(const Pose& from, const Pose& to, const Spacing& spacing,
+                               kinematics::AxisVector& at) const {
+    const double path = (to.translation() - from.translation()).norm(),
+                 turn = angle_between(from.linear(), to.linear());
+    const int parts =
+        std::max(1, static_cast<int>(std::ceil(std::max(path / spacing.path, turn / spacing.turn))));
+    for (int k = 1; k <= parts; ++k) {
+      const kinematics::AxisVector before = at;
+      const Pose X_WT = interpolate(from, to, static_cast<double>(k) / parts);
+      std::string why = stand(X_WT, before, at);
+      if (why.empty()) why = leap(before, at);
+      if (!why.empty()) return Obstacle{X_WT, why};
+    }
+    return std::nullopt;
+  }
+
+  std::string walk(const std::vector<Pose>& way, bool fine) const {
+    kinematics::AxisVector at{};
+    if (std::string why = stand(way.front(), {}, at); !why.empty()) return why;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      if (const auto obstacle = lead(way[i - 1], way[i], fine ? kFine : kCoarse, at)) return obstacle->why;
+    }
+    return "";
+  }
+
+ private:
   // Machines that leave the spin free turn an axis at rest where they would have to leap.
   std::string leap(const kinematics::AxisVector& before, const kinematics::AxisVector& after) const {
     if (!mechanism_->follows_spin()) return "";
@@ -79,6 +98,7 @@ class LatticeReach {
   std::shared_ptr<const kinematics::Mechanism> mechanism_;
   Pose X_BW_;
   std::size_t axes_;
+  Singular singular_;
 };
 
 double tilt_of(const Pose& X_WT) { return std::acos(std::clamp(X_WT.linear().col(2).z(), -1.0, 1.0)); }
@@ -102,7 +122,7 @@ std::string possible_tilt(const Pose& X_WT, const toolpath::WayCheck& reach) {
 }  // namespace
 
 toolpath::WayCheck machine_reach(const machine::MachineDescription& machine) {
-  return [reach = LatticeReach(machine)](const std::vector<Pose>& way, bool fine) {
+  return [reach = MachineReach(machine, Singular::refused)](const std::vector<Pose>& way, bool fine) {
     return reach.walk(way, fine);
   };
 }
@@ -124,6 +144,25 @@ void check_reach(const toolpath::Program& program, const machine::MachineDescrip
                       possible_tilt(step.X_WT, reach)));
     }
     way.erase(way.begin());
+  }
+}
+
+void check_reach_from_home(const toolpath::Program& program, const machine::MachineDescription& machine) {
+  const MachineReach reach(machine, Singular::allowed);
+  Pose X_WT = machine.X_WB * machine.X_BT_home;
+  kinematics::AxisVector at{};
+  if (const std::string why = reach.stand(X_WT, {}, at); !why.empty())
+    throw InputError(fmt::format("machine {} cannot stand at its home: {}", machine.name, why));
+  for (const toolpath::Step& step : program.steps) {
+    if (!toolpath::moves(step)) continue;
+    if (const auto obstacle = reach.lead(X_WT, step.X_WT, kFine, at)) {
+      const Vec3 p = obstacle->X_WT.translation();
+      throw InputError(
+          fmt::format("at ({:.2f}, {:.2f}, {:.2f}) mm the part is out of reach of {}: {}; take a smaller "
+                      "part, or --ignore-reach",
+                      to_mm(p.x()), to_mm(p.y()), to_mm(p.z()), machine.name, obstacle->why));
+    }
+    X_WT = step.X_WT;
   }
 }
 

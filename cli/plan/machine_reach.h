@@ -16,4 +16,9 @@ toolpath::WayCheck machine_reach(const machine::MachineDescription& machine);
 /// with the place, the tilt there, the limit, and the tilt that it could take at this place.
 void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine);
 
+/// Throws InputError for the first pose that the machine does not reach when its axes are led from home
+/// through the whole program: how a redundant axis stands depends on the way there. A singular pose is no
+/// limit here: an end mill that stands upright on a table that turns is in one.
+void check_reach_from_home(const toolpath::Program& program, const machine::MachineDescription& machine);
+
 }  // namespace understudy::cli

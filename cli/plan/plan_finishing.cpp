@@ -1,17 +1,17 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include <fmt/format.h>
 
+#include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 #include "geometry/inflated.h"
 #include "machine/fixture_file.h"
 #include "toolpath/finishing/finishing_planner.h"
@@ -37,59 +37,7 @@ machine::MachineDescription milling_machine(const std::string& name) {
 /// The table as what the tool must not reach into.
 std::shared_ptr<const geometry::Mesh> table_of(const machine::MachineDescription& machine) {
   const Vec3 half = std::get<geometry::Box>(machine.table.form).size / 2;
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back(machine.table.X_FS * Vec3(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
-                                                i & 4 ? half.z() : -half.z()));
-  return std::make_shared<geometry::Mesh>(std::move(corners), std::vector<std::array<int, 3>>{{0, 2, 3},
-                                                                                              {0, 3, 1},
-                                                                                              {4, 5, 7},
-                                                                                              {4, 7, 6},
-                                                                                              {0, 1, 5},
-                                                                                              {0, 5, 4},
-                                                                                              {2, 6, 7},
-                                                                                              {2, 7, 3},
-                                                                                              {0, 4, 6},
-                                                                                              {0, 6, 2},
-                                                                                              {1, 3, 7},
-                                                                                              {1, 7, 5}});
-}
-
-/// Every pose of the program in order, from the machine's home on: a redundant axis goes where the way takes
-/// it.
-void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine) {
-  constexpr double kPath = 2e-3, kTurn = 2 * kDegree;  // between two looks
-  const auto mechanism = machine.make_mechanism();
-  const Pose X_BW = machine.X_WB.inverse();
-  const auto count = static_cast<std::size_t>(mechanism->axis_count());
-  kinematics::AxisVector storage{};
-  const std::span<double> axes = std::span(storage).first(count);
-  (void)mechanism->inverse(machine.X_BT_home, {}, axes);
-  Pose X_WT = machine.X_WB * machine.X_BT_home;
-  for (const toolpath::Step& step : program.steps) {
-    if (!toolpath::moves(step)) continue;
-    const double path = (step.X_WT.translation() - X_WT.translation()).norm(),
-                 turn = angle_between(X_WT.linear(), step.X_WT.linear());
-    const int parts = std::max(1, static_cast<int>(std::ceil(std::max(path / kPath, turn / kTurn))));
-    for (int k = 1; k <= parts; ++k) {
-      const Pose X = interpolate(X_WT, step.X_WT, static_cast<double>(k) / parts);
-      const kinematics::AxisVector before = storage;
-      const auto status = mechanism->inverse(X_BW * X, std::span(before).first(count), axes);
-      std::vector<kinematics::LimitViolation> violations;
-      if (status == kinematics::SolveStatus::ok) mechanism->check(X_BW * X, axes, violations);
-      // An upright tool is a singular pose, and no limit here.
-      std::erase_if(violations, [](const auto& v) { return v.kind == kinematics::LimitKind::singularity; });
-      if (status == kinematics::SolveStatus::ok && violations.empty()) continue;
-      const Vec3 p = X.translation();
-      throw InputError(
-          fmt::format("at ({:.2f}, {:.2f}, {:.2f}) mm the part is out of reach of {}: {}; take a smaller "
-                      "part, or --ignore-reach",
-                      to_mm(p.x()), to_mm(p.y()), to_mm(p.z()), machine.name,
-                      violations.empty() ? std::string("the pose is ") + to_string(status)
-                                         : to_string(violations.front())));
-    }
-    X_WT = step.X_WT;
-  }
+  return geometry::box_mesh(-half, half, machine.table.X_FS);
 }
 
 toolpath::FinishingPlan plan_of(const FinishingRequest& r, const machine::MachineDescription& machine,
@@ -124,7 +72,7 @@ int plan_finishing(const FinishingRequest& r) {
   const toolpath::FinishingPlan plan = plan_of(r, machine, *part);
   const auto stock = geometry::inflated(*part, plan.depth);
   const auto result = toolpath::plan_finishing(*part, *stock, *table_of(machine), plan);
-  if (!r.ignore_reach) check_reach(result.program, machine);
+  if (!r.ignore_reach) check_reach_from_home(result.program, machine);
   std::string notes = fmt::format(
       "{} layers, {} outlines, {:.1f} mm of cutting to a depth of {:g} mm; fitted normals within {:.2f} deg "
       "of "

@@ -13,6 +13,7 @@
 #include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 #include "geometry/printed_clearance.h"
 #include "machine/fixture_file.h"
 #include "toolpath/lattice/lattice_fill.h"
@@ -61,22 +62,9 @@ Vec3 box_size(const std::string& text) {
 }
 
 /// On z = 0, centred in x and y.
-std::shared_ptr<const geometry::Mesh> box_mesh(const Vec3& size) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back(size.cwiseProduct(Vec3(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 1 : 0)));
-  return std::make_shared<geometry::Mesh>(corners, std::vector<std::array<int, 3>>{{0, 2, 3},
-                                                                                   {0, 3, 1},
-                                                                                   {4, 5, 7},
-                                                                                   {4, 7, 6},
-                                                                                   {0, 1, 5},
-                                                                                   {0, 5, 4},
-                                                                                   {2, 6, 7},
-                                                                                   {2, 7, 3},
-                                                                                   {0, 4, 6},
-                                                                                   {0, 6, 2},
-                                                                                   {1, 3, 7},
-                                                                                   {1, 7, 5}});
+std::shared_ptr<const geometry::Mesh> standing_box(const Vec3& size) {
+  const Vec3 half(size.x() / 2, size.y() / 2, 0);
+  return geometry::box_mesh(-half, size - half);
 }
 
 bool is_frame(const LatticeRequest& r) { return std::filesystem::path(r.part).extension() == ".json"; }
@@ -153,7 +141,7 @@ int plan_five_directions(const LatticeRequest& r) {
   if (!toolpath::in_ranges(strut, ranges))
     throw InputError(fmt::format("a strut of {:g} mm is outside {}, for which the nozzle of {} leaves room",
                                  to_mm(strut), toolpath::to_string(ranges), machine.name));
-  const auto part = r.part.starts_with("box:") ? box_mesh(box_size(r.part))
+  const auto part = r.part.starts_with("box:") ? standing_box(box_size(r.part))
                                                : geometry::read_stl(machine::find_fixture(r.part));
   const auto segmented = toolpath::segment_part(*part, from_mm(r.strut_mm));
   auto segments = toolpath::segment_lattice(segmented);

@@ -6,6 +6,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "cli/command.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
@@ -24,18 +25,6 @@ std::string folder_of(const regression::Scenario& scenario) { return scenario.fi
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
-}
-
-std::string in_shell_quotes(const std::string& word) {
-  constexpr std::string_view kPlain = "/._-+,:=@%";
-  const auto plain = [&](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           kPlain.find(c) != std::string_view::npos;
-  };
-  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 }  // namespace
@@ -89,8 +78,8 @@ std::optional<regression::ScenarioOutcome> finished_outcome(const fs::path& fold
 }
 
 std::string replay_command(const regression::Scenario& scenario) {
-  return fmt::format("understudy scenario run {} --out {}", in_shell_quotes(scenario.file.string()),
-                     in_shell_quotes(folder_of(scenario) + "-out"));
+  return fmt::format("understudy scenario run {} --out {}", shell_quoted(scenario.file.string()),
+                     shell_quoted(folder_of(scenario) + "-out"));
 }
 
 void write_scenario_index(std::span<const RunScenario> runs, const fs::path& folder) {

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 #include "geometry/mesh.h"
 #include "models/parts/block_part.h"
 #include "models/parts/swept_part.h"
@@ -94,19 +95,7 @@ Mesh slanted_box() {
     const double top = kMiddleHeight + (i & 1 ? -rise : rise);
     vertices.push_back(Vec3(x, i & 2 ? kHalfWidth : -kHalfWidth, i & 4 ? top : 0) * kMillimetre);
   }
-  return {std::move(vertices),
-          {{0, 2, 3},
-           {0, 3, 1},
-           {4, 5, 7},
-           {4, 7, 6},
-           {0, 1, 5},
-           {0, 5, 4},
-           {2, 6, 7},
-           {2, 7, 3},
-           {0, 4, 6},
-           {0, 6, 2},
-           {1, 3, 7},
-           {1, 7, 5}}};
+  return {std::move(vertices), geometry::box_triangles()};
 }
 
 // For the comparison of planar layers with a conformal finish (Song 2015, figure 17): a block whose top is a

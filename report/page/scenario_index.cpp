@@ -87,14 +87,6 @@ std::string trend_drawing(const std::vector<const PastScenario*>& past, const Ch
   return drawing.finish();
 }
 
-std::string value_text(const Check& check) {
-  if (!check.value) return "absent";
-  if (const auto* word = std::get_if<std::string>(&*check.value)) return html_text(*word);
-  const std::string unit = check.expectation.unit;
-  return fmt::format("{:.6g}{}", std::get<double>(*check.value),
-                     unit == "1" || unit.empty() ? "" : " " + unit);
-}
-
 /// Dotted names may break after a dot or an underscore, numbers not.
 std::string breakable(const std::string& name) {
   const std::string text = html_text(name);
@@ -114,8 +106,9 @@ std::string checks_table(const IndexedScenario& scenario, const std::vector<cons
   for (const Check& check : scenario.result.checks)
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td>{}</td><td class=\"trend\">{}</td></tr>\n",
-        mark(check.ok), breakable(check.name), value_text(check), html_text(check.expectation.source),
-        trend_drawing(past, check));
+        mark(check.ok), breakable(check.name),
+        html_text(regression::text_of(check.value, check.expectation.unit)),
+        html_text(check.expectation.source), trend_drawing(past, check));
   return html + "</tbody></table>\n";
 }
 

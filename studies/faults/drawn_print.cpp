@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 #include "geometry/mesh.h"
 #include "machine/fixture_file.h"
 #include "toolpath/planners/planar_slicer.h"
@@ -86,21 +87,6 @@ DrawnPrint draw_surface(const MachineDescription& machine, Random& random) {
   return {"surface", name, toolpath::plan_surface(*part, toolpath::section_rows(*part, rows), layers, plan)};
 }
 
-/// A box on the table, its lower corner at `lower`.
-geometry::Mesh box(const Vec3& lower, const Vec3& size) {
-  std::vector<Vec3> vertices;
-  for (const double z : {0.0, 1.0})
-    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
-      vertices.push_back(lower + Vec3(x, y, z).cwiseProduct(size));
-  std::vector<std::array<int, 3>> triangles{{4, 5, 6}, {4, 6, 7}, {0, 2, 1}, {0, 3, 2}};
-  for (int i = 0; i < 4; ++i) {
-    const int j = (i + 1) % 4;
-    triangles.push_back({i, j, j + 4});
-    triangles.push_back({i, j + 4, i + 4});
-  }
-  return {std::move(vertices), std::move(triangles)};
-}
-
 Vec3 draw_place(Random& random) {
   const double x = random.uniform(-kFarFromMiddle, kFarFromMiddle);
   return {x, random.uniform(-kFarFromMiddle, kFarFromMiddle), 0};
@@ -121,7 +107,7 @@ DrawnPrint draw_layers(const MachineDescription& machine, Random& random) {
   const Vec3 lower = draw_place(random);
   const double width = random.uniform(2e-3, 8e-3), depth = random.uniform(2e-3, 8e-3);
   const Vec3 size(width, depth, (layers + 1e-3) * plan.layer_height);
-  auto planned = toolpath::plan_planar(box(lower, size), nullptr, plan);
+  auto planned = toolpath::plan_planar(*geometry::box_mesh(lower, lower + size), nullptr, plan);
   return {"layers", "", std::move(planned.program)};
 }
 

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/random_vector.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/program/rotary_words.h"
@@ -30,18 +31,8 @@ constexpr double kError = 0.2e-3;       // [m], 1 sigma of the error at the star
 
 /// A plate of 60 mm whose top passes through `p`, leaning towards the laser by `tilt`.
 std::shared_ptr<const geometry::Mesh> plate(const Vec3& p, double tilt) {
-  const Mat3 R = exp_rotation(tilt * Vec3::UnitX());
-  std::vector<Vec3> vertices;
-  for (const double z : {-5e-3, 0.0})
-    for (const auto& [x, y] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
-      vertices.push_back(p + R * Vec3(30e-3 * x, 30e-3 * y, z));
-  std::vector<std::array<int, 3>> triangles{{4, 5, 6}, {4, 6, 7}, {0, 2, 1}, {0, 3, 2}};
-  for (int i = 0; i < 4; ++i) {
-    const int j = (i + 1) % 4;
-    triangles.push_back({i, j, j + 4});
-    triangles.push_back({i, j + 4, i + 4});
-  }
-  return std::make_shared<geometry::Mesh>(std::move(vertices), std::move(triangles));
+  return geometry::box_mesh(Vec3(-30e-3, -30e-3, -5e-3), Vec3(30e-3, 30e-3, 0),
+                            make_pose(exp_rotation(tilt * Vec3::UnitX()), p));
 }
 
 Step step_to(StepKind kind, const Pose& X_WT, int line, double filament = 0) {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/file/read_file.h"
+#include "geometry/box_mesh.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {
@@ -353,14 +354,15 @@ TEST(PlanWaypoints, SetsALayerOnTheTable) {
 }
 
 // A box of 2 `half` mm each way and 30 mm high on z = 0; the first `count` of its 12 triangles.
-std::string box_stl(double half, int count) {
-  constexpr int kTriangles[][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+std::string box_stl(double half, std::size_t count) {
+  const std::vector<Vec3> corners = geometry::box_corners(Vec3(-half, -half, 0), Vec3(half, half, 30));
   std::string text = "solid box\n";
-  for (int t = 0; t < count; ++t) {
+  for (std::size_t t = 0; t < count; ++t) {
     text += "facet normal 0 0 0\nouter loop\n";
-    for (const int i : kTriangles[t])
-      text += fmt::format("vertex {} {} {}\n", i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? 30 : 0);
+    for (const int i : geometry::box_triangles()[t]) {
+      const Vec3& corner = corners[static_cast<std::size_t>(i)];
+      text += fmt::format("vertex {} {} {}\n", corner.x(), corner.y(), corner.z());
+    }
     text += "endloop\nendfacet\n";
   }
   return text + "endsolid box\n";

@@ -66,7 +66,7 @@ TEST_F(ScenarioRuns, ProcessesAnswerAsOneAfterTheOther) {
   EXPECT_THAT(run(both + " --processes 0", 2), HasSubstr("--processes 0 is outside 1..1024"));
 }
 
-TEST_F(ScenarioRuns, AProcessThatIsNotToldWhatToDoIsAFailedScenario) {
+TEST_F(ScenarioRuns, OneThatCannotRunFailsBesideThoseThatCan) {
   std::string yaml = read_file(at("one.yaml"));
   yaml.replace(yaml.find("fixture: bottle"), 15, "fixture: botle");
   folder_.write("one.yaml", yaml);

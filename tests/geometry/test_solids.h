@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/frames.h"
+#include "geometry/box_mesh.h"
 
 namespace understudy::geometry {
 
@@ -18,13 +19,7 @@ struct Triangles {
 
 /// Box from `lower` to `upper`.
 inline Triangles box(const Vec3& lower, const Vec3& upper) {
-  Triangles t;
-  for (int i = 0; i < 8; ++i)
-    t.vertices.push_back(
-        Vec3(i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(), i & 4 ? upper.z() : lower.z()));
-  t.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                 {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return t;
+  return {box_corners(lower, upper), box_triangles()};
 }
 
 /// Boxes, each from a lower to an upper corner, beside or in each other.

@@ -11,6 +11,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
+#include "geometry/box_mesh.h"
 #include "tests/renderer/laser_scene.h"
 
 namespace understudy::renderer {
@@ -28,20 +29,7 @@ Vec2 dot_of(const LaserScene& scene) {
 
 /// A slab whose top lies at z = `top`, from x0 to x1 and 40 mm along y.
 std::shared_ptr<const geometry::Mesh> slab(double x0, double x1, double top) {
-  std::vector<Vec3> v;
-  for (int i = 0; i < 8; ++i) v.emplace_back(i & 1 ? x1 : x0, i & 2 ? 20e-3 : -20e-3, i & 4 ? top : 0.0);
-  return std::make_shared<geometry::Mesh>(v, std::vector<std::array<int, 3>>{{4, 5, 7},
-                                                                             {4, 7, 6},
-                                                                             {0, 2, 3},
-                                                                             {0, 3, 1},
-                                                                             {0, 1, 5},
-                                                                             {0, 5, 4},
-                                                                             {2, 6, 7},
-                                                                             {2, 7, 3},
-                                                                             {0, 4, 6},
-                                                                             {0, 6, 2},
-                                                                             {1, 3, 7},
-                                                                             {1, 7, 5}});
+  return geometry::box_mesh(Vec3(x0, -20e-3, 0), Vec3(x1, 20e-3, top));
 }
 
 TEST(LaserView, SpotHasTheFootprintOfAGaussianBeamOnAPlane) {

@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "geometry/box_mesh.h"
+
 namespace understudy::renderer {
 namespace {
 
@@ -46,21 +48,7 @@ TEST(Tessellate, EncloseTheVolumeOfThePrismThatTheyAre) {
 
 TEST(Tessellate, KeepsTheEdgesOfAMeshSharpAndItsCurvesSmooth) {
   // A welded cube: averaged over vertices, its normals would lean 54 degrees.
-  std::vector<Vec3> v;
-  for (int i = 0; i < 8; ++i) v.emplace_back(i & 1, (i & 2) / 2, (i & 4) / 4);
-  const geometry::Mesh cube(v, {{4, 5, 7},
-                                {4, 7, 6},
-                                {0, 2, 3},
-                                {0, 3, 1},
-                                {0, 1, 5},
-                                {0, 5, 4},
-                                {2, 6, 7},
-                                {2, 7, 3},
-                                {0, 4, 6},
-                                {0, 6, 2},
-                                {1, 3, 7},
-                                {1, 7, 5}});
-  const Surface s = tessellate(cube);
+  const Surface s = tessellate(*geometry::box_mesh(Vec3::Zero(), Vec3::Ones()));
   EXPECT_EQ(s.creases.size(), 12u);
   expect_normals_outside(s);
   for (const auto& corners : s.corner_normals) {

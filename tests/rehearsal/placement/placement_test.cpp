@@ -13,6 +13,7 @@
 #include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 #include "geometry/mesh.h"
 #include "kinematics/chain/chain.h"
 #include "machine/description.h"
@@ -257,22 +258,8 @@ TEST_F(PlacementSearched, AFineGridOverTheTableOfAnArmFindsNothingBetter) {
 
 /// A square post in the middle of the table, 10 mm high: the heater block passes above it. [m]
 std::string post(double side) {
-  std::vector<Vec3> corners;
-  for (int k = 0; k < 8; ++k)
-    corners.push_back({(k & 1 ? 1 : -1) * side / 2, (k & 2 ? 1 : -1) * side / 2, (k & 4 ? 0.01 : 0)});
-  const geometry::Mesh mesh(corners, {{0, 2, 1},
-                                      {1, 2, 3},
-                                      {4, 5, 6},
-                                      {5, 7, 6},
-                                      {0, 1, 4},
-                                      {1, 5, 4},
-                                      {2, 6, 3},
-                                      {3, 6, 7},
-                                      {0, 4, 2},
-                                      {2, 4, 6},
-                                      {1, 3, 5},
-                                      {3, 7, 5}});
-  return geometry::write_stl(mesh, "post");
+  const Vec3 half(side / 2, side / 2, 0);
+  return geometry::write_stl(*geometry::box_mesh(-half, half + 10e-3 * Vec3::UnitZ()), "post");
 }
 
 // Both ends of the bead are 30 mm away from the post: only poses between them show it.

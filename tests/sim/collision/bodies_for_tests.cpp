@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 
 namespace understudy::sim::test {
 namespace {
@@ -49,14 +50,7 @@ AsBuilt as_designed(const machine::MachineDescription& machine) {
 }
 
 std::shared_ptr<const geometry::Mesh> box_mesh(const Vec3& centre, const Vec3& size, const Mat3& R) {
-  std::vector<Vec3> vertices;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
-    vertices.push_back(centre + R * corner.cwiseProduct(size));
-  }
-  const Triangles triangles{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return std::make_shared<geometry::Mesh>(std::move(vertices), triangles);
+  return geometry::box_mesh(-size / 2, size / 2, make_pose(R, centre));
 }
 
 std::shared_ptr<const geometry::Mesh> bottle_mesh(const Vec3& centre, double radius, double length,

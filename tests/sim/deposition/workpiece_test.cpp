@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 
 namespace understudy::sim {
 namespace {
@@ -38,27 +39,12 @@ Pose over(double x, double y, double height, double tilt = 0) {
   return make_pose(exp_rotation(Vec3(0, tilt, 0)), Vec3(x, y, height));
 }
 
-// A closed box from `lower` to `upper`.
+// A box from `lower` to `upper`; only its top when it is open.
 std::shared_ptr<const geometry::Mesh> box(const Vec3& lower, const Vec3& upper, bool open = false) {
-  std::vector<Vec3> vertices;
-  for (int i = 0; i < 8; ++i) {
-    vertices.emplace_back(i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(),
-                          i & 4 ? upper.z() : lower.z());
-  }
-  std::vector<std::array<int, 3>> triangles{{4, 5, 6}, {5, 7, 6}};
-  if (!open) {
-    triangles.insert(triangles.end(), {{0, 2, 1},
-                                       {1, 2, 3},
-                                       {0, 1, 4},
-                                       {1, 5, 4},
-                                       {2, 6, 3},
-                                       {3, 6, 7},
-                                       {0, 4, 2},
-                                       {2, 4, 6},
-                                       {1, 3, 5},
-                                       {3, 7, 5}});
-  }
-  return std::make_shared<geometry::Mesh>(std::move(vertices), std::move(triangles));
+  if (!open) return geometry::box_mesh(lower, upper);
+  const auto& all = geometry::box_triangles();
+  return std::make_shared<geometry::Mesh>(geometry::box_corners(lower, upper),
+                                          std::vector(all.begin() + 2, all.begin() + 4));
 }
 
 double gap(const Workpiece& work, const Pose& X, std::size_t before = BeadIndex::kAll) {

@@ -10,6 +10,7 @@
 
 #include "core/random.h"
 #include "core/units.h"
+#include "geometry/box_mesh.h"
 #include "vision/dot/dot.h"
 
 namespace understudy::sim {
@@ -59,21 +60,7 @@ std::shared_ptr<const geometry::Mesh> bottle() {
 
 /// A plate of 40 mm whose top is z = 0.
 std::shared_ptr<const geometry::Mesh> plate() {
-  std::vector<Vec3> v;
-  for (int i = 0; i < 8; ++i)
-    v.emplace_back(i & 1 ? 20e-3 : -20e-3, i & 2 ? 20e-3 : -20e-3, i & 4 ? 0 : -5e-3);
-  return std::make_shared<geometry::Mesh>(v, std::vector<std::array<int, 3>>{{4, 5, 7},
-                                                                             {4, 7, 6},
-                                                                             {0, 2, 3},
-                                                                             {0, 3, 1},
-                                                                             {0, 1, 5},
-                                                                             {0, 5, 4},
-                                                                             {2, 6, 7},
-                                                                             {2, 7, 3},
-                                                                             {0, 4, 6},
-                                                                             {0, 6, 2},
-                                                                             {1, 3, 7},
-                                                                             {1, 7, 5}});
+  return geometry::box_mesh(Vec3(-20e-3, -20e-3, -5e-3), Vec3(20e-3, 20e-3, 0));
 }
 
 enum class Ground { table, tilted, bottle };

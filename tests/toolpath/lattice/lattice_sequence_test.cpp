@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/random_vector.h"
 #include "core/units.h"
+#include "tests/toolpath/lattice/arm_tool.h"
 #include "toolpath/lattice/lattice_fill.h"
 #include "toolpath/lattice/lattice_json.h"
 #include "toolpath/program_builder.h"
@@ -20,35 +21,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kDiameter = 0.48e-3;
+using test::depth_in_tool;
+using test::kDiameter;
 
-// The arm's tool: nozzle, heater block, extruder.
-std::vector<geometry::Shape> tool_bodies() {
-  const auto above = [](double z) { return make_pose(Quat::Identity(), Vec3(0, 0, z)); };
-  return {{"nozzle", geometry::Frustum{0.5e-3, 3.5e-3, 12e-3}, Pose::Identity()},
-          {"heater block", geometry::Box{Vec3(16e-3, 16e-3, 10e-3)}, above(17e-3)},
-          {"extruder", geometry::Box{Vec3(44e-3, 44e-3, 70e-3)}, above(59e-3)}};
-}
-
-LatticePlan plan() {
-  LatticePlan p;
-  p.limits.tool = tool_bodies();
-  p.limits.strut_diameter = kDiameter;
-  p.limits.nozzle_flat = 1e-3;
-  p.limits.ground_gap = 0.13e-3;
-  p.limits.margin = 0.1e-3;
-  p.limits.joint = 0.5e-3 + kDiameter + 0.1e-3;
-  p.limits.lift = 2e-3;
-  p.limits.tilt_max = 60 * kDegree;
-  p.feed = 1e-3;
-  p.approach_feed = 5e-3;
-  p.approach = 2e-3;
-  p.dwell = 3;
-  p.filament_diameter = 1.75e-3;
-  p.temperature = 483.15;
-  p.fan = 1;
-  return p;
-}
+LatticePlan plan() { return test::plan(60 * kDegree); }
 
 Lattice standing(Lattice lattice, double scale = 1) {
   place_lattice(lattice, scale, Vec3(0, 0, 0.5 * kDiameter));
@@ -59,18 +35,6 @@ Lattice cubes(double x, double y, double z, double strut) {
 }
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-// Independent of the planner: a point inside the tool's bodies, grown by `margin`, as the machine file tells
-// them, the boxes turned any way about the axis.
-double depth_in_tool(const Vec3& p_T, double margin) {
-  const double rho = p_T.head<2>().norm(), z = p_T.z();
-  double deepest = -1;
-  if (z >= -margin && z <= 12e-3 + margin)
-    deepest = std::max(deepest, 0.5e-3 + 3e-3 * std::clamp(z / 12e-3, 0.0, 1.0) + margin - rho);
-  if (z >= 12e-3 - margin && z <= 22e-3 + margin) deepest = std::max(deepest, 8e-3 + margin - rho);
-  if (z >= 24e-3 - margin && z <= 94e-3 + margin) deepest = std::max(deepest, 22e-3 + margin - rho);
-  return deepest;
-}
 
 // Walks along the whole program and looks whether any point of a strut that is already printed is inside the
 // tool; points that belong to a strut of the node the tip is at are the contact by design.

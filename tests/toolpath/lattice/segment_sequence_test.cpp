@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "models/parts/block_part.h"
+#include "tests/toolpath/lattice/arm_tool.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/lattice/lattice_planner.h"
 
@@ -20,55 +21,20 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kDiameter = 0.48e-3, kStrut = 5e-3;
+using test::depth_in_tool;
+using test::kDiameter;
+
+constexpr double kStrut = 5e-3;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// The arm's tool: nozzle, heater block, extruder.
-std::vector<geometry::Shape> tool_bodies() {
-  const auto above = [](double z) { return make_pose(Quat::Identity(), Vec3(0, 0, z)); };
-  return {{"nozzle", geometry::Frustum{0.5e-3, 3.5e-3, 12e-3}, Pose::Identity()},
-          {"heater block", geometry::Box{Vec3(16e-3, 16e-3, 10e-3)}, above(17e-3)},
-          {"extruder", geometry::Box{Vec3(44e-3, 44e-3, 70e-3)}, above(59e-3)}};
-}
-
-LatticePlan plan() {
-  LatticePlan p;
-  p.limits.tool = tool_bodies();
-  p.limits.strut_diameter = kDiameter;
-  p.limits.nozzle_flat = 1e-3;
-  p.limits.ground_gap = 0.13e-3;
-  p.limits.margin = 0.1e-3;
-  p.limits.joint = 0.5e-3 + kDiameter + 0.1e-3;
-  p.limits.lift = 2e-3;
-  p.limits.tilt_max = 90 * kDegree;
-  p.feed = 1e-3;
-  p.approach_feed = 5e-3;
-  p.approach = 2e-3;
-  p.dwell = 3;
-  p.filament_diameter = 1.75e-3;
-  p.temperature = 483.15;
-  p.fan = 1;
-  return p;
-}
+LatticePlan plan() { return test::plan(90 * kDegree); }
 
 SegmentLattice lattice_of(const Cubes& cubes, double turn_deg = 0) {
   SegmentLattice segments = segment_lattice(segment_part(*block_part(cubes, 5), kStrut));
   turn(segments, turn_deg * kDegree);
   place_lattice(segments.lattice, 1, Vec3(0, 0, 0.5 * kDiameter));
   return segments;
-}
-
-// Independent of the planner: the tool's bodies as cylinders and a cone about its axis, points of struts
-// inside them.
-double depth_in_tool(const Vec3& p_T, double around) {
-  const double rho = p_T.head<2>().norm(), z = p_T.z();
-  double deepest = -1;
-  if (z >= -around && z <= 12e-3 + around)
-    deepest = std::max(deepest, 0.5e-3 + 3e-3 * std::clamp(z / 12e-3, 0.0, 1.0) + around - rho);
-  if (z >= 12e-3 - around && z <= 22e-3 + around) deepest = std::max(deepest, 8e-3 + around - rho);
-  if (z >= 24e-3 - around && z <= 94e-3 + around) deepest = std::max(deepest, 22e-3 + around - rho);
-  return deepest;
 }
 
 // Along the whole program, travel included: no point of a printed strut is in the tool but at the node that

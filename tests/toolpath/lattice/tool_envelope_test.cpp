@@ -8,17 +8,12 @@
 
 #include "core/random_vector.h"
 #include "core/units.h"
+#include "tests/toolpath/lattice/arm_tool.h"
 
 namespace understudy::toolpath {
 namespace {
 
-// The arm's tool: nozzle, heater block, extruder.
-std::vector<geometry::Shape> tool_bodies() {
-  const auto above = [](double z) { return make_pose(Quat::Identity(), Vec3(0, 0, z)); };
-  return {{"nozzle", geometry::Frustum{0.5e-3, 3.5e-3, 12e-3}, Pose::Identity()},
-          {"heater block", geometry::Box{Vec3(16e-3, 16e-3, 10e-3)}, above(17e-3)},
-          {"extruder", geometry::Box{Vec3(44e-3, 44e-3, 70e-3)}, above(59e-3)}};
-}
+using test::tool_bodies;
 
 TEST(ToolEnvelope, DistancesAreThoseOfTheConeAndTheHeater) {
   const ToolEnvelope tool(tool_bodies());
