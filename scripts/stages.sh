@@ -92,23 +92,15 @@ stage_clang() {
   changed_sources | scripts/affected_sources.py | scripts/clang_syntax.py build/clang
 }
 
-# Of one source: its findings, or how clang-tidy died.
-tidy_one='
-  lines=$(clang-tidy -p build/clang --quiet --extra-arg=-Wno-unknown-warning-option "--warnings-as-errors=*" "$1" 2>&1) && exit 0
-  status=$?
-  grep -E " (error|warning): " <<<"$lines" || echo "$PWD/$1: error: clang-tidy ended with status $status: ${lines%%$'\''\n'\''*}"'
-
 stage_tidy() {
   clang_commands
-  local sources found
+  local sources
   mapfile -t sources < <(changed_sources | scripts/affected_sources.py --one-for-each-header)
   if [ "$all" = 0 ] && [ ${#sources[@]} -gt $tidy_limit ]; then
     say "tidy: looks at $tidy_limit of ${#sources[@]} sources; ./check --all tidy looks at every one"
     sources=("${sources[@]:0:tidy_limit}")
   fi
-  found=$(printf '%s\n' "${sources[@]}" | xargs -r -P "$(nproc)" -n 1 bash -c "$tidy_one" tidy | sort -u)
-  [ -z "$found" ] || { sed "s|^$PWD/|tidy: |" <<<"$found" >&2; return 1; }
-  say "tidy: ${#sources[@]} sources, nothing found"
+  printf '%s\n' "${sources[@]}" | scripts/tidy.py build/clang
 }
 
 stage_doxygen() {

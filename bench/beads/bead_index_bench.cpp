@@ -13,6 +13,7 @@
 
 #include "bench/beads/fcl_beads.h"
 #include "bench/beads/printed_block.h"
+#include "bench/guarded.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "machine/description.h"
@@ -219,11 +220,4 @@ int run() {
 }  // namespace
 }  // namespace understudy::sim
 
-int main() {
-  try {
-    return understudy::sim::run();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bead_index_bench: {}\n", error.what());
-    return 3;
-  }
-}
+int main() { return understudy::bench::guarded("bead_index_bench", understudy::sim::run); }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/calibration/ceres_peer.h"
+#include "bench/guarded.h"
 #include "calibration/estimators/estimator.h"
 #include "calibration/pose_choice.h"
 #include "calibration/synthetic.h"
@@ -109,4 +110,4 @@ int run() {
 }  // namespace
 }  // namespace understudy::bench
 
-int main() { return understudy::bench::run(); }
+int main() { return understudy::bench::guarded("calibration_speed", understudy::bench::run); }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "bench/guarded.h"
 #include "core/random.h"
 #include "tests/kinematics/chain/arm_machines.h"
 
@@ -214,4 +215,4 @@ int run() {
 }  // namespace
 }  // namespace understudy::kinematics
 
-int main() { return understudy::kinematics::run(); }
+int main() { return understudy::bench::guarded("arm_kinematics_bench", understudy::kinematics::run); }

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "bench/guarded.h"
 #include "bench/kinematics/linuxcnc_genhexkins.h"
 #include "kinematics/hexapod/hexapod_batch.h"
 #include "kinematics/hexapod/hexapod_global_forward.h"
@@ -177,7 +178,7 @@ void show_batch(const HexapodGeometry& g, const std::vector<Case>& cases, double
   sink += found[0][0] + results[0].residual;
 }
 
-void run() {
+int run() {
   const HexapodGeometry g = nominal_g4(0);
   const std::vector<Case> cases = make_cases(g);
   std::string reason;
@@ -189,9 +190,10 @@ void run() {
   show_batch(g, cases, sink);
   compare_accuracy(g, cases, peer.get());
   if (sink == 0.125) std::printf("\n");  // keeps the work from being optimised away
+  return 0;
 }
 
 }  // namespace
 }  // namespace understudy::bench
 
-int main() { understudy::bench::run(); }
+int main() { return understudy::bench::guarded("hexapod_versus_linuxcnc", understudy::bench::run); }

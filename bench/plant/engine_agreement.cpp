@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <exception>
 
+#include "bench/guarded.h"
 #include "bench/plant/engine_comparison.h"
 #include "core/units.h"
 
@@ -47,11 +47,4 @@ int run_all() {
 }  // namespace
 }  // namespace understudy::sim
 
-int main() {
-  try {
-    return understudy::sim::run_all();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "engine_agreement: {}\n", error.what());
-    return 3;
-  }
-}
+int main() { return understudy::bench::guarded("engine_agreement", understudy::sim::run_all); }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "bench/guarded.h"
 #include "machine/description.h"
 #include "sim/plant/mujoco/mjcf.h"
 #include "sim/plant/mujoco/mujoco_engine.h"
@@ -69,7 +70,7 @@ class RawLoop {
   }
   void step(const DriveCommand& command) {
     for (std::size_t i = 0; i < kinematics::kStruts; ++i)
-      model_->eq_data[mjNEQDATA * drives_[i]] =
+      model_->eq_data[mjNEQDATA * static_cast<std::ptrdiff_t>(drives_[i])] =
           command.position[i] - start_.position[i] + lead_ * command.velocity[i];
     mj_step(model_.get(), data_.get());
     iterations_ += data_->solver_iter;
@@ -107,7 +108,8 @@ Timing measure(const char* name, const machine::MachineDescription& machine, con
   // The plant has settled when it is made; let the engine settle alike.
   DriveCommand hold = commands.front();
   hold.velocity.fill(0);
-  for (double t = 0; t < 0.2; t += options.timestep) raw.step(hold);
+  const int settling = static_cast<int>(std::ceil(0.2 / options.timestep));
+  for (int step = 0; step < settling; ++step) raw.step(hold);
 
   std::vector<double> ours, engine, ratio;
   double watched = 0;  // what observers read; keeps the compiler from dropping the reads
@@ -156,11 +158,4 @@ int run() {
 }  // namespace
 }  // namespace understudy::sim
 
-int main() {
-  try {
-    return understudy::sim::run();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "mujoco_plant_bench: {}\n", error.what());
-    return 3;
-  }
-}
+int main() { return understudy::bench::guarded("mujoco_plant_bench", understudy::sim::run); }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "bench/guarded.h"
 #include "machine/description.h"
 #include "sim/plant/quasistatic/quasistatic.h"
 
@@ -149,11 +150,4 @@ int run() {
 }  // namespace
 }  // namespace understudy::sim
 
-int main() {
-  try {
-    return understudy::sim::run();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "quasistatic_bench: {}\n", error.what());
-    return 3;
-  }
-}
+int main() { return understudy::bench::guarded("quasistatic_bench", understudy::sim::run); }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/guarded.h"
 #include "core/units.h"
 #include "rehearsal/run_twin.h"
 #include "sim/as_built/truth.h"
@@ -83,10 +84,12 @@ void run(std::size_t moves) {
 }  // namespace understudy
 
 int main(int argc, char** argv) {
-  std::vector<std::size_t> sizes;
-  for (int i = 1; i < argc; ++i) sizes.push_back(std::strtoul(argv[i], nullptr, 10));
-  if (sizes.empty()) sizes = {25'000, 50'000, 100'000};
-  std::printf("    moves  print s   wall s  us a move  cores     beads  peak MB  volume lost\n");
-  for (const std::size_t moves : sizes) understudy::run(moves);
-  return 0;
+  return understudy::bench::guarded("long_print_bench", [&] {
+    std::vector<std::size_t> sizes;
+    for (int i = 1; i < argc; ++i) sizes.push_back(std::strtoul(argv[i], nullptr, 10));
+    if (sizes.empty()) sizes = {25'000, 50'000, 100'000};
+    std::printf("    moves  print s   wall s  us a move  cores     beads  peak MB  volume lost\n");
+    for (const std::size_t moves : sizes) understudy::run(moves);
+    return 0;
+  });
 }

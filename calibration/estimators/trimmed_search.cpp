@@ -122,7 +122,7 @@ class Search {
 
 }  // namespace
 
-std::size_t start_poses(int parameters) { return static_cast<std::size_t>((parameters + 5) / 6 + 1); }
+std::size_t start_poses(int parameters) { return static_cast<std::size_t>(parameters + 5) / 6 + 1; }
 
 std::vector<bool> agreeing_poses(PoseFit& model, const TrimmedSearch& search) {
   return Search(model, search).run();

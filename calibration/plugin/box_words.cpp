@@ -70,9 +70,9 @@ Words hidden(const std::string& path, bool folder) {
 }
 
 bool in_a_path(char c) {
-  constexpr std::string_view others = "._/+@%~-";
+  constexpr std::string_view kOthers = "._/+@%~-";
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-         others.find(c) != std::string_view::npos;
+         kOthers.find(c) != std::string_view::npos;
 }
 
 /// The entry of the real /tmp that holds `path`, if there is one.

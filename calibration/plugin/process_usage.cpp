@@ -43,7 +43,8 @@ void add_children(const fs::path& process, std::vector<pid_t>& children) {
 
 ProcessUsage usage_of(pid_t process) {
   // proc(5): ppid is the fourth field and the first number here.
-  constexpr std::size_t utime = 14 - 4, cstime = 17 - 4, threads = 20 - 4, rss = 24 - 4;
+  constexpr std::size_t kUserTime = 14 - 4, kChildrenSystemTime = 17 - 4, kThreads = 20 - 4,
+                        kResident = 24 - 4;
   static const double ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
   static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   ProcessUsage sum;
@@ -52,10 +53,11 @@ ProcessUsage usage_of(pid_t process) {
     const fs::path folder = fmt::format("/proc/{}", left.back());
     left.pop_back();
     const std::vector<long long> numbers = numbers_of(folder);
-    if (numbers.size() <= rss) continue;
-    sum.tasks += static_cast<int>(numbers[threads]);
-    for (std::size_t k = utime; k <= cstime; ++k) sum.cpu_time += static_cast<double>(numbers[k]) / ticks;
-    sum.memory += static_cast<std::size_t>(numbers[rss]) * page;
+    if (numbers.size() <= kResident) continue;
+    sum.tasks += static_cast<int>(numbers[kThreads]);
+    for (std::size_t k = kUserTime; k <= kChildrenSystemTime; ++k)
+      sum.cpu_time += static_cast<double>(numbers[k]) / ticks;
+    sum.memory += static_cast<std::size_t>(numbers[kResident]) * page;
     add_children(folder, left);
   }
   return sum;

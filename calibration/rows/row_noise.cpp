@@ -11,7 +11,8 @@ namespace {
 using Eigen::Index;
 
 constexpr double kExplained = 3;  // standard deviations of chi-square, above which noise is understated
-constexpr double kLeast = 1e-9;   // [m] or [rad]: rows without any scatter still have a covariance
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kLeast = 1e-9;  // [m] or [rad]: rows without any scatter still have a covariance
 
 NoisePart position_part(RowKind kind) {
   switch (kind) {
@@ -135,7 +136,7 @@ std::array<PartScatter, kNoiseParts> scatter(const RowProblem& problem, const Ei
     PartScatter& s = found[part];
     ++s.equations;
     s.degrees += 1 - std::min(1.0, fitted[row] / (told[row] + square(std::max(kLeast, added[part]))));
-    s.told += told[row] > 0 ? square(error[row]) / told[row] : std::numeric_limits<double>::infinity();
+    s.told += told[row] > 0 ? square(error[row]) / told[row] : kNever;
     s.all_told = s.all_told && is_told[i];
   }
   return found;

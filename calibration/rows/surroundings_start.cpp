@@ -75,8 +75,7 @@ class Starter {
 
 /// Frame by frame and target by target, those that have the most rows in common with what is known first.
 void Starter::turns_by_orientations() {
-  for (bool more = true; more;) {
-    more = false;
+  while (true) {
     std::size_t best = problem_.rows.size();
     int best_known = -1;
     for (std::size_t j = 0; j < problem_.rows.size(); ++j) {
@@ -105,7 +104,6 @@ void Starter::turns_by_orientations() {
     at_.frames[f].linear() = F;
     at_.targets[t].linear() = G;
     frame_turned_[f] = target_turned_[t] = true;
-    more = true;
   }
 }
 

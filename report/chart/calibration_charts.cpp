@@ -136,7 +136,9 @@ std::string slice_chart(const TipMap::Slice& slice, double top) {
   SvgDrawing drawing(width + 70, height + 32);
   for (int row = 0; row < slice.rows; ++row)
     for (int column = 0; column < slice.columns; ++column) {
-      const double sigma = slice.sigma[static_cast<std::size_t>(row * slice.columns + column)];
+      const double sigma =
+          slice.sigma[static_cast<std::size_t>(row) * static_cast<std::size_t>(slice.columns) +
+                      static_cast<std::size_t>(column)];
       if (!std::isfinite(sigma)) continue;
       drawing.rect(
           {kLeft + column * cell, kTop + (slice.rows - 1 - row) * cell}, {cell, cell},

@@ -32,7 +32,9 @@ cv::Mat cells(const PlacementMap& map) {
   cv::Mat pixels(map.rows, map.columns, CV_8UC3);
   for (int row = 0; row < map.rows; ++row)
     for (int column = 0; column < map.columns; ++column) {
-      const Rgb c = colour_of(map.margin[static_cast<std::size_t>(row * map.columns + column)]);
+      const Rgb c =
+          colour_of(map.margin[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.columns) +
+                               static_cast<std::size_t>(column)]);
       pixels.at<cv::Vec3b>(map.rows - 1 - row, column) = {c[2], c[1], c[0]};
     }
   return pixels;
