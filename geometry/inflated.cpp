@@ -28,7 +28,7 @@ struct Corner {
 /// The shortest m with n . m = 1 for all faces there (0 for the foot's), in least squares.
 Vec3 way_out(const Corner& corner) {
   const Eigen::JacobiSVD<Mat3> svd(corner.normal_matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 s = svd.singularValues();
+  const Vec3& s = svd.singularValues();
   Vec3 m = Vec3::Zero();
   // Singular values of n n^T are squares of those of the normals.
   for (int i = 0; i < 3; ++i)

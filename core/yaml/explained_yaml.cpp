@@ -104,7 +104,7 @@ class Writer {
   Writer(const std::string& text, const std::function<std::string(const std::string&)>& mark)
       : comments_(text), mark_(mark) {}
 
-  void map(const YAML::Node& node, const Schemas& schemas, const std::string& path, std::string indent,
+  void map(const YAML::Node& node, const Schemas& schemas, const std::string& path, const std::string& indent,
            const std::string& first_indent) {
     std::string lead = first_indent;
     for (const auto& entry : node) {
