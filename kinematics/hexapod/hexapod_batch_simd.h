@@ -28,7 +28,7 @@ constexpr int kLanes = sizeof(Lane) / sizeof(double);
 template <class Lane>
 void gather(const double* poses, Platform<Lane>& X) {
   for (int l = 0; l < kLanes<Lane>; ++l) {
-    const double* pose = poses + 16 * l;
+    const double* pose = poses + 16 * static_cast<long>(l);
     for (int k = 0; k < 3; ++k) {
       for (int j = 0; j < 3; ++j) X.R[k][j][l] = pose[4 * j + k];
       X.p[k][l] = pose[12 + k];
@@ -38,9 +38,9 @@ void gather(const double* poses, Platform<Lane>& X) {
 
 template <class Lane>
 long inverse_many(const Hexapod& g, const double* poses, double* lengths, bool* ok, long count) {
-  constexpr int n = kLanes<Lane>;
+  constexpr int kCount = kLanes<Lane>;
   long done = 0;
-  for (; done + n <= count; done += n) {
+  for (; done + kCount <= count; done += kCount) {
     Platform<Lane> X;
     Struts<Lane> struts;
     gather(poses + 16 * done, X);
@@ -50,10 +50,10 @@ long inverse_many(const Hexapod& g, const double* poses, double* lengths, bool* 
       good = good & (struts.squared[i] > 0.0) & (struts.squared[i] < __builtin_inf());
     for (int i = 0; i < kStrutCount; ++i) {
       const Lane length = root(struts.squared[i]);
-      for (int l = 0; l < n; ++l)
+      for (int l = 0; l < kCount; ++l)
         if (good[l]) lengths[kStrutCount * (done + l) + i] = length[l];
     }
-    for (int l = 0; l < n; ++l) ok[done + l] = good[l] != 0;
+    for (int l = 0; l < kCount; ++l) ok[done + l] = good[l] != 0;
   }
   return done;
 }
@@ -61,16 +61,16 @@ long inverse_many(const Hexapod& g, const double* poses, double* lengths, bool* 
 template <class Lane>
 long forward_many(const Hexapod& g, const double* lengths, const double* seeds,
                   const NewtonSettings& settings, Answer* answers, long count) {
-  constexpr int n = kLanes<Lane>;
+  constexpr int kCount = kLanes<Lane>;
   long done = 0;
-  for (; done + n <= count; done += n) {
+  for (; done + kCount <= count; done += kCount) {
     Platform<Lane> seed;
     Lane target[kStrutCount];
     gather(seeds + 16 * done, seed);
-    for (int l = 0; l < n; ++l)
+    for (int l = 0; l < kCount; ++l)
       for (int i = 0; i < kStrutCount; ++i) target[i][l] = lengths[kStrutCount * (done + l) + i];
     const NewtonResult<Lane> result = newton(g, target, seed, settings);
-    for (int l = 0; l < n; ++l) {
+    for (int l = 0; l < kCount; ++l) {
       Answer& answer = answers[done + l];
       for (int k = 0; k < 3; ++k) {
         for (int j = 0; j < 3; ++j) answer.X.R[k][j] = result.X.R[k][j][l];
