@@ -19,6 +19,7 @@
 #include "rehearsal/scene.h"
 #include "report/picture/png.h"
 #include "report/picture/scene_pictures.h"
+#include "report/pose_json.h"
 #include "sim/as_built/as_built.h"
 
 namespace understudy::cli {
@@ -33,7 +34,7 @@ struct PoseCall {
   std::string machine = machine::kDefaultMachine;
   std::vector<std::string> words;  ///< of a line of a program
   std::vector<double> axes;        ///< mm or degrees
-  std::string fixture, output;
+  std::string fixture, output, json;
 };
 
 double file_unit(const Mechanism& mechanism, std::size_t axis) {
@@ -121,13 +122,15 @@ std::string picture_of(const machine::MachineDescription& machine, const rehears
   return report::encode_png(report::draw_overview(scene));
 }
 
+void check_outputs(const PoseCall& call) {
+  if (!call.output.empty() && std::filesystem::path(call.output).extension() != ".png")
+    throw InputError(fmt::format("{}: a picture ends in .png", call.output));
+  for (const std::string& file : {call.output, call.json})
+    if (!file.empty()) check_writable(file);
+}
+
 int run_pose(const PoseCall& call) {
-  const std::filesystem::path output = call.output;
-  if (!call.output.empty()) {
-    if (output.extension() != ".png")
-      throw InputError(fmt::format("{}: a picture ends in .png", call.output));
-    check_writable(output);
-  }
+  check_outputs(call);
   const auto machine = machine::load_machine(call.machine);
   const auto mechanism = machine.make_mechanism();
   std::shared_ptr<const geometry::Mesh> part;
@@ -136,14 +139,16 @@ int run_pose(const PoseCall& call) {
       call.axes.empty()
           ? rehearsal::look_at_words(machine, fmt::format("{}", fmt::join(call.words, " ")), part)
           : rehearsal::look_at_axes(machine, axes_of(call, *mechanism), part);
-  if (call.output.empty()) {
-    print_look(look, machine.name, *mechanism);
-  } else {
-    StagedFile picture(output, picture_of(machine, look, part));
-    picture.commit();
-    print_look(look, machine.name, *mechanism);
-    fmt::print("{}\n", call.output);
-  }
+  std::vector<std::unique_ptr<StagedFile>> files;
+  if (!call.output.empty())
+    files.push_back(std::make_unique<StagedFile>(call.output, picture_of(machine, look, part)));
+  if (!call.json.empty())
+    files.push_back(std::make_unique<StagedFile>(
+        call.json, report::pose_json(look, *mechanism, call.machine, command_line())));
+  for (const auto& file : files) file->commit();
+  print_look(look, machine.name, *mechanism);
+  for (const std::string& file : {call.output, call.json})
+    if (!file.empty()) fmt::print("{}\n", file);
   return look.good() ? kGood : kNo;
 }
 
@@ -165,6 +170,7 @@ void add_pose(CLI::App& app, Action& action) {
   command->add_option("--fixture", call->fixture,
                       "the inserted part: an STL in mm, or a name under models/parts");
   command->add_option("-o,--output", call->output, "IMAGE.png of the machine in this pose");
+  command->add_option("--json", call->json, "FILE.json of the answer");
   command->footer("Exit status 1: a limit is broken, bodies touch, or the pose cannot be reached.");
   command->callback([=, &action] { action = [=] { return run_pose(*call); }; });
 }
