@@ -22,7 +22,7 @@ double file_unit(const Mechanism& mechanism, int axis) {
 
 Json vector_value(const Vec3& v, double unit) {
   Json value = Json::array();
-  for (const double x : v) value.push_back(stable_number(x / unit, "pose", 9));
+  for (const double x : v) value.push_back(stable_number(std::round(1e9 * x / unit) / 1e9, "pose", 9));
   return value;
 }
 

@@ -36,6 +36,7 @@ TEST(Pose, WritesTheAnswerAsJson) {
   const auto answer = nlohmann::json::parse(read_file(file));
   EXPECT_EQ(answer.at("good"), true);
   EXPECT_EQ(answer.at("tip_mm"), nlohmann::json({10.0, 0.0, 40.0}));
+  EXPECT_EQ(answer.at("tool_axis").at(0), 0.0) << "no digits of the last bit";
   // B tilts about y and C turns the tilted axis by 90 degrees: (0, sin 15, cos 15).
   EXPECT_NEAR(answer.at("tool_axis").at(1), 0.258819045, 1e-9);
   EXPECT_EQ(answer.at("axes").at(3).at("axis"), "b");
