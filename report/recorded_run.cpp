@@ -39,11 +39,13 @@ RecordedRun read_recorded_run(const fs::path& folder) {
     if (!value) throw refuse(fmt::format("provenance.{} is missing: an older version wrote it", key));
     return *value;
   };
-  RecordedRun run{word("command"), word("version"), word("machine_sha256"), word("program_sha256"),
-                  word("inputs_sha256")};
-  run.fixture_sha256 = text_at(*provenance, "fixture_sha256").value_or("");
-  run.go = text_at(summary, "verdict") == "go";
-  return run;
+  return {word("command"),
+          word("version"),
+          word("machine_sha256"),
+          word("program_sha256"),
+          word("inputs_sha256"),
+          text_at(*provenance, "fixture_sha256").value_or(""),
+          text_at(summary, "verdict") == "go"};
 }
 
 }  // namespace understudy::report
