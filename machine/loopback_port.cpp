@@ -1,6 +1,7 @@
 #include "machine/loopback_port.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace understudy::machine {
@@ -51,6 +52,17 @@ void LoopbackPort::raise(Fault fault) {
   fault_ = fault;
 }
 
+/// The time that the clock shows when it is asked to run until `time`: at most half a step before it.
+double LoopbackPort::on_clock(double time) const {
+  const double step = options_.clock_step;
+  if (!(step > 0)) return time;
+  double steps = std::ceil(time_ / step - 0.5);
+  const double end = time - 0.5 * step;
+  steps = std::max(steps, std::floor(end / step) - 1);
+  while (steps * step < end) ++steps;
+  return std::max(time_, steps * step);
+}
+
 void LoopbackPort::execute_until(double time) {
   while (time_ < time && fault_ == Fault::none) {
     const double next = queue_.rate_changes() ? std::min(time, time_ + kStep) : time;
@@ -74,7 +86,7 @@ void LoopbackPort::execute_until(double time) {
 Status LoopbackPort::wait_until(double time) {
   if (fault_ == Fault::none && time > time_) {
     const bool fault_comes = coming_fault_ != Fault::none && coming_fault_time_ <= time;
-    execute_until(fault_comes ? std::max(time_, coming_fault_time_) : time);
+    execute_until(fault_comes ? std::max(time_, coming_fault_time_) : on_clock(time));
     if (fault_comes && fault_ == Fault::none) {
       raise(coming_fault_);
       coming_fault_ = Fault::none;

@@ -19,6 +19,7 @@ class LoopbackPort : public MachinePort {
     std::vector<kinematics::AxisRange> ranges;  ///< one an axis; empty: without end
     double frame_time = 0.02;                   ///< [s], exposure plus transfer
     bool history = true;                        ///< keep every executed setpoint, which allocates
+    double clock_step = 0;                      ///< [s], grain of the clock, as a twin's; 0: none
   };
   /// Fills the image for the axis positions at a time; false: no frame.
   using FrameSource = std::function<bool(const AxisState&, const Region&, Image&)>;
@@ -43,6 +44,7 @@ class LoopbackPort : public MachinePort {
   const std::vector<Setpoint>& history() const { return history_; }
 
  private:
+  double on_clock(double time) const;
   void execute_until(double time);
   void raise(Fault fault);
 

@@ -140,7 +140,8 @@ constexpr const char* kTexts[] = {"verdict",
                                   "provenance.as_built",
                                   "provenance.machine_sha256",
                                   "provenance.program_sha256",
-                                  "provenance.inputs_sha256"};
+                                  "provenance.inputs_sha256",
+                                  "provenance.fixture_sha256"};
 
 /// How many there are of each kind, and the first line that one of the kind names.
 void count_findings(const rehearsal::Record& record, const std::set<std::string>& sections,

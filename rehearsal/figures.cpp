@@ -188,6 +188,7 @@ void add(const Provenance& provenance, Figures& to) {
     to.text("machine_before_sha256", provenance.machine_before_sha256);
   to.text("program_sha256", provenance.program_sha256);
   if (!provenance.inputs_sha256.empty()) to.text("inputs_sha256", provenance.inputs_sha256);
+  if (!provenance.fixture_sha256.empty()) to.text("fixture_sha256", provenance.fixture_sha256);
   to.count("seed", provenance.seed);
   to.text("as_built", provenance.as_built);
   to.texts("faults", provenance.faults);

@@ -51,17 +51,6 @@ void mend_filament(const RehearsalRequest& request, TwinSetup& setup, Mended& me
 
 }  // namespace
 
-control::GapControl gap_control_of(const std::string& word, const machine::MachineDescription& machine) {
-  if (word == "off" || (word.empty() && !machine.has_microscope)) return control::GapControl::off;
-  if (word.empty() || word == "start" || word == "continuous") {
-    if (machine.has_microscope)
-      return word == "continuous" ? control::GapControl::continuous : control::GapControl::start;
-    throw InputError(
-        fmt::format("gap control '{}' needs a laser and a microscope; {} has none: off", word, machine.name));
-  }
-  throw InputError("gap control '" + word + "': one of off, start, continuous");
-}
-
 TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   const auto& engines = engine_names();
   if (std::find(engines.begin(), engines.end(), request.engine) == engines.end())

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "control/gap_control_word.h"
 #include "control/print.h"
 #include "rehearsal/findings/finding.h"
 #include "rehearsal/request/request.h"
@@ -22,8 +23,7 @@ struct Mended {
   toolpath::FeatureTypes features;               // likewise
 };
 
-/// Throws InputError for a word that is none, and for control without a microscope.
-control::GapControl gap_control_of(const std::string& word, const machine::MachineDescription& machine);
+using control::gap_control_of;
 
 /// Reads all files of the request. Throws InputError for what cannot be rehearsed; what can be left out of
 /// the program is told in `mended`.

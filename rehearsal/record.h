@@ -141,7 +141,8 @@ struct Provenance {
   std::string as_built, command;
   std::vector<std::string> faults = {};  ///< what was made to go wrong, in words
   std::string machine_before_sha256 = {};
-  std::string inputs_sha256 = {};  ///< of all inputs (input_digest.h)
+  std::string inputs_sha256 = {};   ///< of all inputs (input_digest.h)
+  std::string fixture_sha256 = {};  ///< of the part's file; empty: without one
   LibraryVersions libraries = {};  ///< that may have a part in the result
 };
 

@@ -8,11 +8,14 @@
 #include <fmt/format.h>
 
 #include "core/assert.h"
+#include "core/digest.h"
 #include "core/error.h"
+#include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "machine/fixture_file.h"
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings/accuracy_findings.h"
 #include "rehearsal/findings/feature_findings.h"
@@ -68,6 +71,8 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
   record.provenance = {kVersion,     setup.machine.sha256,  setup.program.sha256,
                        request.seed, setup.as_built.source, request.command};
   record.provenance.inputs_sha256 = inputs_sha256(request, setup.program.sha256);
+  if (!request.fixture.empty())
+    record.provenance.fixture_sha256 = sha256_hex(read_file(machine::find_fixture(request.fixture)));
   record.provenance.libraries = library_versions();
   for (const sim::FaultEvent& event : setup.faults)
     record.provenance.faults.push_back(describe(event, setup.machine));
@@ -87,7 +92,7 @@ struct Runs {
 Runs run_all(const TwinSetup& setup, const RunOptions& options, bool compare, const TwinSetup* before,
              const Progress& progress) {
   Runs runs;
-  const RunOptions open_loop{control::GapControl::off, false, options.beyond_limits};
+  const RunOptions open_loop{control::GapControl::off, false, options.beyond_limits, {}};
   std::vector<std::function<void()>> jobs{[&] { runs.main = run_twin(setup, options, progress); }};
   if (compare && options.gap_control != control::GapControl::off)
     jobs.emplace_back([&] { runs.open_loop = run_twin(setup, open_loop, {}); });
@@ -237,7 +242,7 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
   record.findings = check_limits(request, setup, mended);
   for (const Finding& finding : machine_findings(machine::load_machine_notes(request.machine)))
     record.findings.push_back(finding);
-  const RunOptions options{mode, true, any_error(record.findings)};
+  const RunOptions options{mode, true, any_error(record.findings), request.record};
   if (options.beyond_limits) tell_how_simulated(record.findings);
   record.findings.insert(record.findings.begin(), mended.findings.begin(), mended.findings.end());
   record.passed_over = mended.passed_over;

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "machine/record/recording_port.h"
 #include "sim/deposition/bead_temperature.h"
 #include "sim/plant/drive_errors.h"
 #include "sim/plant/plant.h"
@@ -229,6 +230,14 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
                           {&watch.thread}, twin);
 
+  std::optional<machine::RecordWriter> writer;
+  std::optional<machine::RecordingPort> recorded;
+  if (!options.record.empty()) {
+    writer.emplace(options.record, port.axis_count());
+    recorded.emplace(port, *writer);
+  }
+  machine::MachinePort& seen = recorded ? static_cast<machine::MachinePort&>(*recorded) : port;
+
   control::PrintOptions print_options;
   print_options.gap_control = options.gap_control;
   if (options.beyond_limits) print_options.poses = control::PoseCheck::solvable;
@@ -242,14 +251,14 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
       const auto found = truth.find(exposure);
       return found == truth.end() ? std::nullopt : std::optional(found->second.gap);
     };
-    run.registration = run_registration(*setup.registration, setup.program, setup.machine, port, true_gap,
+    run.registration = run_registration(*setup.registration, setup.program, setup.machine, seen, true_gap,
                                         !options.beyond_limits);
     program = &run.registration->program;
     print_options.part = run.registration->part.get();
   }
   run.result = run.registration && !run.registration->good()
                    ? not_printed(*run.registration)
-                   : control::print(*program, setup.machine, port, print_options, &relay);
+                   : control::print(*program, setup.machine, seen, print_options, &relay);
   watch.thread.drain();
   if (!port.engine_failure().empty()) throw MachineError(port.engine_failure());
   watch.deposition.finish();

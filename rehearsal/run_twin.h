@@ -83,6 +83,7 @@ struct RunOptions {
   bool watch_collisions = true;
   /// The program breaks limits of axes or joints: an axis stays at the end of its range, a joint goes on.
   bool beyond_limits = false;
+  std::string record;  ///< file of what goes through the port (docs/port-record.md); empty: none
 };
 
 /// Words of `--engine` and of scenarios.

@@ -1,4 +1,4 @@
-// What a folder of results says of its own making, and whether another one holds the same.
+// Whether two folders of results hold the same.
 #pragma once
 
 #include <filesystem>
@@ -6,14 +6,6 @@
 #include <vector>
 
 namespace understudy::report {
-
-/// From `provenance` of a summary.json.
-struct RecordedRun {
-  std::string command, version, machine_sha256, program_sha256, inputs_sha256;
-};
-
-/// Throws InputError where the folder has no summary.json of a rehearsal.
-RecordedRun read_recorded_run(const std::filesystem::path& folder);
 
 struct ResultsDifference {
   std::string file;  ///< relative to both folders

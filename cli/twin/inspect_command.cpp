@@ -11,9 +11,9 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "cli/dialect_options.h"
 #include "cli/machine_option.h"
 #include "cli/twin/inspect_robot.h"
-#include "cli/twin/rehearse_options.h"
 #include "core/error.h"
 #include "core/quantile.h"
 #include "core/units.h"

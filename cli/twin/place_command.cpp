@@ -7,9 +7,9 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "cli/dialect_options.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
-#include "cli/twin/rehearse_options.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/staged_file.h"

@@ -22,12 +22,6 @@ struct RehearseOptions {
 /// `options` must outlive `command`.
 void add_rehearse_options(CLI::App& command, RehearseOptions& options);
 
-/// --temperature, --nozzle and --layer, for programs that do not say them.
-void add_process_options(CLI::App& command, rehearsal::DialectRequest& dialect);
-
-/// Of those, how a program is read and where it stands.
-void add_dialect_options(CLI::App& command, rehearsal::DialectRequest& dialect);
-
 /// What a command line asks for, `understudy rehearse ...` word by word as command_line() joined them.
 /// Throws InputError for any other command and for words that are not understood.
 RehearseOptions read_rehearse_command(const std::string& command_line);

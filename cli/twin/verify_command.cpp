@@ -16,6 +16,7 @@
 #include "core/version.h"
 #include "machine/description.h"
 #include "rehearsal/request/input_digest.h"
+#include "report/recorded_run.h"
 #include "report/verification.h"
 
 namespace understudy::cli {
@@ -46,6 +47,7 @@ int verify(const std::string& folder) {
   RehearseOptions options = read_rehearse_command(recorded.command);
   options.request = options.with_faults();
   options.request.command = recorded.command;
+  options.request.record.clear();  // the user's: not to be written again
   if (const std::string why = changed_inputs(options.request, recorded); !why.empty())
     return differs(folder, why);
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "control/program/rotary_words.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
@@ -17,7 +18,6 @@
 #include "rehearsal/inspection/extruder_letter.h"
 #include "rehearsal/inspection/inspect_robot.h"
 #include "rehearsal/inspection/place_on_table.h"
-#include "rehearsal/program/rotary_words.h"
 #include "rehearsal/program/told_process.h"
 #include "toolpath/inspection/feature_types.h"
 
@@ -124,7 +124,7 @@ class Inspector {
     std::optional<std::pair<double, std::string>> best;
     for (const std::string& name : machine::machine_names()) {
       const machine::MachineDescription other = machine::load_machine(name);
-      const auto words = rotary_words(other);
+      const auto words = control::rotary_words(other);
       if (!words || words->letters.size() != turning.size() || !all_among(turning, words->letters)) continue;
       result_.machines_with_words.push_back(name);
       take(other);
@@ -147,7 +147,7 @@ class Inspector {
     machine_ = machine;
     result_.machine_nozzle = machine_.tool.nozzle_diameter;
     options_.X_WT_home = machine_.X_WB * machine_.X_BT_home;
-    options_.rotary = rotary_words(machine_);
+    options_.rotary = control::rotary_words(machine_);
     options_.extruder_letter = machine_.dialect.extruder_letter;
   }
 

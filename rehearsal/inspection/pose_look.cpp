@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "control/program/gcode_options.h"
 #include "core/error.h"
 #include "core/random.h"
-#include "rehearsal/program/program_reading.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/body_set.h"
 
@@ -103,8 +103,8 @@ bool PoseLook::good() const {
 PoseLook look_at_words(const machine::MachineDescription& machine, const std::string& words,
                        std::shared_ptr<const geometry::Mesh> part) {
   const auto mechanism = machine.make_mechanism();
-  const toolpath::Program program =
-      toolpath::parse_gcode(words.empty() ? "G28" : words + " G0", "pose", gcode_options({}, machine));
+  const toolpath::Program program = toolpath::parse_gcode(words.empty() ? "G28" : words + " G0", "pose",
+                                                          control::gcode_options({}, machine));
   const toolpath::Step& step = program.steps.back();
   PoseLook look;
   look.X_WT = step.X_WT;

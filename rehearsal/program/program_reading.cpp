@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "control/program/gcode_options.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "rehearsal/program/readings.h"
 #include "rehearsal/program/robot_reading.h"
-#include "rehearsal/program/rotary_words.h"
 #include "toolpath/gcode/turned_program.h"
 #include "toolpath/inspection/program_summary.h"
 
@@ -66,27 +66,6 @@ Finding finding_of(const toolpath::PassedOver& passed) {
 
 }  // namespace
 
-toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
-                                     const machine::MachineDescription& machine) {
-  toolpath::GcodeOptions gcode;
-  gcode.X_WT_home = machine.X_WB * machine.X_BT_home;
-  gcode.rotary = rotary_words(machine);
-  const std::string& extruder = dialect.extruder_letter;
-  if (extruder.size() > 1) throw InputError("extruder letter '" + extruder + "': one letter, such as E");
-  gcode.extruder_letter = extruder.empty() ? machine.dialect.extruder_letter : extruder[0];
-  for (int i = 0; i < 3; ++i) gcode.offset_W[i] = from_mm(dialect.place_mm[static_cast<std::size_t>(i)]);
-  gcode.b_sign = dialect.b_sign;
-  gcode.c_sign = dialect.c_sign;
-  gcode.ignored = dialect.ignored;
-  if (!dialect.macros.empty())
-    gcode.macros = std::make_shared<toolpath::GcodeMacros>(toolpath::GcodeMacros::read(dialect.macros));
-  if (dialect.coordinates.empty()) return gcode;
-  if (!gcode.rotary)
-    throw InputError("coordinates '" + dialect.coordinates + "': " + machine.name + " has no rotary words");
-  set_coordinates(dialect.coordinates, *gcode.rotary);
-  return gcode;
-}
-
 ReadProgram read_program(const RehearsalRequest& request, const machine::MachineDescription& machine) {
   ReadProgram read;
   const std::string text = read_file(request.program);
@@ -102,13 +81,7 @@ ReadProgram read_program(const RehearsalRequest& request, const machine::Machine
   }
   if (request.dialect.strict && !read.passed_over.empty())
     toolpath::refuse_passed_over(read.program.file, read.passed_over);
-  if (!request.dialect.temperature_c) return read;
-  toolpath::Step heat;
-  heat.kind = toolpath::StepKind::temperature;
-  heat.X_WT = machine.X_WB * machine.X_BT_home;
-  heat.temperature = *request.dialect.temperature_c + kCelsiusZero;
-  heat.wait = true;
-  read.program.steps.insert(read.program.steps.begin(), heat);
+  control::heat_first(request.dialect, machine, read.program);
   return read;
 }
 

@@ -14,10 +14,6 @@
 
 namespace understudy::rehearsal {
 
-/// Throws InputError for words of the dialect that are none, or not for this machine.
-toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
-                                     const machine::MachineDescription& machine);
-
 struct ReadProgram {
   toolpath::Program program;
   bool of_robot = false;                          ///< KRL or RAPID

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "control/program/rotary_words.h"
 #include "core/error.h"
 #include "core/quantile.h"
 #include "core/units.h"
-#include "rehearsal/program/rotary_words.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -126,7 +126,7 @@ std::string described(const RotaryReading& reading) {
 
 GcodeOptions read_as(const RotaryReading& reading, const GcodeOptions& options) {
   GcodeOptions as = options;
-  set_coordinates(reading.coordinates, *as.rotary);
+  control::set_coordinates(reading.coordinates, *as.rotary);
   as.b_sign = reading.b_sign;
   as.c_sign = reading.c_sign;
   return as;

@@ -7,38 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "control/program/dialect_request.h"
 #include "machine/default_machine.h"
 #include "rehearsal/request/fault_request.h"
 #include "sim/as_built/truth_seeds.h"
 
 namespace understudy::rehearsal {
 
-/// How a robot's program, KRL or RAPID, is read (docs/robot-programs.md).
-struct RobotProgramRequest {
-  std::vector<std::string> signals;      ///< outputs that feed filament; empty: those that the program sets
-  std::array<double, 2> bead_mm{0, 0};   ///< width and height of what a signal above 0 lays; 0: not told
-  std::optional<double> flow_mm3_per_s;  ///< that a signal of 1 feeds
-  std::string tool_points;  ///< axis of its tool out of the nozzle: z, -x...; empty: told by the path
-};
-
-/// How a program of another machine is read (docs/gcode.md).
-struct DialectRequest {
-  std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
-  bool place_auto = false;                  ///< the place is found (rehearsal/placement), `place_mm` unused
-  /// The program turned about z of W through its origin, and the tool about its own axis besides
-  /// (toolpath/gcode/turned_program.h).
-  double turn_deg = 0, spin_deg = 0;
-  std::string extruder_letter;          ///< E, A...; empty: the machine's
-  int b_sign = 1, c_sign = 1;           ///< -1: the program counts that axis the other way round
-  std::vector<std::string> ignored;     ///< commands passed over with their lines, upper case
-  std::string macros;                   ///< path of a Klipper configuration; empty: none
-  std::optional<double> temperature_c;  ///< of the nozzle from the start on
-  std::optional<double> nozzle_mm;      ///< bore that is mounted in place of the machine file's
-  std::optional<double> layer_mm;       ///< height of layers where the program's path does not tell
-  bool strict = false;      ///< lines that cannot be read or carried out are refused, not passed over
-  std::string coordinates;  ///< of rotary programs: tip, machine, crossing; empty: the machine's
-  RobotProgramRequest robot;
-};
+using control::DialectRequest;
+using control::RobotProgramRequest;
 
 /// What is asked about the surface as printed (docs/surface.md).
 struct SurfaceRequest {
@@ -79,7 +56,8 @@ struct RehearsalRequest {
   DialectRequest dialect;
   SurfaceRequest surface;
   RegistrationRequest registration;
-  std::string command;      ///< for the record: how a user repeats this
+  std::string record;   ///< file of what goes through the port to write (docs/port-record.md); empty: none
+  std::string command;  ///< for the record: how a user repeats this
   double max_time = 86400;  ///< [s], of the program; what would take longer is refused
   bool keep_scene = true;   ///< keep what pictures are drawn from; sweeps leave it out
   bool compare_without_gap_control =

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "control/motion/constraint_check.h"
+#include "control/program/gcode_options.h"
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
@@ -13,7 +14,6 @@
 #include "machine/file/gap_sensor_section.h"
 #include "machine/file/section_text.h"
 #include "machine/fixture_file.h"
-#include "rehearsal/program/program_reading.h"
 #include "studies/faults/drawn_print.h"
 #include "studies/gap/lab_machine.h"
 #include "toolpath/gcode/gcode.h"
@@ -60,7 +60,7 @@ bool draw_once(Random& random, const fs::path& folder, PoolPrint& print) {
                  {print.machine.dialect.extruder_letter, print.machine.dialect.commands_for_tips()}));
   const auto part =
       print.fixture.empty() ? nullptr : geometry::read_stl(machine::find_fixture(print.fixture));
-  const toolpath::GcodeOptions gcode = rehearsal::gcode_options({}, print.machine);
+  const toolpath::GcodeOptions gcode = control::gcode_options({}, print.machine);
   print.intended.emplace(toolpath::read_gcode(folder / print.program, gcode), part.get(),
                          tolerances_of(print.machine.file.string()));
   return true;

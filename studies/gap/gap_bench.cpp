@@ -5,13 +5,13 @@
 
 #include <Eigen/LU>
 
+#include "control/program/rotary_words.h"
 #include "core/error.h"
 #include "core/random_vector.h"
 #include "core/units.h"
 #include "geometry/box_mesh.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/fixture.h"
-#include "rehearsal/program/rotary_words.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::studies {
@@ -81,7 +81,7 @@ std::vector<GapSurface> gap_surfaces(const machine::MachineDescription& machine,
   bottle.part = rehearsal::read_fixture(machine::find_fixture("bottle"), machine);
   toolpath::GcodeOptions gcode;
   gcode.X_WT_home = X_WT_home;
-  gcode.rotary = rehearsal::rotary_words(machine);
+  gcode.rotary = control::rotary_words(machine);
   bottle.program = toolpath::read_gcode(program, gcode);
   const auto first = std::find_if(bottle.program.steps.begin(), bottle.program.steps.end(),
                                   [](const Step& s) { return s.kind == StepKind::print; });

@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "control/program/rotary_words.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
-#include "rehearsal/program/rotary_words.h"
 #include "rehearsal/rehearse.h"
 
 namespace understudy::rehearsal {
@@ -128,7 +128,7 @@ TEST_F(RotaryRehearsal, TheAxesEndWhereTheWordsOfMachineCoordinatesSay) {
 TEST_F(RotaryRehearsal, MachineCoordinatesArePosesOfTheChainsAxes) {
   toolpath::GcodeOptions options;
   options.X_WT_home = machine_.X_WB * machine_.X_BT_home;
-  options.rotary = rotary_words(machine_);
+  options.rotary = control::rotary_words(machine_);
   ASSERT_TRUE(options.rotary);
   const auto steps =
       toolpath::parse_gcode("G49\nG0 X10 Y-5 Z60 B30 C100\nG43.4\nG49\nX11\n", "p.gcode", options).steps;
@@ -178,7 +178,7 @@ TEST_F(RotaryRehearsal, AListedChainRunsByTheWordsOfItsFile) {
 
 TEST_F(RotaryRehearsal, OtherMachinesHaveNoRotaryWords) {
   for (const std::string name : {"hexapod", "arm"}) {
-    EXPECT_FALSE(rotary_words(machine::load_machine(name)).has_value()) << name;
+    EXPECT_FALSE(control::rotary_words(machine::load_machine(name)).has_value()) << name;
     try {
       run("G0 X1 B5\n", name);
       ADD_FAILURE() << "accepted";

@@ -1,3 +1,4 @@
+#include "report/recorded_run.h"
 #include "report/verification.h"
 
 #include <filesystem>

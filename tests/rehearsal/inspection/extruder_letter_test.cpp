@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "control/program/rotary_words.h"
 #include "machine/description.h"
-#include "rehearsal/program/rotary_words.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -23,7 +23,7 @@ std::string rounds(const Words& words) {
 
 std::optional<char> letter_of(const std::string& text, const std::string& machine) {
   toolpath::GcodeOptions options;
-  options.rotary = rotary_words(machine::load_machine(machine));
+  options.rotary = control::rotary_words(machine::load_machine(machine));
   return extruder_letter_of(text, "p.gcode", options, 1.75e-3);
 }
 

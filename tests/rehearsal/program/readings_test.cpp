@@ -10,10 +10,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "control/program/gcode_options.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "rehearsal/program/program_reading.h"
 #include "rehearsal/rehearse.h"
 #include "tests/temporary_folder.h"
 
@@ -48,7 +48,7 @@ std::string ring(const std::string& machine) {
   return text;
 }
 
-toolpath::GcodeOptions five_axis() { return gcode_options({}, machine::load_machine("five-axis")); }
+toolpath::GcodeOptions five_axis() { return control::gcode_options({}, machine::load_machine("five-axis")); }
 
 TEST(Readings, TheKindOfMachineAndItsPivotAreFoundFromThePath) {
   for (const std::string machine : {"tip", "crossing", "head", "double-head"}) {

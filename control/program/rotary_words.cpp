@@ -1,4 +1,4 @@
-#include "rehearsal/program/rotary_words.h"
+#include "control/program/rotary_words.h"
 
 #include <charconv>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/units.h"
 
-namespace understudy::rehearsal {
+namespace understudy::control {
 namespace {
 
 using kinematics::SolveStatus;
@@ -109,4 +109,4 @@ std::optional<toolpath::RotaryWords> rotary_words(const machine::MachineDescript
   return rotary;
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::control

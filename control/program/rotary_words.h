@@ -7,7 +7,7 @@
 #include "machine/description.h"
 #include "toolpath/gcode/gcode.h"
 
-namespace understudy::rehearsal {
+namespace understudy::control {
 
 /// Sets what X Y Z mean beside rotary words: `tip`, `machine`, `crossing`; `head:60`, the slides of a machine
 /// whose first word tilts its head about a pivot 60 mm above the tip, over a table that the second turns; or
@@ -18,4 +18,4 @@ void set_coordinates(const std::string& word, toolpath::RotaryWords& rotary);
 /// W I J K.
 std::optional<toolpath::RotaryWords> rotary_words(const machine::MachineDescription& machine);
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::control

@@ -1,0 +1,195 @@
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "cli/print_request.h"
+#include "cli/progress.h"
+#include "control/preflight.h"
+#include "core/counted_interrupts.h"
+#include "core/error.h"
+#include "core/units.h"
+#include "core/version.h"
+#include "drivers/driver_port.h"
+#include "drivers/emergency_port.h"
+#include "drivers/open_port.h"
+#include "machine/record/recording_port.h"
+
+namespace understudy::cli {
+namespace {
+namespace fs = std::filesystem;
+
+struct DriveOptions {
+  PrintRequest print;
+  std::string port, rehearsal, record = "drive.record";
+  bool without_rehearsal = false;
+};
+
+constexpr double kToRest = 60;      // [s], for a machine that brakes
+constexpr double kPoll = 0.02;      // [s]
+constexpr double kObedience = 5.0;  // [s], for heater and fan
+
+/// Everything between the print loop and the machine, outermost last.
+class Driven {
+ public:
+  Driven(const DriveOptions& options, const PreparedPrint& print)
+      : port_(drivers::open_port(options.port, print.machine)),
+        emergency_(*port_, [] { return CountedInterrupts::count() > 1; }),
+        writer_(options.record, port_->axis_count()),
+        recorded_(emergency_, writer_) {
+    note(fmt::format("version {}", kVersion));
+    note("program " + options.print.program);
+    note("program_sha256 " + print.program.sha256);
+    note("machine_sha256 " + print.machine.sha256);
+    if (!print.fixture_sha256.empty()) note("fixture_sha256 " + print.fixture_sha256);
+    note("port " + options.port);
+    note("command " + command_line());
+  }
+
+  machine::MachinePort& port() { return recorded_; }
+  void note(const std::string& text) {
+    writer_.note(text);
+    writer_.flush();
+  }
+  /// What the machine itself says of its fault; empty: nothing.
+  std::string fault_text() const {
+    const auto* driver = dynamic_cast<const drivers::DriverPort*>(port_.get());
+    return driver ? driver->fault_text() : "";
+  }
+  bool emergency() const { return emergency_.stopped(); }
+
+  /// The axes rest or a fault stands, and heater and fan are off.
+  void come_to_rest() {
+    const double deadline = recorded_.now() + kToRest;
+    while (recorded_.state().moving && recorded_.now() < deadline)
+      if (recorded_.wait_until(recorded_.now() + kPoll) != machine::Status::ok) break;
+    static_cast<void>(recorded_.set_outputs({}, recorded_.now() + kObedience));
+    // What is said last must have reached the machine.
+    static_cast<void>(recorded_.wait_until(recorded_.now() + kPoll));
+  }
+
+ private:
+  std::unique_ptr<machine::MachinePort> port_;
+  drivers::EmergencyPort emergency_;
+  machine::RecordWriter writer_;
+  machine::RecordingPort recorded_;
+};
+
+class DriveProgress : public control::PrintObserver {
+ public:
+  void progress(std::size_t done, std::size_t total, double) override {
+    line_.show(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total)), "printing");
+  }
+
+ private:
+  ProgressLine line_;
+};
+
+void check_before(const PreparedPrint& print, Driven& driven) {
+  const auto checks = control::preflight(print.program, print.machine, driven.port(), print.gap_control);
+  std::string refused;
+  for (const control::PreflightCheck& check : checks) {
+    fmt::print("  {:9} {:5} {}\n", check.name, check.good ? "good" : "BAD", check.text);
+    if (!check.good && refused.empty()) refused = check.name + ": " + check.text;
+  }
+  if (refused.empty()) return;
+  driven.note("stopped before anything moved: " + refused);
+  throw MachineError("nothing has moved: " + refused);
+}
+
+[[noreturn]] void stopped(Driven& driven, const std::string& why) {
+  driven.come_to_rest();
+  const std::string text = driven.fault_text();
+  const std::string said = text.empty() ? why : fmt::format("{}: {}", why, text);
+  driven.note("stopped " + said);
+  throw MachineError(said + "; heater and fan are off");
+}
+
+control::PrintResult print_on(const PreparedPrint& print, Driven& driven) {
+  control::PrintOptions options;
+  options.gap_control = print.gap_control;
+  options.part = print.part.get();
+  DriveProgress progress;
+  try {
+    return control::print(print.program, print.machine, driven.port(), options, &progress);
+  } catch (const Interrupted&) {
+    driven.come_to_rest();
+    stopped(driven, driven.emergency() ? "stopped as an emergency by a second signal"
+                                       : "stopped under control by a signal");
+  }
+}
+
+int drive(const DriveOptions& options) {
+  PrintRequest asked = options.print;
+  std::optional<report::RecordedRun> run;
+  PrintRequest rehearsed;
+  if (!options.without_rehearsal) {
+    run = report::read_recorded_run(options.rehearsal);
+    rehearsed = rehearsed_request(run->command);
+    asked = given_over(rehearsed, command_line());
+  }
+  const PreparedPrint print = prepare_print(asked);
+  if (run) require_rehearsal(options.rehearsal, *run, rehearsed, asked, print);
+
+  const CountedInterrupts interrupts;
+  Driven driven(options, print);
+  driven.note(run ? "rehearsal " + run->inputs_sha256 : "without a rehearsal");
+  check_before(print, driven);
+  const control::PrintResult result = print_on(print, driven);
+  if (!result.completed) {
+    const int line = result.stop.line;
+    stopped(driven, line > 0 ? fmt::format("stopped at {}:{}: {}", asked.program, line, result.stop.why)
+                             : fmt::format("stopped: {}", result.stop.why));
+  }
+  driven.come_to_rest();
+  driven.note("completed");
+  fmt::print("printed {} on {}: {} moves, {:.1f} mm of filament, {:.1f} s\n  record {}\n", asked.program,
+             options.port, result.moves, to_mm(result.extruded), result.duration, options.record);
+  return kGood;
+}
+
+}  // namespace
+
+void add_drive(CLI::App& app, Action& action) {
+  auto options = std::make_shared<DriveOptions>();
+  auto* command = app.add_subcommand(
+      "drive", "Print on a real machine: the print loop of the rehearsal, on the port that a URI names");
+  add_print_options(*command, options->print);
+  command
+      ->add_option("--port", options->port,
+                   "URI of the machine (docs/drive.md): loopback:// (a dry run), "
+                   "serial:///dev/ttyACM0?family=grblhal, tcp://host:port?family=reprapfirmware")
+      ->required();
+  auto* rehearsal = command->add_option(
+      "--rehearsal", options->rehearsal,
+      "folder of the rehearsal that says go to this print; options that are not given here are as rehearsed");
+  auto* without = command->add_flag("--without-rehearsal", options->without_rehearsal,
+                                    "print what no rehearsal has said go to");
+  rehearsal->excludes(without);
+  command
+      ->add_option("--record", options->record,
+                   "file to write with all that goes through the machine's port (docs/port-record.md)")
+      ->capture_default_str();
+  command->footer(
+      "understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out\n"
+      "understudy drive scenarios/song-bottle.gcode --port serial:///dev/ttyACM0?family=grblhal --rehearsal "
+      "out\n"
+      "Ctrl-C stops under control; a second one is an emergency stop.");
+  command->callback([=, &action] {
+    action = [=] {
+      if (options->rehearsal.empty() && !options->without_rehearsal)
+        throw InputError(
+            "nothing is printed that was not rehearsed: name a folder by --rehearsal, or say "
+            "--without-rehearsal");
+      return drive(*options);
+    };
+  });
+}
+
+}  // namespace understudy::cli

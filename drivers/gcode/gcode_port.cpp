@@ -1,0 +1,249 @@
+#include "drivers/gcode/gcode_port.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+
+namespace understudy::drivers {
+
+using machine::AxisVector;
+using machine::Fault;
+using machine::Status;
+
+namespace {
+
+constexpr double kSample = 1e-3;     // [s], of the path
+constexpr double kTick = 4e-3;       // [s], between two looks at the link
+constexpr double kSlip = 0.02;       // [s], by which our clock catches up; beyond, it is put back
+constexpr double kBacklogMax = 1.0;  // [s], of blocks that the controller does not take
+constexpr double kHeatTime = 600;    // [s], to any temperature
+constexpr double kSettleTime = 10;   // [s], for what a fault leaves on its way
+constexpr double kBlockTime = 0.1;   // [s], at most: what a stop waits for
+
+machine::SetpointQueueOptions queue_options(const GcodeSetup& setup,
+                                            const machine::MachineDescription& machine) {
+  machine::SetpointQueueOptions queue;
+  queue.capacity = setup.queue_capacity;
+  const auto mechanism = machine.make_mechanism();
+  for (int i = 0; i < mechanism->axis_count(); ++i) {
+    queue.ranges.push_back(mechanism->axis_range(i));
+    queue.rest_velocity[static_cast<std::size_t>(i)] = machine.drives[static_cast<std::size_t>(i)].step();
+  }
+  return queue;
+}
+
+FitTolerance driving(FitTolerance tolerance) {
+  tolerance.block_time_max = std::min(tolerance.block_time_max, kBlockTime);
+  return tolerance;
+}
+
+/// The session is connected before the queue is made of where the machine stands.
+GcodeSession& connected(GcodeSession& session) {
+  session.connect();
+  return session;
+}
+
+}  // namespace
+
+GcodePort::GcodePort(std::unique_ptr<ByteLink> link, const GcodeSetup& setup,
+                     const machine::MachineDescription& machine)
+    : setup_(setup),
+      link_(std::move(link)),
+      writer_(setup.family, setup.axes),
+      session_(*link_, writer_, setup.session),
+      queue_(queue_options(setup, machine), connected(session_).position(), 0),
+      fitter_(driving(setup.tolerance), setup.axes.grid, setup.axes.turns),
+      anchor_(link_->now()) {
+  last_.position = session_.position();
+  fitter_.begin(last_);
+  writer_.begin(last_);
+}
+
+machine::AxisState GcodePort::state() const {
+  machine::AxisState s;
+  s.time = now_;
+  s.sampled_at = std::min(now_, session_.position_time() - anchor_);
+  s.position = session_.position();
+  s.accepted = queue_.accepted();
+  s.executed = session_.executed();
+  s.free_slots = queue_.free_slots();
+  s.moving = fault_ == Fault::none && (queue_.moving() || queue_.rate_changes() || in_motion_ || streaming_);
+  s.fault = fault_;
+  return s;
+}
+
+Status GcodePort::submit(std::span<const machine::Setpoint> setpoints, double deadline) {
+  if (fault_ != Fault::none) return Status::faulted;
+  if (now_ > deadline) return Status::deadline_exceeded;
+  return queue_.submit(setpoints, now_);
+}
+
+/// Nothing of the path is on its way any more.
+void GcodePort::raise(Fault fault, const std::string& why) {
+  if (fault_ != Fault::none) return;
+  fault_ = fault;
+  fault_text_ = why;
+  queue_.advance_to(now_);
+  queue_.clear(now_);
+}
+
+bool GcodePort::time_stands() const { return heating_ || session_.backlog() > kBacklogMax; }
+
+/// Blocks that are settled; to the controller once it has enough ahead, or `all`.
+void GcodePort::hand_over(bool all) {
+  while (const auto block = fitter_.take()) {
+    held_.push_back(*block);
+    held_time_ += block->duration;
+  }
+  if (!all && !streaming_ && held_time_ + fitter_.pending() < setup_.latency) return;
+  for (const Block& block : held_) session_.push(writer_.block(block), block.duration, block.executed);
+  streaming_ = streaming_ || !held_.empty();
+  held_.clear();
+  held_time_ = 0;
+}
+
+/// The queue is empty and its last setpoint rests: the controller is to say that it stands there.
+void GcodePort::end_of_motion() {
+  fitter_.finish();
+  hand_over(true);
+  PathSample rest = last_;
+  rest.executed = queue_.executed();
+  fitter_.begin(rest);
+  session_.push_rest(rest.position);
+  streaming_ = true;
+  in_motion_ = false;
+}
+
+/// The queue's clock runs to `until`, and the path that it passes becomes blocks.
+void GcodePort::release(double until) {
+  while (now_ < until && fault_ == Fault::none) {
+    const double next = std::min(until, now_ + kSample);
+    const bool passing = queue_.moving() || queue_.rate_changes();
+    if (passing) {
+      if (!in_motion_) {
+        last_.time = now_;
+        last_.executed = queue_.executed();
+        fitter_.begin(last_);
+        in_motion_ = true;
+      }
+      const auto& target = queue_.advance_to(next);
+      last_ = {next, target.position, target.filament, target.line, queue_.executed()};
+      fitter_.add(last_);
+      if (queue_.ran_dry()) {
+        now_ = next;
+        end_of_motion();
+        return raise(Fault::underrun, "the queue ran empty in motion: the computer is too slow for the path");
+      }
+    }
+    queue_.pass(next - now_, next);
+    now_ = next;
+    if (in_motion_ && !queue_.moving() && !queue_.rate_changes()) end_of_motion();
+  }
+  hand_over(false);
+}
+
+/// One look at the link and, unless time stands, a step of the port's clock. False: a fault came.
+bool GcodePort::step(double until) {
+  const double next = std::min(until, now_ + kTick);
+  if (link_->now() - anchor_ - now_ > kSlip) anchor_ = link_->now() - now_ - kSlip;
+  try {
+    link_->wait(time_stands() ? link_->now() + kTick : anchor_ + next);
+  } catch (const MachineError& error) {
+    session_.fail(Fault::power, error.what());
+  }
+  session_.pump();
+  if (session_.settled()) {
+    streaming_ = false;
+    heating_ = false;
+  }
+  if (session_.fault() != Fault::none) {
+    raise(session_.fault(), session_.fault_text());
+    session_.last_words(writer_.outputs(outputs_, {}));
+    return false;
+  }
+  if (time_stands()) {
+    anchor_ = link_->now() - now_;
+    if (anchor_ - stood_from_ > kHeatTime)
+      raise(Fault::drive,
+            heating_ ? "the nozzle does not become hot" : "the controller takes no more blocks");
+    return fault_ == Fault::none;
+  }
+  stood_from_ = anchor_;
+  if (link_->now() < anchor_ + next) return true;  // bytes came first
+  release(next);
+  session_.pump();
+  return fault_ == Fault::none;
+}
+
+Status GcodePort::wait_until(double time) {
+  while (fault_ == Fault::none && now_ < time) step(time);
+  if (fault_ == Fault::underrun) {
+    // The controller goes on to where the queue ended, on its own time.
+    const double deadline = link_->now() + kSettleTime;
+    while (!session_.settled() && session_.fault() == Fault::none && link_->now() < deadline) {
+      link_->wait(link_->now() + kTick);
+      session_.pump();
+    }
+    streaming_ = false;
+  }
+  return fault_ == Fault::none ? Status::ok : Status::faulted;
+}
+
+Status GcodePort::urgent(machine::UrgentCommand command) {
+  switch (command) {
+    case machine::UrgentCommand::hold:
+      queue_.hold();
+      return Status::ok;
+    case machine::UrgentCommand::resume:
+      queue_.resume();
+      return Status::ok;
+    case machine::UrgentCommand::stop:
+      queue_.stop(now_);
+      return Status::ok;
+    case machine::UrgentCommand::clear_fault:
+      if (fault_ != Fault::none && session_.fault() != Fault::none) return Status::faulted;
+      if (fault_ == Fault::emergency_stop) return Status::faulted;
+      fault_ = Fault::none;
+      fault_text_.clear();
+      return Status::ok;
+  }
+  return Status::rejected;
+}
+
+Status GcodePort::set_outputs(const machine::Outputs& outputs, double deadline) {
+  if (fault_ != Fault::none && !outputs.off()) return Status::faulted;
+  if (now_ > deadline) return Status::deadline_exceeded;
+  if (!setup_.outputs) return outputs.off() ? Status::ok : Status::rejected;
+  const auto lines = writer_.outputs(outputs_, outputs);
+  if (session_.fault() != Fault::none) {
+    session_.last_words(writer_.outputs({1e3, 1}, {}));
+  } else {
+    for (const std::string& line : lines) {
+      const bool waits = line.starts_with("M109");
+      session_.push(line, waits ? kHeatTime : 0, 0);
+      heating_ = heating_ || waits;
+    }
+    if (!lines.empty()) session_.push_rest(last_.position);
+    session_.pump();
+  }
+  outputs_ = outputs;
+  return Status::ok;
+}
+
+Status GcodePort::capture(const Region& /*region*/, machine::Frame& /*frame*/, double deadline) {
+  return now_ > deadline ? Status::deadline_exceeded : Status::no_frame;
+}
+
+void GcodePort::emergency_stop() {
+  if (setup_.family == GcodeFamily::grblhal)
+    session_.send_now("\x18");
+  else
+    session_.last_words({"M112"});
+  session_.last_words(writer_.outputs({1e3, 1}, {}));
+  session_.fail(Fault::emergency_stop, "stopped as an emergency");
+  raise(Fault::emergency_stop, "stopped as an emergency: home the machine before the next print");
+}
+
+}  // namespace understudy::drivers

@@ -1,0 +1,29 @@
+#include "drivers/loopback.h"
+
+#include "core/error.h"
+
+namespace understudy::drivers {
+namespace {
+
+constexpr double kClockStep = 0.5e-3;  // [s], that of the twin's engines
+
+}  // namespace
+
+std::unique_ptr<machine::LoopbackPort> open_loopback(const PortUri& uri,
+                                                     const machine::MachineDescription& machine) {
+  uri.check_options({});
+  if (!uri.place.empty()) throw InputError(uri.text + ": loopback:// has no place");
+  const auto mechanism = machine.make_mechanism();
+  machine::LoopbackPort::Options options;
+  options.axis_count = mechanism->axis_count();
+  options.history = false;
+  options.clock_step = kClockStep;
+  for (int i = 0; i < options.axis_count; ++i) options.ranges.push_back(mechanism->axis_range(i));
+  const auto axes = std::span(options.start).first(static_cast<std::size_t>(options.axis_count));
+  const auto solved = mechanism->inverse(machine.X_BT_home, {}, axes);
+  if (solved != kinematics::SolveStatus::ok && solved != kinematics::SolveStatus::singular)
+    throw InputError(machine.file.string() + ": the home pose cannot be reached: " + to_string(solved));
+  return std::make_unique<machine::LoopbackPort>(options);
+}
+
+}  // namespace understudy::drivers

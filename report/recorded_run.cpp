@@ -1,0 +1,51 @@
+#include "report/recorded_run.h"
+
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/file/read_file.h"
+#include "core/text/json_depth.h"
+
+namespace understudy::report {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::json;
+
+/// Nothing where `object` is none or has no such text.
+std::optional<std::string> text_at(const Json& object, const char* key) {
+  if (!object.is_object()) return std::nullopt;
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? std::optional(found->get<std::string>())
+                                                     : std::nullopt;
+}
+
+}  // namespace
+
+RecordedRun read_recorded_run(const fs::path& folder) {
+  const fs::path file = folder / "summary.json";
+  const auto refuse = [&](const std::string& why) -> InputError { return {{file.string()}, why}; };
+  const std::string text = read_file(file);
+  if (nests_deeper(text)) throw refuse(fmt::format("it is nested more than {} deep", kJsonDepthMax));
+  const Json summary = Json::parse(text, nullptr, false);
+  if (text_at(summary, "schema") != "understudy.rehearsal/1")
+    throw refuse("it is no summary of a rehearsal: name a folder that understudy rehearse wrote");
+  const auto provenance = summary.find("provenance");
+  const auto word = [&](const char* key) {
+    auto value = provenance == summary.end() ? std::nullopt : text_at(*provenance, key);
+    if (!value) throw refuse(fmt::format("provenance.{} is missing: an older version wrote it", key));
+    return *value;
+  };
+  return {word("command"),
+          word("version"),
+          word("machine_sha256"),
+          word("program_sha256"),
+          word("inputs_sha256"),
+          text_at(*provenance, "fixture_sha256").value_or(""),
+          text_at(summary, "verdict") == "go"};
+}
+
+}  // namespace understudy::report
