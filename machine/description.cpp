@@ -5,6 +5,7 @@
 #include "core/digest.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
+#include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
 #include "kinematics/chain/chain_kind.h"
 #include "machine/accepted_errors.h"
@@ -156,14 +157,15 @@ MachineFile read_text_of(const std::string& bytes, const std::filesystem::path& 
   MachineFile file;
   MachineDescription& machine = file.description;
   machine.file = path;
-  machine.sha256 = sha256_hex(bytes);
+  machine.sha256 = sha256_hex(bytes + changed_file(path.string()).braces());
   YamlMap::read_text(bytes, path.string(), [&](YamlMap& root) { read_machine(root, file); });
   return file;
 }
 
 MachineFile read_file_of(const std::string& name_or_path) {
-  const std::filesystem::path path = find_model(name_or_path);
-  return read_text_of(read_file(path), path);
+  const ChangedFile changed = changed_file(name_or_path);
+  const std::filesystem::path path = find_model(changed.file);
+  return read_text_of(read_file(path), path.string() + changed.braces());
 }
 
 }  // namespace

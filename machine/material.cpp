@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
+#include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
 #include "machine/description.h"
 #include "machine/model_files.h"
@@ -102,9 +103,11 @@ std::vector<std::string> material_names() {
 }
 
 Material load_material(const std::string& name_or_path) {
-  const fs::path path = find_material(name_or_path);
+  const ChangedFile changed = changed_file(name_or_path);
+  const fs::path path = find_material(changed.file);
   Material material;
-  YamlMap::read_text(read_file(path), path.string(), [&](YamlMap& map) { read_material(map, material); });
+  YamlMap::read_text(read_file(path), path.string() + changed.braces(),
+                     [&](YamlMap& map) { read_material(map, material); });
   return material;
 }
 

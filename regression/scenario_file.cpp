@@ -9,6 +9,7 @@
 
 #include "control/registration/pattern.h"
 #include "core/file/read_file.h"
+#include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
 #include "regression/expectation_keys.h"
 #include "regression/golden_file.h"
@@ -218,10 +219,11 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
 
 }  // namespace
 
-Scenario load_scenario(const fs::path& path) {
+Scenario load_scenario(const fs::path& word) {
+  const fs::path path = changed_file(word.string()).file;
   Scenario scenario;
   scenario.file = path;
-  YamlMap::read_text(read_file(path), path.string(),
+  YamlMap::read_text(read_file(path), word.string(),
                      [&](YamlMap& map) { read_scenario(map, path.parent_path(), scenario); });
   const fs::path golden = golden_file_of(path);
   std::error_code ignored;

@@ -23,22 +23,27 @@ namespace {
 
 constexpr std::chrono::milliseconds kPoll{20};
 
-pid_t start(const std::vector<std::string>& words) {
+/// `streams`: what the child gets as its standard streams.
+pid_t start(const std::vector<std::string>& words, const posix_spawn_file_actions_t& streams) {
   std::vector<std::string> text{"understudy"};
   text.insert(text.end(), words.begin(), words.end());
   std::vector<char*> arguments;
   for (std::string& word : text) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
-  const int error = posix_spawn(&child, "/proc/self/exe", &files, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
+  const int error = posix_spawn(&child, "/proc/self/exe", &streams, nullptr, arguments.data(), environ);
   if (error != 0) throw MachineError("cannot start a process: " + std::generic_category().message(error));
   return child;
 }
+
+class Streams {
+ public:
+  Streams() { posix_spawn_file_actions_init(&actions); }
+  ~Streams() { posix_spawn_file_actions_destroy(&actions); }
+  Streams(const Streams&) = delete;
+  Streams& operator=(const Streams&) = delete;
+  posix_spawn_file_actions_t actions;
+};
 
 ProcessEnd end_of(int status) {
   if (WIFSIGNALED(status)) return {kFailed, fmt::format("the process ended by signal {}", WTERMSIG(status))};
@@ -49,7 +54,10 @@ ProcessEnd end_of(int status) {
 
 ProcessEnd run_own_process(const std::vector<std::string>& words) {
   stop_if_interrupted();
-  const pid_t child = start(words);
+  Streams streams;
+  posix_spawn_file_actions_addopen(&streams.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&streams.actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  const pid_t child = start(words, streams.actions);
   bool told = false;
   int status = 0;
   for (;;) {
@@ -64,6 +72,13 @@ ProcessEnd run_own_process(const std::vector<std::string>& words) {
   }
   stop_if_interrupted();
   return end_of(status);
+}
+
+pid_t start_own_process(const std::vector<std::string>& words, int input, int output) {
+  Streams streams;
+  posix_spawn_file_actions_adddup2(&streams.actions, input, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&streams.actions, output, STDOUT_FILENO);
+  return start(words, streams.actions);
 }
 
 void end_with_parent() {

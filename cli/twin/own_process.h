@@ -1,6 +1,8 @@
 // This program once more, as a process of its own.
 #pragma once
 
+#include <sys/types.h>
+
 #include <string>
 #include <vector>
 
@@ -14,6 +16,9 @@ struct ProcessEnd {
 /// Runs this program with `words` to its end; its standard output is dropped, its standard error is ours. An
 /// interrupt ends it and throws Interrupted.
 ProcessEnd run_own_process(const std::vector<std::string>& words);
+
+/// Starts this program with `words`, open files as its standard input and output. Throws MachineError.
+pid_t start_own_process(const std::vector<std::string>& words, int input, int output);
 
 /// From now on this process gets SIGTERM when the thread that started it ends, as when its process is killed.
 void end_with_parent();

@@ -45,6 +45,24 @@ std::string file_beside(const regression::Scenario& scenario, const std::string&
   return fs::is_regular_file(path, ignored) ? path.string() : word;
 }
 
+std::vector<std::string> planner_options(const std::string& planner) {
+  CLI::App app;
+  Action action;
+  add_plan(app, action);
+  std::vector<std::string> planners, options;
+  for (const CLI::App* each : app.get_subcommand("plan")->get_subcommands({})) {
+    planners.push_back(each->get_name());
+    if (each->get_name() != planner) continue;
+    for (const CLI::Option* option : each->get_options())
+      for (const std::string& name : option->get_lnames()) options.push_back(name);
+    std::sort(options.begin(), options.end());
+    return options;
+  }
+  const std::string near = nearest_word(planner, planners);
+  throw InputError(fmt::format("plan: '{}' is no planner{}", planner,
+                               near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+}
+
 void write_planned(const regression::Scenario& scenario, const fs::path& output) {
   const auto fail = [&](const std::string& why) {
     throw InputError(fmt::format("{}: plan: {}", scenario.file.string(), why));

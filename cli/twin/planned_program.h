@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "regression/scenario.h"
 
@@ -11,6 +12,10 @@ namespace understudy::cli {
 /// that is a file beside the scenario stands for that file. Throws InputError that begins with the scenario's
 /// file; Interrupted passes through.
 void write_planned(const regression::Scenario& scenario, const std::filesystem::path& output);
+
+/// Options of a planner, long names without dashes, sorted. Throws InputError, which names the nearest one,
+/// for a word that is no planner.
+std::vector<std::string> planner_options(const std::string& planner);
 
 /// The path of the file `word` beside the scenario; `word` itself where there is none.
 std::string file_beside(const regression::Scenario& scenario, const std::string& word);

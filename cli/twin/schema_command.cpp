@@ -16,6 +16,7 @@
 #include "regression/scenario_file.h"
 #include "report/json_schema.h"
 #include "sim/as_built/as_built_file.h"
+#include "studies/campaign/campaign_file.h"
 #include "vision/boards/rig_file.h"
 
 namespace understudy::cli {
@@ -39,6 +40,8 @@ const Kind kKinds[] = {
      [](const SchemaRequest& r) { machine::load_material(r.file); }},
     {"scenario", "Understudy: scenario", regression::scenario_schema,
      [](const SchemaRequest& r) { regression::load_scenario(r.file); }},
+    {"campaign", "Understudy: campaign", studies::campaign_schema,
+     [](const SchemaRequest& r) { studies::load_campaign(r.file); }},
     {"golden", "Understudy: golden figures of a scenario", regression::golden_schema,
      [](const SchemaRequest& r) { regression::load_golden(r.file); }},
     {"as-built", "Understudy: machine as built", sim::as_built_schema,

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/doctor.h"
+#include "cli/twin/campaign_command.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
@@ -52,6 +53,7 @@ void add_twin_commands(CLI::App& app, Action& action) {
   add_register(app, action);
   add_scenario(app, action);
   add_sweep(app, action);
+  add_campaign(app, action);
   add_sample_poses(app, action);
   add_sample_gaps(app, action);
   add_render(app, action);

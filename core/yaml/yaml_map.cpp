@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/yaml/change_values.h"
+#include "core/yaml/changed_file.h"
 #include "core/yaml/schema_recording.h"
 #include "core/yaml/yaml_text.h"
 
@@ -36,7 +38,9 @@ YamlMap::YamlMap(const YAML::Node& node, std::string file, std::string path)
 void YamlMap::read_text(const std::string& text, const std::string& file, const Read& read) {
   try {
     check_yaml_text(text, file);
-    YamlMap map(YAML::Load(text), file, "");
+    YAML::Node root = YAML::Load(text);
+    change_values(root, changed_file(file), file);
+    YamlMap map(root, file, "");
     read(map);
     map.finish();
   } catch (const YAML::Exception& error) {

@@ -9,6 +9,7 @@
 #include "core/digest.h"
 #include "core/file/read_file.h"
 #include "core/version.h"
+#include "core/yaml/changed_file.h"
 #include "machine/description.h"
 #include "machine/fixture_file.h"
 #include "machine/material.h"
@@ -57,9 +58,10 @@ void add_faults(const RehearsalRequest& request, Inputs& inputs) {
 }
 
 void add_world(const RehearsalRequest& request, Inputs& inputs) {
-  const bool is_file = std::filesystem::is_regular_file(request.as_built);
-  if (is_file)
-    inputs.bytes_of("as-built file", request.as_built);
+  const ChangedFile as_built = changed_file(request.as_built);
+  if (!as_built.changes.empty()) inputs.word("as-built's changes", as_built.braces());
+  if (std::filesystem::is_regular_file(as_built.file))
+    inputs.bytes_of("as-built file", as_built.file);
   else
     inputs.word("as-built", request.as_built);
   const sim::TruthSeeds seeds = request.truth_seeds.value_or(request.seed);
@@ -82,7 +84,9 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   inputs.bytes_of("fixture", request.fixture.empty() ? "" : machine::find_fixture(request.fixture));
   const std::string material =
       request.material.empty() ? machine::load_machine(request.machine).process.material : request.material;
-  inputs.bytes_of("material", material.empty() ? "" : machine::find_material(material));
+  inputs.bytes_of("material", material.empty() ? "" : machine::find_material(changed_file(material).file));
+  if (const std::string changes = changed_file(material).braces(); !changes.empty())
+    inputs.word("material's changes", changes);
   add_world(request, inputs);
   inputs.word("engine", request.engine);
   inputs.values("gap control", request.gap_control, request.compare_without_gap_control);

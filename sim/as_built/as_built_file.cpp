@@ -9,6 +9,7 @@
 #include "core/file/read_file.h"
 #include "core/text/printable.h"
 #include "core/units.h"
+#include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
 #include "machine/file/section_text.h"
 #include "sim/as_built/file_parts.h"
@@ -124,10 +125,11 @@ std::string geometry_text(const AsBuilt& built) {
 }  // namespace
 
 void read_as_built(const std::string& file, AsBuilt& built) {
-  if (!std::filesystem::is_regular_file(file))
+  const std::string path = changed_file(file).file;
+  if (!std::filesystem::is_regular_file(path))
     throw InputError(fmt::format(
         "as-built \"{}\" is not one of nominal, sampled, manufactured, calibrated, nor a file", file));
-  YamlMap::read_text(read_file(file), file, [&built](YamlMap& root) { read_built(root, built); });
+  YamlMap::read_text(read_file(path), file, [&built](YamlMap& root) { read_built(root, built); });
 }
 
 MapSchema as_built_schema() {

@@ -1,0 +1,232 @@
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/digest.h"
+#include "core/file/read_file.h"
+#include "core/random.h"
+#include "tests/cli/program_run.h"
+
+namespace understudy::cli_test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr const char* kTables[] = {"table.csv", "campaign.json", "campaign.html"};
+
+/// The first column of the first row.
+std::string asked(const fs::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  std::string answer;
+  const auto take = [](void* to, int, char** columns, char**) {
+    *static_cast<std::string*>(to) = columns[0] ? columns[0] : "";
+    return 1;
+  };
+  sqlite3_open(file.c_str(), &database);
+  sqlite3_exec(database, sql.c_str(), take, &answer, nullptr);
+  sqlite3_close(database);
+  return answer;
+}
+
+/// A short straight line in air: a run takes a fraction of a second.
+class Campaign : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("line.gcode", "M104 S230\nG1 X0 Y0 Z60 F3000\nG1 X4 Y0 Z60 E0.3 F600\n");
+    folder_.write(
+        "s.yaml",
+        "name: line\ndescription: d\nsource: s\nmachine: hexapod\nprogram: line.gcode\nas_built: sampled\n"
+        "seed: 1\ngap_control: off\nengine: quasistatic\nexpect:\n"
+        "  - {metric: verdict, equals: go, source: a test}\n");
+    write("c",
+          "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\nmetrics: "
+          "[accuracy.tip_p95_um]\n");
+  }
+  void write(const std::string& name, const std::string& rest, const std::string& seeds = "1-10") {
+    folder_.write(name + ".yaml", "name: " + name + "\nscenarios: [s.yaml]\nseeds: " + seeds + "\n" + rest);
+  }
+  std::string at(const std::string& name) const { return folder_ / name; }
+  Outcome run(const std::string& words) const { return understudy("campaign " + words); }
+  std::string tables(const std::string& folder) const {
+    std::string all;
+    for (const char* table : kTables) all += read_file(fs::path(at(folder)) / table);
+    return all;
+  }
+  const Folder folder_;
+};
+
+TEST_F(Campaign, TheTablesDoNotDependOnTheNumberOfWorkers) {
+  const Outcome one = run(at("c.yaml") + " --workers 1 --out " + at("one"));
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("c: 20 runs"));
+  ASSERT_EQ(run(at("c.yaml") + " --workers 3 --out " + at("three")).status, 0);
+  EXPECT_EQ(tables("one"), tables("three"));
+  EXPECT_EQ(asked(at("one/runs.sqlite"), "SELECT count(*) FROM runs"), "20");
+}
+
+TEST_F(Campaign, ARowsCommandMakesItsSummaryAgain) {
+  ASSERT_EQ(run(at("c.yaml") + " --workers 2 --out " + at("out")).status, 0);
+  for (const int row : {0, 7, 13}) {
+    const std::string where = " FROM runs WHERE run = " + std::to_string(row);
+    std::string command = asked(at("out/runs.sqlite"), "SELECT command" + where);
+    ASSERT_TRUE(command.starts_with("understudy ")) << command;
+    command.resize(command.find(" --out "));
+    const std::string out = at("again-" + std::to_string(row));
+    const Outcome again = understudy(command.substr(11) + " --out " + out);
+    EXPECT_LE(again.status, 1) << again.err;
+    EXPECT_EQ(sha256_hex(read_file(out + "/summary.json")),
+              asked(at("out/runs.sqlite"), "SELECT summary_sha256" + where))
+        << row;
+  }
+}
+
+TEST_F(Campaign, GoesOnAfterADeathAndLosesNothing) {
+  write("long", "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\n", "1-40");
+  ASSERT_EQ(run(at("long.yaml") + " --workers 2 --out " + at("whole")).status, 0);
+  // Killed after 0.5, 1, ... s, until it comes to its end.
+  int deaths = 0;
+  for (double seconds = 0.5;; seconds += 0.5) {
+    const Outcome part = understudy("campaign " + at("long.yaml") + " --workers 2 --out " + at("parts") +
+                                    (deaths > 0 ? " --resume" : "") + " & p=$!; sleep " +
+                                    std::to_string(seconds) + "; kill -9 $p 2>/dev/null; wait $p");
+    if (part.status == 0) break;
+    ++deaths;
+    ASSERT_LT(deaths, 60);
+  }
+  EXPECT_EQ(tables("whole"), tables("parts"));
+  EXPECT_EQ(asked(at("parts/runs.sqlite"), "SELECT count(*) FROM runs"), "80");
+}
+
+/// Children of `parent`, as /proc tells them.
+std::vector<pid_t> children_of(pid_t parent) {
+  std::vector<pid_t> children;
+  std::istringstream words(
+      read_file("/proc/" + std::to_string(parent) + "/task/" + std::to_string(parent) + "/children"));
+  for (pid_t child = 0; words >> child;) children.push_back(child);
+  return children;
+}
+
+TEST_F(Campaign, AWorkerThatIsKilledLosesNothing) {
+  write("long", "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\n", "1-40");
+  ASSERT_EQ(run(at("long.yaml") + " --workers 2 --out " + at("whole")).status, 0);
+  const pid_t campaign = ::fork();
+  if (campaign == 0) {
+    ::execl(UNDERSTUDY_PROGRAM, "understudy", "campaign", at("long.yaml").c_str(), "--workers", "2", "--out",
+            at("killed").c_str(), nullptr);
+    ::_exit(127);
+  }
+  Random random(1, "kills");
+  int kills = 0, status = 0;
+  while (::waitpid(campaign, &status, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(static_cast<int>(random.uniform(100, 400))));
+    if (kills == 20) continue;
+    const std::vector<pid_t> workers = children_of(campaign);
+    if (workers.empty()) continue;
+    kills += ::kill(workers[random.bits() % workers.size()], SIGKILL) == 0 ? 1 : 0;
+  }
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_GE(kills, 3);
+  EXPECT_EQ(tables("whole"), tables("killed"));
+}
+
+TEST_F(Campaign, StopsWhenTheIntervalIsNarrowAndSaysSo) {
+  write("stop", "stop: {half_width: 0.3, first: 4}\n", "1-64");
+  const Outcome outcome = run(at("stop.yaml") + " --out " + at("out"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("runs of 64: every interval of P(GO) is within +-0.3"));
+  EXPECT_LT(std::stoi(asked(at("out/runs.sqlite"), "SELECT count(*) FROM runs")), 64);
+}
+
+TEST_F(Campaign, AFolderThatHasRunsIsNotBegunAnew) {
+  ASSERT_EQ(run(at("c.yaml") + " --out " + at("out")).status, 0);
+  const std::string before = tables("out");
+  const Outcome again = run(at("c.yaml") + " --out " + at("out"));
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("holds runs of this campaign: --resume goes on with them"));
+  EXPECT_EQ(run(at("c.yaml") + " --resume --out " + at("out")).status, 0);
+  EXPECT_EQ(tables("out"), before);
+  write("c", "metrics: [accuracy.tip_max_um]\n");
+  const Outcome changed = run(at("c.yaml") + " --resume --out " + at("out"));
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_THAT(changed.err, HasSubstr("was changed since: begin in another folder"));
+}
+
+TEST_F(Campaign, AFolderThatAnotherCampaignWritesIsRefused) {
+  ASSERT_EQ(run(at("c.yaml") + " --out " + at("out")).status, 0);
+  const std::string lock = at("out/campaign.lock");
+  std::FILE* held = std::fopen(lock.c_str(), "r");
+  ASSERT_EQ(::flock(::fileno(held), LOCK_EX | LOCK_NB), 0);
+  const Outcome busy = run(at("c.yaml") + " --resume --out " + at("out"));
+  std::fclose(held);
+  EXPECT_EQ(busy.status, 2);
+  EXPECT_THAT(busy.err, HasSubstr("another campaign is writing here (process "));
+}
+
+TEST_F(Campaign, AUsersFolderIsLeftAlone) {
+  fs::create_directories(at("thesis"));
+  folder_.write("thesis/thesis.tex", "x");
+  const Outcome outcome = run(at("c.yaml") + " --out " + at("thesis"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("holds thesis.tex, which no campaign wrote"));
+  EXPECT_EQ(read_file(at("thesis/thesis.tex")), "x");
+  EXPECT_FALSE(fs::exists(at("thesis/runs.sqlite")));
+}
+
+TEST_F(Campaign, AnUnknownKeyIsRefusedBeforeAnyRun) {
+  const struct {
+    const char *parameter, *message;
+  } cases[] = {
+      {"{key: machine.gap.aim_m, values: [1]}", "unknown key 'gap.aim_m', did you mean 'aim_mm'?"},
+      {"{key: machin.gap.aim_mm, values: [1]}",
+       "begins with none of machine, material, as_built, scenario, plan; did you mean 'machine'?"},
+      {"{key: machine.gap.aim_mm, values: [0.13, 5]}", "gap.aim_mm is 5 mm"},
+      {"{key: scenario.turn_dg, values: [1]}", "unknown key 'turn_dg', did you mean 'turn_deg'?"},
+      {"{key: material.density, values: [1]}", "unknown key 'density', did you mean 'density_kg_per_m3'?"},
+      {"{key: plan.layer, values: [1]}", "scenario 'line' has no plan: its program is a file"},
+      {"{key: as_built.part.size, values: [1]}", "is as-built 'sampled', which is no file"},
+  };
+  for (const auto& one : cases) {
+    write("bad", std::string("parameters:\n  - ") + one.parameter + "\n");
+    const Outcome outcome = run(at("bad.yaml") + " --out " + at("out"));
+    EXPECT_EQ(outcome.status, 2) << one.parameter;
+    EXPECT_THAT(outcome.err, HasSubstr("bad.yaml:5:5: ")) << one.parameter;
+    EXPECT_THAT(outcome.err, HasSubstr(one.message)) << one.parameter;
+    EXPECT_FALSE(fs::exists(at("out"))) << one.parameter;
+  }
+}
+
+TEST_F(Campaign, ARunThatCannotBeMadeHasNoAnswer) {
+  // Nothing refuses the value alone, but the nozzle's temperature is above what the material may have.
+  write("hot",
+        "parameters:\n  - {key: scenario.strict, values: ['yes']}\n  - {key: material.nozzle_max_c, values: "
+        "[225, 280]}\n  - {key: material.nozzle_c, values: [222]}\n",
+        "1-2");
+  const Outcome outcome = run(at("hot.yaml") + " --out " + at("out"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("2 runs, 2 without an answer"));
+  EXPECT_EQ(asked(at("out/runs.sqlite"),
+                  "SELECT count(*) FROM runs WHERE status = 'refused' AND error LIKE '%225.0 C%'"),
+            "2");
+}
+
+TEST_F(Campaign, WithoutSlurmSaysWhatIsMissing) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", at("empty").c_str(), 1);
+  const Outcome none = run(at("c.yaml") + " --slurm --out " + at("out"));
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("--slurm: there is no program sbatch"));
+  EXPECT_FALSE(fs::exists(at("out/table.csv")));
+}
+
+}  // namespace
+}  // namespace understudy::cli_test
