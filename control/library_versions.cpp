@@ -10,6 +10,7 @@ namespace understudy::control {
 LibraryVersions library_versions() {
   LibraryVersions all{{"Boost", boost_version()},
                       {"Clipper", toolpath::clipper_version()},
+                      {"lib2geom", toolpath::lib2geom_version()},
                       {"nlohmann-json", toolpath::json_version()}};
   all.merge(understudy::library_versions());
   all.merge(geometry::library_versions());

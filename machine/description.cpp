@@ -1,6 +1,9 @@
 #include "machine/description.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/digest.h"
 #include "core/file/read_file.h"
@@ -11,6 +14,7 @@
 #include "machine/accepted_errors.h"
 #include "machine/built_tolerances.h"
 #include "machine/calibrated_parameters.h"
+#include "machine/cure.h"
 #include "machine/file/calibration_section.h"
 #include "machine/file/chain_section.h"
 #include "machine/file/gap_sensor_section.h"
@@ -106,10 +110,45 @@ struct MachineFile {
   CalibratedParameters calibrated;
   BuiltTolerances tolerances;
   std::optional<AcceptedErrors> accepted;
+  std::optional<Cure> cure;
   MachineNotes notes;
 };
 
-void read_machine(YamlMap& root, MachineFile& file) {
+/// The tool of section `tool`, or the one of that name in `tools`, in its place.
+void read_tools(YamlMap& root, const std::string& wanted, MachineFile& file) {
+  MachineDescription& m = file.description;
+  std::vector<std::string> names;
+  bool found = wanted.empty();
+  if (root.has("tools"))
+    root.list("tools", 0, "other tools that the machine can carry: MACHINE+NAME is the machine with it",
+              [&](YamlMap& map, std::size_t) {
+                Tool tool;
+                std::optional<Cure> cure;
+                std::optional<GapLimits> gap;
+                const std::string name = map.text("name", "behind the machine's name and a +");
+                if (!map.recording() && std::ranges::find(names, name) != names.end())
+                  throw InputError(map.place("name"), fmt::format("two tools are named '{}'", name));
+                names.push_back(name);
+                read_tool(map, tool, cure);
+                if (map.has("gap"))
+                  map.section("gap", "between tip and surface; as section gap where it is left out",
+                              [&](YamlMap& limits) { read_gap(limits, gap.emplace()); });
+                if (name != wanted) return;
+                found = true;
+                m.tool = std::move(tool);
+                file.cure = cure;
+                if (gap) m.gap = *gap;
+                if (cure) m.process.extruder_lag = 0;  // light has none
+              });
+  if (!found && !root.recording())
+    throw InputError(root.place("tools"),
+                     names.empty() ? fmt::format("machine {} has no other tools, so no '{}'", m.name, wanted)
+                                   : fmt::format("machine {} has no tool '{}': it has {}", m.name, wanted,
+                                                 fmt::join(names, ", ")));
+  if (!wanted.empty()) m.name += "+" + wanted;
+}
+
+void read_machine(YamlMap& root, MachineFile& file, const std::string& wanted_tool = {}) {
   MachineDescription& m = file.description;
   m.name = root.text("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
@@ -126,7 +165,7 @@ void read_machine(YamlMap& root, MachineFile& file) {
     read_hexapod(root, m);
   }
   read_calibration(root, m, file.calibrated);
-  root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool); });
+  root.section("tool", "what hangs at the tip", [&](YamlMap& map) { read_tool(map, m.tool, file.cure); });
   if (root.has("process"))
     root.section("process", "the filament between drive and part",
                  [&](YamlMap& map) { read_process(map, m.process); });
@@ -143,6 +182,7 @@ void read_machine(YamlMap& root, MachineFile& file) {
   // A tool without a nozzle lays nothing that a gap would matter to.
   if (!root.has("tool.end_mill_diameter_mm") || root.has("gap"))
     root.section("gap", "between tip and surface", [&](YamlMap& map) { read_gap(map, m.gap); });
+  read_tools(root, wanted_tool, file);
   if (root.has("accuracy"))
     root.section("accuracy", "how far off a print may be",
                  [&](YamlMap& map) { read_accepted_errors(map, file.accepted.emplace()); });
@@ -153,19 +193,30 @@ void read_machine(YamlMap& root, MachineFile& file) {
   if (m.has_microscope) check_optics(root, m);
 }
 
-MachineFile read_text_of(const std::string& bytes, const std::filesystem::path& path) {
+MachineFile read_text_of(const std::string& bytes, const std::filesystem::path& path,
+                         const std::string& tool = {}) {
   MachineFile file;
   MachineDescription& machine = file.description;
   machine.file = path;
-  machine.sha256 = sha256_hex(bytes + changed_file(path.string()).braces());
-  YamlMap::read_text(bytes, path.string(), [&](YamlMap& root) { read_machine(root, file); });
+  const std::string told = (tool.empty() ? "" : "
++" + tool) + changed_file(path.string()).braces();
+  machine.sha256 = sha256_hex(bytes + told);
+  YamlMap::read_text(bytes, path.string(), [&](YamlMap& root) {
+    read_machine(root, file, tool); });
   return file;
 }
 
+/// "hexapod+cutter{gap.aim_mm: 0.15}": a machine with another of its tools, and changed values; a file of
+/// such a name is itself.
 MachineFile read_file_of(const std::string& name_or_path) {
   const ChangedFile changed = changed_file(name_or_path);
-  const std::filesystem::path path = find_model(changed.file);
-  return read_text_of(read_file(path), path.string() + changed.braces());
+  const std::string& name = changed.file;
+  const std::size_t plus = name.rfind('+');
+  std::error_code ignored;
+  const bool tool = plus != std::string::npos && name.find('/', plus) == std::string::npos &&
+                    !std::filesystem::exists(name, ignored);
+  const std::filesystem::path path = find_model(tool ? name.substr(0, plus) : name);
+  return read_text_of(read_file(path), path.string() + changed.braces(), tool ? name.substr(plus + 1) : "");
 }
 
 }  // namespace
@@ -187,6 +238,8 @@ MachineDescription load_machine(const std::string& name_or_path, CalibratedParam
 BuiltTolerances load_built_tolerances(const std::string& name_or_path) {
   return read_file_of(name_or_path).tolerances;
 }
+
+std::optional<Cure> load_cure(const std::string& name_or_path) { return read_file_of(name_or_path).cure; }
 
 MachineNotes load_machine_notes(const std::string& name_or_path) { return read_file_of(name_or_path).notes; }
 

@@ -83,10 +83,10 @@ ScenarioResult judge(const Scenario& scenario, const ScenarioOutcome& outcome) {
   return result;
 }
 
-std::string outcome_inputs(const Scenario& scenario, const std::string& plan_sha256) {
-  if (!scenario.command.empty()) return {};
+std::string outcome_inputs(const Scenario& scenario, const std::string& sources_sha256) {
+  if (!scenario.command.empty()) return sources_sha256;
   try {
-    std::string text = rehearsal::inputs_sha256(request_of(scenario), plan_sha256) + "\n";
+    std::string text = rehearsal::inputs_sha256(request_of(scenario), sources_sha256) + "\n";
     if (scenario.machines)
       text += fmt::format("{}-{}\n", scenario.machines->seed_first, scenario.machines->seed_last);
     for (const std::string& metric : asked_of_machines(scenario)) text += metric + "\n";

@@ -22,9 +22,9 @@ struct ScenarioOutcome {
 ScenarioResult judge(const Scenario& scenario, const ScenarioOutcome& outcome);
 
 /// SHA-256 of all that the outcome depends on: inputs of the rehearsal (rehearsal/request/input_digest.h),
-/// seeds of the series and the figures that are asked of it. `plan_sha256`: of what a planned program is made
-/// from. Empty where an input cannot be read.
-std::string outcome_inputs(const Scenario& scenario, const std::string& plan_sha256);
+/// seeds of the series and the figures that are asked of it. `sources_sha256`: of what a planned program is
+/// made from, or of a command and all that it reads. Empty where an input cannot be read.
+std::string outcome_inputs(const Scenario& scenario, const std::string& sources_sha256);
 
 /// Of machines, only the figures that the scenario's series asks for.
 std::string outcome_text(const Scenario& scenario, const ScenarioOutcome& outcome, const std::string& inputs);

@@ -1,6 +1,10 @@
 #include "rehearsal/figures.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "core/units.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -28,7 +32,29 @@ class Figures {
   std::vector<Figure> all_;
 };
 
-void add(const PrintFigures& print, Figures& to) {
+/// How the programmed tool's axis leans from upright and turns, summed, while it extrudes.
+struct Turning {
+  double tilt_max = 0, turned = 0;  // [rad]
+};
+
+Turning turning_of(const std::vector<TracePoint>& trace) {
+  Turning turning;
+  bool extruded = false;
+  Vec3 last = Vec3::UnitZ();
+  for (const TracePoint& point : trace) {
+    const Vec3 axis = tool_axis(point.X_WT_programmed);
+    if (point.extruding) {
+      turning.tilt_max = std::max(turning.tilt_max, std::atan2(axis.head<2>().norm(), axis.z()));
+      if (extruded) turning.turned += std::atan2(last.cross(axis).norm(), last.dot(axis));
+    }
+    last = axis;
+    extruded = point.extruding;
+  }
+  return turning;
+}
+
+void add(const PrintFigures& print, const std::vector<TracePoint>& trace, Figures& to) {
+  const Turning turning = turning_of(trace);
   to.section("print");
   to.put("duration_s", print.duration_s);
   to.count("moves", print.moves);
@@ -40,6 +66,8 @@ void add(const PrintFigures& print, Figures& to) {
   to.put("deposited_mm", print.deposited_mm);
   to.put("spanning_mm", print.spanning_mm);
   to.put("travel_mm", print.travel_mm);
+  to.put("tilt_max_deg", to_deg(turning.tilt_max));
+  to.put("turned_deg", to_deg(turning.turned));
   to.put("fill_factor", print.fill_factor);
 }
 
@@ -201,7 +229,7 @@ void add(const Provenance& provenance, Figures& to) {
 std::vector<Figure> figures(const Record& record) {
   Figures all;
   if (record.placement) add(*record.placement, all);
-  if (record.print) add(*record.print, all);
+  if (record.print) add(*record.print, record.trace, all);
   if (record.accuracy) add(*record.accuracy, record, all);
   if (record.calibration) add(*record.calibration, all);
   if (record.registration) add(*record.registration, all);

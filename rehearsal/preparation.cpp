@@ -57,6 +57,7 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
     throw InputError(fmt::format("unknown engine '{}': one of {}", request.engine, fmt::join(engines, ", ")));
   TwinSetup setup;
   setup.machine = machine::load_machine(request.machine, setup.calibrated);
+  setup.cure = machine::load_cure(request.machine);
   stand_at_home(request.home_axes, setup.machine);
   check_memory(request);
   if (request.dialect.nozzle_mm && setup.machine.tool.prints())
@@ -68,7 +69,7 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   if (setup.machine.tool.prints()) {
     setup.material =
         machine::load_material(request.material.empty() ? setup.machine.process.material : request.material);
-    mend_filament(request, setup, mended);
+    if (!setup.cure) mend_filament(request, setup, mended);
   }
   if (!request.fixture.empty())
     setup.part = read_fixture(machine::find_fixture(request.fixture), setup.machine);
@@ -79,7 +80,7 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
       seeds);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
-  if (setup.machine.tool.prints())
+  if (setup.machine.tool.prints() && !setup.cure)
     setup.layers = std::make_shared<ProgrammedLayers>(setup.program, setup.machine, setup.part,
                                                       told_layer(request.dialect, mended.facts));
   for (Finding& finding : process_warnings(request.dialect, setup.machine.tool, mended.facts,

@@ -184,8 +184,8 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
   if (before) fill_comparison(*before, runs, record);
   for (const auto& findings :
        {findings_of(runs.main, setup, options.gap_control),
-        setup.machine.tool.prints() ? temperature_findings(setup.program, setup.material)
-                                    : std::vector<Finding>{},
+        setup.machine.tool.prints() && !setup.cure ? temperature_findings(setup.program, setup.material)
+                                                   : std::vector<Finding>{},
         accuracy_findings(runs.main.tip_peak, runs.main.orientation_peak, setup.accepted)})
     record.findings.insert(record.findings.end(), findings.begin(), findings.end());
   record.trace = runs.main.trace;

@@ -66,7 +66,7 @@ PrintFigures print_figures(const TwinRun& run, const machine::MachineDescription
   PrintFigures print;
   print.duration_s = run.result.duration;
   print.moves = run.result.moves;
-  print.extruded_mm = to_mm(run.result.extruded);
+  print.extruded_mm = as_filament_mm(laid.extruded_volume, truth);
   print.printed_mm = as_filament_mm(laid.laid_volume - laid.standstill_volume, truth);
   print.purged_mm = as_filament_mm(laid.standstill_volume, truth);
   print.missing_mm = std::max(0.0, print.extruded_mm - print.printed_mm - print.purged_mm);

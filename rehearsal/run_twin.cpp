@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +13,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/record/recording_port.h"
+#include "sim/curing/curing.h"
 #include "sim/deposition/bead_temperature.h"
 #include "sim/plant/drive_errors.h"
 #include "sim/plant/plant.h"
@@ -100,7 +102,7 @@ sim::DepositionOptions deposition_options(const TwinSetup& setup,
   sim::DepositionOptions options;
   options.laid = std::move(laid);
   if (setup.layers) options.band = [&layers = *setup.layers](int line) { return layers.band(line); };
-  if (!setup.machine.tool.prints()) return options;
+  if (!setup.machine.tool.prints() || setup.cure) return options;  // resin carries what it holds
   options.on_unsupported = [&strands](const sim::UnsupportedStretch& stretch) { strands.add(stretch); };
   options.glass_transition = setup.material.glass_transition;
   options.substrate_temperature = sim::BeadTemperature(setup.truth, setup.material);
@@ -116,9 +118,8 @@ struct Watch {
         flow(setup.program, setup.machine),
         fill(workpiece, setup.machine),
         strands(setup.truth, setup.material),
-        deposition(setup.truth, workpiece,
-                   deposition_options(
-                       setup, [this](const auto& bead) { laid(bead); }, strands)),
+        deposition(setup.truth, workpiece, options_of(setup)),
+        curing(curing_of(setup)),
         trace(deposition),
         collision(setup.truth, setup.as_built, setup.workblank ? setup.workblank->stock : setup.built_part,
                   collision_options(setup)),
@@ -126,7 +127,7 @@ struct Watch {
         thread(watching(options)) {}
 
   std::vector<sim::Observer*> watching(const RunOptions& options) {
-    std::vector<sim::Observer*> all{&deposition, &trace};
+    std::vector<sim::Observer*> all{curing ? static_cast<sim::Observer*>(&*curing) : &deposition, &trace};
     if (options.watch_collisions) all.push_back(&collision);
     if (removal) all.push_back(removal.get());
     return all;
@@ -134,6 +135,25 @@ struct Watch {
 
   static std::unique_ptr<sim::RemovalObserver> removal_of(const TwinSetup& setup) {
     return setup.workblank ? std::make_unique<sim::RemovalObserver>(*setup.workblank) : nullptr;
+  }
+
+  sim::DepositionOptions options_of(const TwinSetup& setup) {
+    auto options = deposition_options(
+        setup, [this](const auto& bead) { laid(bead); }, strands);
+    // What lies deeper than the light reaches is not held by what is below.
+    if (setup.cure)
+      options.band = [this, limits = setup.machine.gap](int) {
+        return sim::GapBand{limits.accepted_min, std::min(limits.accepted_max, curing->depth()), 0};
+      };
+    return options;
+  }
+
+  std::optional<sim::CuringObserver> curing_of(const TwinSetup& setup) {
+    if (!setup.cure) return std::nullopt;
+    const double diameter = setup.truth.tool.filament_diameter;
+    return std::make_optional<sim::CuringObserver>(
+        *setup.cure, std::numbers::pi / 4 * diameter * diameter, [this] { return deposition.gap(); },
+        deposition);
   }
 
   void laid(const sim::LaidBead& bead) {
@@ -161,6 +181,7 @@ struct Watch {
   FillWatch fill;
   sim::AirStrandSolver strands;
   sim::DepositionObserver deposition;
+  std::optional<sim::CuringObserver> curing;
   TraceObserver trace;
   sim::CollisionObserver collision;
   std::unique_ptr<sim::RemovalObserver> removal;

@@ -9,6 +9,7 @@
 #include "geometry/mesh.h"
 #include "machine/accepted_errors.h"
 #include "machine/calibrated_parameters.h"
+#include "machine/cure.h"
 #include "machine/description.h"
 #include "machine/material.h"
 #include "rehearsal/fill_watch.h"
@@ -46,6 +47,7 @@ struct TwinSetup {
   std::shared_ptr<const geometry::Mesh>
       built_part;                                   ///< as clamped: what the twin holds; null where `part` is
   std::shared_ptr<const sim::Workblank> workblank;  ///< of a mill; null: what it cuts is not asked for
+  std::optional<machine::Cure> cure;                ///< of a tool that cures resin
   sim::AsBuilt as_built;
   std::string engine;
   std::uint64_t seed = 0;

@@ -5,7 +5,8 @@
 
 namespace understudy::toolpath {
 
-std::string clipper_version();  ///< planners/
-std::string json_version();     ///< lattice/
+std::string clipper_version();   ///< planners/
+std::string json_version();      ///< lattice/
+std::string lib2geom_version();  ///< svg/
 
 }  // namespace understudy::toolpath

@@ -18,7 +18,7 @@ namespace {
 struct SupportFreeRequest {
   PlanOptions options;
   std::string part, line;
-  double layer_mm = 0.2, step_mm = 1, lag_deg = 20;
+  double layer_mm = 0.2, step_mm = 1, smooth_um = 20, lag_deg = 20;
   std::vector<double> range_mm{0.08, 0.32};
   int walls = 1;
   bool ignore_reach = false;
@@ -29,10 +29,13 @@ int plan_support_free(const SupportFreeRequest& r) {
   check_option("--layer", r.layer_mm, 10);
   check_option("--step", r.step_mm, 100);
   check_option("--lag", r.lag_deg, 60);
+  if (!(r.smooth_um >= 0 && r.smooth_um <= 1000))
+    throw InputError(fmt::format("--smooth {:g} um is outside 0..1000 um", r.smooth_um));
   const auto machine = printing_machine(r.options.machine);
   const auto part = geometry::read_stl(machine::find_fixture(r.part));
-  const auto line = r.line.empty() ? toolpath::find_structural_line(*part, from_mm(r.step_mm))
-                                   : toolpath::StructuralLine(toolpath::read_curve_csv(r.line));
+  const auto line = r.line.empty()
+                        ? toolpath::find_structural_line(*part, from_mm(r.step_mm), r.smooth_um * kMicrometre)
+                        : toolpath::StructuralLine(toolpath::read_curve_csv(r.line));
   toolpath::SupportFreePlan plan;
   plan.range = {from_mm(r.layer_mm), from_mm(r.range_mm.at(0)), from_mm(r.range_mm.at(1)),
                 from_deg(r.lag_deg)};
@@ -74,6 +77,11 @@ void add_plan_support_free(CLI::App& plan, Action& action) {
   command->add_option("--line", request->line,
                       "CSV x_mm,y_mm,z_mm of the structural line, from the foot; without it, it is found");
   command->add_option("--step", request->step_mm, "mm, along the line, in which it is found")
+      ->capture_default_str();
+  command
+      ->add_option("--smooth", request->smooth_um,
+                   "um by which the found line may leave the middles of the sections, lest layers turn with "
+                   "the facets of a mesh: about a facet's distance from the true surface")
       ->capture_default_str();
   command->add_option("--machine", request->options.machine, "filament, nozzle and reach come from it")
       ->required();

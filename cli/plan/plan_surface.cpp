@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <numbers>
 
@@ -7,10 +8,13 @@
 #include "cli/plan/plan_options.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "machine/cure.h"
 #include "machine/fixture_file.h"
 #include "toolpath/planners/curve_csv.h"
+#include "toolpath/planners/drawing_on_surface.h"
 #include "toolpath/planners/section_rows.h"
 #include "toolpath/planners/surface_planner.h"
+#include "toolpath/svg/svg_outlines.h"
 
 namespace understudy::cli {
 namespace {
@@ -19,6 +23,8 @@ struct SurfaceRequest {
   PlanOptions options;
   std::string part;
   std::vector<std::string> curves;
+  std::string svg, svg_at;
+  double svg_turn_deg = 0, svg_width_mm = 0;
   bool upright = false, ignore_reach = false;
   std::vector<double> section{0, 0, 0, 0, 1, 0};  ///< point [mm] and normal of the cutting plane
   std::vector<double> tilt_deg{-20, 20};
@@ -35,13 +41,31 @@ void check(const SurfaceRequest& r) {
     throw InputError(fmt::format("--pitch {:g} is outside 0..100", r.pitch_mm));
   if (r.rows > 1 && !r.curves.empty())
     throw InputError(fmt::format("--rows {} and --curve exclude each other: rows are cut by planes", r.rows));
+  if (!r.svg.empty() && (r.rows > 1 || !r.curves.empty()))
+    throw InputError("--svg excludes --rows and --curve: its strokes are all that is laid");
+  if (!r.svg.empty() && r.svg_at.empty())
+    throw InputError("--svg needs --svg-at X,Y,Z: where on the part the middle of the drawing goes");
+  if (!(r.svg_width_mm >= 0 && r.svg_width_mm <= 1000))
+    throw InputError(fmt::format("--svg-width {:g} is outside 0..1000", r.svg_width_mm));
   if (r.tilt_deg[0] >= r.tilt_deg[1])
     throw InputError(
         fmt::format("--tilt {:g} {:g}: the first must be smaller", r.tilt_deg[0], r.tilt_deg[1]));
 }
 
+std::vector<std::vector<Vec3>> strokes_of_svg(const geometry::Mesh& mesh, const SurfaceRequest& r) {
+  toolpath::DrawingPlace place;
+  place.point_W = place_from("--svg-at", r.svg_at);
+  place.turn = from_deg(r.svg_turn_deg);
+  place.width = from_mm(r.svg_width_mm);
+  std::vector<std::vector<Vec2>> strokes;
+  for (auto& stroke : toolpath::read_svg(r.svg, r.chord_um * kMicrometre))
+    strokes.push_back(std::move(stroke.points));
+  return toolpath::drawing_on_surface(mesh, strokes, place);
+}
+
 std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const SurfaceRequest& r,
                                          const toolpath::SurfacePlan& plan) {
+  if (!r.svg.empty()) return strokes_of_svg(mesh, r);
   if (!r.curves.empty()) {
     std::vector<std::vector<Vec3>> read;
     for (const std::string& file : r.curves) read.push_back(toolpath::read_curve_csv(file));
@@ -60,9 +84,38 @@ std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const Surfa
   return toolpath::section_rows(mesh, rows);
 }
 
+constexpr double kPass = 0.2 * kMillimetre;
+
+/// What the tool lays, cures or cuts.
+void fill_process(const SurfaceRequest& r, const machine::MachineDescription& machine,
+                  toolpath::SurfacePlan& plan) {
+  plan.cuts = !machine.tool.prints();
+  plan.bead_width = from_mm(r.options.bead_width_mm);
+  plan.bead_height = bead_height(r.options, machine);
+  plan.filament_diameter = machine.tool.filament_diameter;
+  plan.temperature = r.options.temperature_c + kCelsiusZero;
+  plan.fan = r.options.fan;
+  if (plan.cuts) {
+    plan.gap = 0;
+    plan.bead_height = r.options.bead_height_mm > 0 ? from_mm(r.options.bead_height_mm) : kPass;
+    return;
+  }
+  const auto cure = machine::load_cure(r.options.machine);
+  if (!cure) return;
+  const double depth = cure->depth(plan.feed), area = cure->area(plan.feed, plan.bead_height);
+  if (!(depth > plan.bead_height))
+    throw InputError(fmt::format(
+        "--feed {:g} mm/s: the light cures {:.3f} mm deep, less than the layer of {:.3f} mm: go slower",
+        r.options.feed_mm_per_s, to_mm(depth), to_mm(plan.bead_height)));
+  plan.temperature = 0;
+  // As wide as the flattened bead that has the section of what is cured.
+  plan.bead_width =
+      plan.bead_height + std::max(0.0, area / plan.bead_height - std::numbers::pi / 4 * plan.bead_height);
+}
+
 int plan_surface(const SurfaceRequest& r) {
   check(r);
-  const auto machine = printing_machine(r.options.machine);
+  const auto machine = machine::load_machine(r.options.machine);
   const auto mesh = geometry::read_stl(machine::find_fixture(r.part));
   toolpath::SurfacePlan plan;
   plan.gap = machine.gap.aim;
@@ -72,11 +125,7 @@ int plan_surface(const SurfaceRequest& r) {
   plan.chord_tolerance = r.chord_um * kMicrometre;
   plan.feed = from_mm(r.options.feed_mm_per_s);
   plan.approach_feed = from_mm(r.options.approach_mm_per_s);
-  plan.bead_width = from_mm(r.options.bead_width_mm);
-  plan.bead_height = bead_height(r.options, machine);
-  plan.filament_diameter = machine.tool.filament_diameter;
-  plan.temperature = r.options.temperature_c + kCelsiusZero;
-  plan.fan = r.options.fan;
+  fill_process(r, machine, plan);
   plan.tilt_max = std::numbers::pi;  // the machine says
   plan.upright = r.upright;
   const auto program = toolpath::plan_surface(*mesh, curves_on(*mesh, r, plan), r.layers, plan);
@@ -97,6 +146,18 @@ void add_plan_surface(CLI::App& plan, Action& action) {
   surface->add_option("--curve", request->curves,
                       "CSV x_mm,y_mm,z_mm of a curve near the surface; several, one after the other, are the "
                       "strokes of a drawing");
+  surface->add_option("--svg", request->svg,
+                      "SVG drawing whose outlines are laid on the part, its upper side uphill");
+  surface->add_option("--svg-at", request->svg_at,
+                      "X,Y,Z in mm on the part, where the middle of the drawing goes");
+  surface->add_option("--svg-turn", request->svg_turn_deg, "degrees about the part's normal there")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
+  surface->add_option("--svg-width", request->svg_width_mm, "mm, of the whole drawing; 0: as the file has it")
+      ->capture_default_str();
+  surface->footer(
+      "Example: understudy plan surface slanted_box --svg usc.svg --svg-at 0,0,18 --svg-width 22 -o "
+      "usc.gcode");
   surface->add_option("--section", request->section, "without --curve: cut by the plane x y z nx ny nz (mm)")
       ->expected(6)
       ->capture_default_str();

@@ -9,6 +9,10 @@
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/version.h"
+#include "machine/description.h"
+#include "regression/scenario_file.h"
+#include "regression/scenario_outcome.h"
 
 namespace understudy::cli {
 namespace {
@@ -35,6 +39,32 @@ int run_plan(std::vector<std::string> words) {
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   app.parse(words);
   return action();
+}
+
+/// Of a file beside the scenario, of a part of that name, or nothing.
+std::string digest_of_word(const regression::Scenario& scenario, const std::string& word) {
+  std::error_code ignored;
+  const std::string file = file_beside(scenario, word);
+  const fs::path part = machine::models_folder() / "parts" / (word + ".stl");
+  if (file == word && !fs::is_regular_file(part, ignored)) return {};
+  std::string text = sha256_hex(read_file(file != word ? fs::path(file) : part)) + "\n";
+  // A study of a scenario depends on that one's program and fixture as well.
+  if (!scenario.command.empty() && file.ends_with(".yaml") && file != word) {
+    const regression::Scenario named = regression::load_scenario(file);
+    if (named.command.empty()) text += regression::outcome_inputs(named, sources_sha256(named)) + "\n";
+  }
+  return text;
+}
+
+/// Machines and materials: which of them a study takes, its defaults say.
+std::string digest_of_models() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(machine::models_folder()))
+    if (entry.is_regular_file() && entry.path().extension() != ".stl") files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::string text;
+  for (const fs::path& file : files) text += sha256_hex(read_file(file)) + "\n";
+  return text;
 }
 
 }  // namespace
@@ -88,12 +118,17 @@ void write_planned(const regression::Scenario& scenario, const fs::path& output)
   }
 }
 
-std::string plan_sha256(const regression::Scenario& scenario) {
-  if (scenario.plan.empty()) return {};
-  std::string text = scenario.plan + "\n";
-  for (const std::string& word : split_command_line(scenario.plan))
-    if (const std::string file = file_beside(scenario, word); file != word)
-      text += sha256_hex(read_file(file)) + "\n";
+std::string sources_sha256(const regression::Scenario& scenario) {
+  const bool command = !scenario.command.empty();
+  if (scenario.plan.empty() && !command) return {};
+  std::string text = fmt::format("{}\n{}\n", kVersion, command ? scenario.command : scenario.plan);
+  try {
+    for (const std::string& word : split_command_line(command ? scenario.command : scenario.plan))
+      text += digest_of_word(scenario, word);
+    if (command) text += digest_of_models();
+  } catch (const InputError&) {
+    return {};
+  }
   return sha256_hex(text);
 }
 

@@ -20,7 +20,9 @@ std::vector<std::string> planner_options(const std::string& planner);
 /// The path of the file `word` beside the scenario; `word` itself where there is none.
 std::string file_beside(const regression::Scenario& scenario, const std::string& word);
 
-/// Of the plan's words and the files that they name; empty without a plan.
-std::string plan_sha256(const regression::Scenario& scenario);
+/// SHA-256 of what the scenario's plan or command is made from: its words, the files and parts that they
+/// name, and of a command all machines and materials, and what a scenario that it names depends on. Empty
+/// without either, and where a file cannot be read.
+std::string sources_sha256(const regression::Scenario& scenario);
 
 }  // namespace understudy::cli

@@ -136,7 +136,7 @@ class Runner {
  private:
   void run_one(std::size_t i) {
     const Scenario& scenario = scenarios_[i];
-    const std::string inputs = regression::outcome_inputs(scenario, plan_sha256(scenario));
+    const std::string inputs = regression::outcome_inputs(scenario, sources_sha256(scenario));
     std::optional<ScenarioOutcome> outcome;
     if (request_.resume) outcome = finished_outcome(outcomes_, scenario, inputs);
     const bool resumed = outcome.has_value();
@@ -238,7 +238,7 @@ int run_scenarios(const ScenarioRequest& request) {
 int run_for_outcome(const ScenarioRequest& request, const fs::path& outcome) {
   end_with_parent();
   const Scenario scenario = regression::load_scenario(request.paths.at(0));
-  const std::string inputs = regression::outcome_inputs(scenario, plan_sha256(scenario));
+  const std::string inputs = regression::outcome_inputs(scenario, sources_sha256(scenario));
   write_file(outcome, regression::outcome_text(
                           scenario, run_here(scenario, request.folder, request.threads, {}), inputs));
   return kGood;

@@ -108,9 +108,14 @@ void read_bodies(YamlMap& map, std::vector<geometry::Shape>& bodies) {
            [&bodies](YamlMap& body, std::size_t) { bodies.push_back(read_body(body)); });
 }
 
-void read_tool(YamlMap& map, Tool& tool) {
+void read_tool(YamlMap& map, Tool& tool, std::optional<Cure>& cure) {
   if (map.has("end_mill_diameter_mm")) {
     tool.flat_diameter = map.quantity("end_mill_diameter_mm", {0.1, 100}, "of a tool that prints nothing");
+    read_bodies(map, tool.bodies);
+    return;
+  }
+  if (map.has("light_guide_diameter_mm")) {
+    read_cure(map, tool, cure);
     read_bodies(map, tool.bodies);
     return;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/yaml/yaml_map.h"
+#include "machine/cure.h"
 #include "machine/description.h"
 
 namespace understudy::machine {
@@ -14,7 +15,7 @@ void read_masses(YamlMap& map, Masses& masses);
 void read_bodies(YamlMap& map, std::vector<geometry::Shape>& bodies);
 /// [kg m^2] along the axes of a frame; refuses moments that no body has.
 Vec3 read_inertia(YamlMap& map, const std::string& key, const char* about);
-void read_tool(YamlMap& map, Tool& tool);
+void read_tool(YamlMap& map, Tool& tool, std::optional<Cure>& cure);
 void read_process(YamlMap& map, Process& process);
 
 }  // namespace understudy::machine

@@ -85,15 +85,31 @@ Mesh bottle() {
   return {std::move(vertices), std::move(triangles)};
 }
 
+constexpr double kSlantHeight = 18;  // [mm], of the middle of the slanted top
+
 // Song 2015, 6.2: a box whose top is a plane slanted by 15 degrees, here falling towards +x.
 Mesh slanted_box() {
-  constexpr double kHalfLength = 30, kHalfWidth = 20, kMiddleHeight = 18;  // [mm]
+  constexpr double kHalfLength = 30, kHalfWidth = 20;  // [mm]
   const double rise = kHalfLength * std::tan(15 * kDegree);
   std::vector<Vec3> vertices;
   for (int i = 0; i < 8; ++i) {
     const double x = i & 1 ? kHalfLength : -kHalfLength;
-    const double top = kMiddleHeight + (i & 1 ? -rise : rise);
+    const double top = kSlantHeight + (i & 1 ? -rise : rise);
     vertices.push_back(Vec3(x, i & 2 ? kHalfWidth : -kHalfWidth, i & 4 ? top : 0) * kMillimetre);
+  }
+  return {std::move(vertices), geometry::box_triangles()};
+}
+
+// Song 2015, figure 15: what is built on a slope. Three layers of 0.13 mm on the slanted top, and 0.3 mm of
+// it inside the box, so that the box is its core.
+Mesh slanted_plate() {
+  constexpr double kHalfLength = 6, kHalfWidth = 4, kInside = 0.3, kOutside = 0.39;  // [mm]
+  const Mat3 turn = Eigen::AngleAxisd(15 * kDegree, Vec3::UnitY()).toRotationMatrix();
+  std::vector<Vec3> vertices;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 p(i & 1 ? kHalfLength : -kHalfLength, i & 2 ? kHalfWidth : -kHalfWidth,
+                 i & 4 ? kOutside : -kInside);
+    vertices.push_back((Vec3(0, 0, kSlantHeight) + turn * p) * kMillimetre);
   }
   return {std::move(vertices), geometry::box_triangles()};
 }
@@ -213,6 +229,8 @@ void make_parts(const std::filesystem::path& folder) {
   write_file(
       folder / "slanted_box.stl",
       geometry::write_stl(slanted_box(), "box, top slanted 15 degrees towards +x, on z = 0, millimetres"));
+  write_file(folder / "slanted_plate.stl",
+             geometry::write_stl(slanted_plate(), "plate of 0.39 mm on the slanted box, millimetres"));
   write_file(folder / "crown.stl",
              geometry::write_stl(crown(0), "block with a crown of 40.39 mm, millimetres"));
   write_file(folder / "crown_core.stl",
@@ -229,6 +247,16 @@ void make_parts(const std::filesystem::path& folder) {
                                  "16 by 10 mm, bent by 60 degrees, millimetres"));
   write_file(folder / "s_tube.stl", geometry::write_stl(*swept_part(round, s_bend(), kRings),
                                                         "12 mm round, bent like an S, millimetres"));
+  constexpr double kCloseRings = 1e-3;  // [m]; these bend more sharply
+  write_file(folder / "two_bends_round.stl",
+             geometry::write_stl(*swept_part(circle_mm(3, 32), bends_across_each_other(), kCloseRings),
+                                 "6 mm round, two bends of 45 degrees across each other, millimetres"));
+  write_file(folder / "two_bends_bar.stl",
+             geometry::write_stl(*swept_part(rectangle_mm(6, 4), bends_to_one_side(), kCloseRings),
+                                 "6 by 4 mm, two bends of 40 degrees to one side, millimetres"));
+  write_file(folder / "two_bends_oval.stl",
+             geometry::write_stl(*swept_part(oval_mm(3.5, 2.5, 32), bends_to_both_sides(), kCloseRings),
+                                 "7 by 5 mm oval, bent by 55 degrees and by 80 back, millimetres"));
   write_file(folder / "column_with_arms.stl",
              geometry::write_stl(*block_part(column_with_arms(), 5),
                                  "5 x 5 x 40 mm, an arm of 10 mm on each side, millimetres"));

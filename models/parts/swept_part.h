@@ -60,6 +60,11 @@ inline std::vector<Vec2> circle_mm(double radius, int facets = 180) {
   }
   return outline;
 }
+inline std::vector<Vec2> oval_mm(double a, double b, int facets = 180) {
+  std::vector<Vec2> outline = circle_mm(a, facets);
+  for (Vec2& p : outline) p.y() *= b / a;
+  return outline;
+}
 inline std::vector<Vec2> rectangle_mm(double x, double y) {
   const double a = from_mm(x) / 2, b = from_mm(y) / 2;
   return {{-a, -b}, {a, -b}, {a, b}, {-a, b}};
@@ -98,6 +103,16 @@ inline std::shared_ptr<geometry::Mesh> swept_part(const std::vector<Vec2>& outli
 inline std::vector<SweptPiece> one_bend() { return {straight_mm(10), arc_mm(30, 60), straight_mm(9.65)}; }
 inline std::vector<SweptPiece> s_bend() {
   return {straight_mm(6), arc_mm(25, 50), arc_mm(25, 50, 180), straight_mm(5)};
+}
+/// Ours, small: two bends one after the other in one plane, one that turns back, and one across the other.
+inline std::vector<SweptPiece> bends_to_one_side() {
+  return {straight_mm(3), arc_mm(14, 40), straight_mm(2), arc_mm(14, 40), straight_mm(8)};
+}
+inline std::vector<SweptPiece> bends_to_both_sides() {
+  return {straight_mm(3), arc_mm(15, 55, 45), straight_mm(2), arc_mm(15, 80, 225), straight_mm(3)};
+}
+inline std::vector<SweptPiece> bends_across_each_other() {
+  return {straight_mm(3), arc_mm(16, 45), straight_mm(2), arc_mm(16, 45, 90), straight_mm(3)};
 }
 inline std::vector<SweptPiece> bends_in_two_planes() {
   return {straight_mm(6), arc_mm(30, 40), straight_mm(5), arc_mm(30, 40, 90), straight_mm(5)};

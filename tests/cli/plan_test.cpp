@@ -436,6 +436,18 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan finishing " + inputs.write("large.stl", box_stl(350, 12)) +
                 " --machine finishing --from 22",
             "out of reach of finishing: axis"},
+           {"plan surface slanted_box --svg-at 0,0,18 --svg " +
+                inputs.write("flat.svg", "<svg>\n<path id='u' transform='scale(1,0)' d='M 0 0 h 5'/></svg>"),
+            "flat.svg:2: <path id=\"u\">: transform=\"scale(1,0)\": it has no inverse"},
+           {"plan surface slanted_box --svg " + kSource + "/scenarios/letters/usc.svg",
+            "--svg needs --svg-at X,Y,Z"},
+           {"plan surface slanted_box --svg-at 0,0,30 --svg " + kSource + "/scenarios/letters/usc.svg",
+            "from the part, more than 5 mm"},
+           {"plan surface bottle --machine hexapod+light-guide --feed 20",
+            "--feed 20 mm/s: the light cures 0.185 mm deep, less than the layer of 0.250 mm: go slower"},
+           {"plan surface bottle --machine hexapod+drill",
+            "machine hexapod has no tool 'drill': it has light-guide, cutter"},
+           {"plan surface bottle --machine arm+drill", "machine arm has no other tools, so no 'drill'"},
            {"plan spiral --lean 80", "lean is 80 deg, outside 0 to 60 deg"},
            {"plan spiral --temperature 20", "--temperature 20 C is outside 100..450 C"},
            {"plan spiral --pitch 0.3", "pitch is 0.3 mm, less than two strands of 0.45 mm"}}) {

@@ -91,6 +91,23 @@ TEST_F(ScenarioRuns, ResumeRunsOnlyWhatIsNotThereOrHasOtherInputs) {
   EXPECT_THAT(run(at("one.yaml") + " --resume", 2), HasSubstr("--resume needs --out"));
 }
 
+TEST_F(ScenarioRuns, ResumeTakesTheResultOfAStudyWhoseCommandAndFilesAreTheSame) {
+  const auto study = [&](const std::string& command) {
+    folder_.write("study.yaml", "name: study\ndescription: d\nsource: s\ncommand: " + command +
+                                    "\nexpect:\n  - {metric: exit_status, equals: 0, source: a test}\n");
+  };
+  const std::string words = at("study.yaml") + " --resume --out " + at("out");
+  study("sweep one.yaml --samples 2");
+  EXPECT_THAT(run(words), Not(HasSubstr("done before")));
+  EXPECT_THAT(run(words), HasSubstr("done before"));
+  study("sweep one.yaml --samples 3");
+  EXPECT_THAT(run(words), Not(HasSubstr("done before"))) << "another command";
+  write("one", 5);
+  EXPECT_THAT(run(words), Not(HasSubstr("done before"))) << "another seed in the file that it names";
+  folder_.write("line.gcode", read_file(at("line.gcode")) + "; a comment\n");
+  EXPECT_THAT(run(words), Not(HasSubstr("done before"))) << "another program of that file";
+}
+
 TEST_F(ScenarioRuns, ABaselineShowsWhatDiffers) {
   run(at("one.yaml") + " --out " + at("before"));
   EXPECT_THAT(run(at("one.yaml") + " --baseline " + at("before")), Not(HasSubstr("diff")));

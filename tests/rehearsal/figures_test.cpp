@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/units.h"
+
 namespace understudy::rehearsal {
 namespace {
 
@@ -20,6 +22,32 @@ std::vector<std::string> sections_of(const Record& record) {
 // GCC 12 takes members of an empty std::optional on the stack for uninitialised (its PR 80635), not on the
 // heap.
 std::unique_ptr<Record> empty_record() { return std::make_unique<Record>(); }
+
+double value_of(const Record& record, const std::string& name) {
+  for (const Figure& figure : figures(record))
+    if (figure.section + "." + figure.name == name) return std::get<double>(figure.value);
+  return -1;
+}
+
+// A quarter turn at a lean of 30 degrees in 90 steps: each turns the axis by sin 30 degrees of a degree,
+// along the small circle's chord. What is not extruded does not count.
+TEST(Figures, TellHowTheToolLeansAndTurnsWhileItExtrudes) {
+  const auto record = empty_record();
+  record->print.emplace();
+  const auto add = [&](double lean, double azimuth, bool extruding) {
+    TracePoint point;
+    point.extruding = extruding;
+    point.X_WT_programmed.linear() =
+        (Eigen::AngleAxisd(azimuth, Vec3::UnitZ()) * Eigen::AngleAxisd(lean, Vec3::UnitY()))
+            .toRotationMatrix();
+    record->trace.push_back(point);
+  };
+  add(80 * kDegree, 0, false);
+  for (int i = 0; i <= 90; ++i) add(30 * kDegree, i * kDegree, true);
+  add(0, 0, false);
+  EXPECT_NEAR(value_of(*record, "print.tilt_max_deg"), 30, 1e-9);
+  EXPECT_NEAR(value_of(*record, "print.turned_deg"), 45, 1e-3);
+}
 
 TEST(Figures, ComeSectionBySectionInTheContractsOrder) {
   const auto empty = empty_record();

@@ -19,10 +19,12 @@ class RunFigures : public testing::Test {
   machine::MachineDescription machine_;
 };
 
-// 100 mm fed, 12 mm pushed back after retractions; of the 100, a blob of 3 mm and 1 mm still in the nozzle.
+// 130 mm planned when the machine stopped, 100 mm fed, 12 mm pushed back after retractions; of the 100, a
+// blob of 3 mm and 1 mm still in the nozzle.
 TEST_F(RunFigures, FilamentFedIsPrintedPurgedAndMissing) {
   TwinRun run;
-  run.result.extruded = from_mm(100);
+  run.result.extruded = from_mm(130);
+  run.deposition.extruded_volume = volume(100);
   run.result.primed = from_mm(12);
   run.deposition.laid_volume = volume(99);
   run.deposition.standstill_volume = volume(3);

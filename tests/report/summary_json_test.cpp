@@ -36,7 +36,7 @@ TEST(SummaryJson, HasTheContractsKeysInItsOrder) {
             (Keys{"kind", "severity", "gcode_line", "time_s", "value", "limit", "unit", "message"}));
   EXPECT_EQ(keys(summary["print"]),
             (Keys{"duration_s", "moves", "extruded_mm", "printed_mm", "purged_mm", "missing_mm", "primed_mm",
-                  "deposited_mm", "spanning_mm", "travel_mm", "fill_factor"}));
+                  "deposited_mm", "spanning_mm", "travel_mm", "tilt_max_deg", "turned_deg", "fill_factor"}));
   EXPECT_EQ(keys(summary["accuracy"]),
             (Keys{"tip_rms_um", "tip_p95_um", "tip_max_um", "orientation_max_mrad", "open_loop_tip_max_um",
                   "tip_tolerance_mm", "orientation_tolerance_deg"}));

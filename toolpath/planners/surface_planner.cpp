@@ -18,15 +18,19 @@ using geometry::SurfacePoint;
 constexpr int kMostLayers = 1000;
 
 void check_plan(const SurfacePlan& plan) {
-  check_positive("gap", to_mm(plan.gap), "mm");
+  if (!plan.cuts) check_positive("gap", to_mm(plan.gap), "mm");
   check_positive("standoff", to_mm(plan.standoff), "mm");
   check_positive("clearance", to_mm(plan.clearance), "mm");
   check_positive("step", to_mm(plan.step), "mm");
   check_within("chord tolerance", to_mm(plan.chord_tolerance), 1e-3, 10, "mm");
   check_positive("feed", plan.feed / kMillimetrePerMinute, "mm/min");
   check_positive("approach feed", plan.approach_feed / kMillimetrePerMinute, "mm/min");
-  check_bead(plan.bead_width, plan.bead_height);
-  check_positive("filament diameter", to_mm(plan.filament_diameter), "mm");
+  if (plan.cuts) {
+    check_positive("depth of a pass", to_mm(plan.bead_height), "mm");
+  } else {
+    check_bead(plan.bead_width, plan.bead_height);
+    check_positive("filament diameter", to_mm(plan.filament_diameter), "mm");
+  }
   check_positive("largest tilt", to_deg(plan.tilt_max), "deg");
   if (plan.clearance < plan.standoff)
     throw InputError(fmt::format("clearance is {:g} mm, less than the standoff of {:g} mm",
@@ -51,12 +55,17 @@ void add_stroke(ProgramBuilder& program, const std::vector<SurfacePoint>& path, 
                         : tool_at(s.position, s.normal, base + height);
   };
   const Pose above = tool(path.front(), plan.gap + plan.clearance);
-  if (program.empty()) program.begin(above, plan.temperature, plan.fan);
+  if (program.empty() && !plan.cuts) program.begin(above, plan.temperature, plan.fan);
   program.travel(above);
   program.travel(tool(path.front(), plan.gap + plan.standoff));
   program.move(tool(path.front(), plan.gap), plan.approach_feed);
-  const double middle = base + 0.5 * plan.bead_height, area = bead_area(plan.bead_width, plan.bead_height);
+  const double middle = base + 0.5 * plan.bead_height,
+               area = plan.cuts ? 0 : bead_area(plan.bead_width, plan.bead_height);
   for (std::size_t i = 1; i < path.size(); ++i) {
+    if (plan.cuts) {
+      program.move(tool(path[i], plan.gap), plan.feed);
+      continue;
+    }
     const Vec3 from = path[i - 1].position + middle * path[i - 1].normal;
     const Vec3 to = path[i].position + middle * path[i].normal;
     program.print(tool(path[i], plan.gap), plan.feed, area * (to - from).norm());
@@ -81,9 +90,11 @@ Program plan_surface(const geometry::Mesh& mesh, const std::vector<std::vector<V
     paths.push_back(sample_curve(mesh, curve, {outermost, plan.step, plan.chord_tolerance}));
     if (!plan.upright) check_tilt(paths.back(), plan.tilt_max);
   }
-  ProgramBuilder program(plan.filament_diameter);
-  for (int layer = 0; layer < layers; ++layer)
-    for (const auto& path : paths) add_stroke(program, path, layer * plan.bead_height, plan);
+  ProgramBuilder program(plan.cuts ? 1.0 : plan.filament_diameter);
+  for (int layer = 0; layer < layers; ++layer) {
+    const int height = plan.cuts ? layers - 1 - layer : layer;
+    for (const auto& path : paths) add_stroke(program, path, height * plan.bead_height, plan);
+  }
   return program.take();
 }
 

@@ -24,6 +24,9 @@ struct SurfacePlan {
   double fan = 0;                ///< 0..1
   double tilt_max = 0;           ///< [rad], largest tilt from vertical that the machine allows
   bool upright = false;          ///< the tool stays vertical whatever the normal: to compare with
+  /// An end mill, its face on the surface: nothing is laid, filament, heater and gap do not count, and layers
+  /// are passes from the outermost inwards, bead_height apart.
+  bool cuts = false;
 };
 
 /// `curve` is a polyline near the surface. Its smooth stretches are divided into equal steps, each point is

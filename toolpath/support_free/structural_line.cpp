@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "toolpath/planners/plan_checks.h"
 #include "toolpath/support_free/flat_section.h"
+#include "toolpath/support_free/smoothed_points.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -27,7 +28,8 @@ constexpr double kLastStep = 0.02;            // of a step, to which the end of 
 /// Walks up the part from its foot.
 class LineFinder {
  public:
-  LineFinder(const geometry::Mesh& part, double step) : part_(part), step_(step) {}
+  LineFinder(const geometry::Mesh& part, double step, double tolerance)
+      : part_(part), step_(step), tolerance_(tolerance) {}
 
   StructuralLine find() {
     start();
@@ -116,7 +118,7 @@ class LineFinder {
                                                                    : frame.origin);
     }
     better.push_back(line.points().back());
-    points_ = std::move(better);
+    points_ = smoothed_points(better, tolerance_);
   }
 
   /// Without points that came close together where the end was looked for.
@@ -130,7 +132,7 @@ class LineFinder {
   }
 
   const geometry::Mesh& part_;
-  double step_;
+  double step_, tolerance_;
   SectionFrame frame_;
   std::vector<Vec3> points_;
 };
@@ -186,12 +188,13 @@ Vec3 StructuralLine::tangent(double s) const {
       .normalized();
 }
 
-StructuralLine find_structural_line(const geometry::Mesh& part, double step) {
+StructuralLine find_structural_line(const geometry::Mesh& part, double step, double tolerance) {
   check_positive("step of the structural line", to_mm(step), "mm");
+  check_within("tolerance of the structural line", to_mm(tolerance), 0, 10, "mm");
   if (part.open_edges() > 0)
     throw InputError(
         fmt::format("the part has {} open edges, a part to slice must have 0", part.open_edges()));
-  return LineFinder(part, step).find();
+  return LineFinder(part, step, tolerance).find();
 }
 
 }  // namespace understudy::toolpath

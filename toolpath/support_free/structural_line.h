@@ -33,8 +33,9 @@ class StructuralLine {
 };
 
 /// From the middle of the part's foot, where the part leaves the plane z = lower, in steps of `step` [m] to
-/// its end: through the centroids of the sections across the line. Throws InputError for an open part, and
-/// where the part forks, so that no section continues the line.
-StructuralLine find_structural_line(const geometry::Mesh& part, double step);
+/// its end: the smoothest line within `tolerance` [m] of the centroids of the sections across it, so that it
+/// does not turn with the facets of a mesh. Throws InputError for an open part, and where the part forks, so
+/// that no section continues the line.
+StructuralLine find_structural_line(const geometry::Mesh& part, double step, double tolerance);
 
 }  // namespace understudy::toolpath

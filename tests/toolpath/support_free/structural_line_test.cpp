@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 std::string refusal(const geometry::Mesh& part, double step = 1e-3) {
   try {
-    find_structural_line(part, step);
+    find_structural_line(part, step, 20e-6);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -41,7 +41,7 @@ class FoundLine : public testing::TestWithParam<Bent> {};
 TEST_P(FoundLine, IsTheAxisAlongWhichThePartWasSwept) {
   const auto& [name, outline, pieces] = GetParam();
   const auto part = swept_part(outline, pieces);
-  const StructuralLine line = find_structural_line(*part, 1e-3);
+  const StructuralLine line = find_structural_line(*part, 1e-3, 20e-6);
   EXPECT_LT(farthest_off(line, pieces), 60e-6);
   EXPECT_NEAR(line.length(), swept_length(pieces), 0.1e-3);
   EXPECT_NEAR(line.at(0).norm(), 0, 20e-6);
@@ -56,14 +56,15 @@ INSTANTIATE_TEST_SUITE_P(StructuralLine, FoundLine, testing::ValuesIn(bent_parts
 
 TEST(StructuralLine, OfAStraightPartIsItsAxis) {
   const std::vector<SweptPiece> pieces{straight_mm(20)};
-  EXPECT_LT(farthest_off(find_structural_line(*swept_part(circle_mm(6), pieces), 1e-3), pieces), 60e-6);
+  EXPECT_LT(farthest_off(find_structural_line(*swept_part(circle_mm(6), pieces), 1e-3, 20e-6), pieces),
+            60e-6);
 }
 
 /// A first walk in long steps cuts corners; sections across the line as it is by then put that right.
 TEST(StructuralLine, IsTheAxisEvenWhereTheStepsAreLong) {
   const std::vector<SweptPiece> pieces{straight_mm(4), arc_mm(12, 80), straight_mm(6)};
   const auto part = swept_part(circle_mm(4), pieces);
-  EXPECT_LT(farthest_off(find_structural_line(*part, 2e-3), pieces), 60e-6);
+  EXPECT_LT(farthest_off(find_structural_line(*part, 2e-3, 20e-6), pieces), 60e-6);
 }
 
 TEST(StructuralLine, RunsThroughItsPointsAndAlongAnArc) {

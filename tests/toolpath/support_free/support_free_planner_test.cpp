@@ -48,7 +48,7 @@ TEST_P(SupportFree, LaysThePartInOnePathWithoutTravel) {
   const auto& [name, outline, pieces] = GetParam();
   const auto part = swept_part(outline, pieces);
   const SupportFreePlan plan = coarse();
-  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3), plan);
+  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3, 20e-6), plan);
   EXPECT_EQ(result.travels, 0);
   // From contour to lines, and from the last line up to the next layer's contour: two beads' width each.
   EXPECT_LT(moved_without_filament(result.program), result.layers * 4 * 0.9e-3);
@@ -70,7 +70,7 @@ TEST_P(SupportFree, EveryBeadLiesOnTheLayerBelow) {
   const auto& [name, outline, pieces] = GetParam();
   const auto part = swept_part(outline, pieces);
   const SupportFreePlan plan = coarse();
-  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3), plan);
+  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3, 20e-6), plan);
   int looked_at = 0;
   for (const Step& step : result.program.steps) {
     if (step.filament <= 0) continue;
@@ -104,7 +104,7 @@ TEST(SupportFreeCheck, LevelLayersOverhang) {
 TEST_P(SupportFree, ContoursOfNeighbouringLayersBeginAtOppositeEnds) {
   const auto& [name, outline, pieces] = GetParam();
   const auto part = swept_part(outline, pieces);
-  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3), coarse());
+  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3, 20e-6), coarse());
   // A layer begins where the tool's axis, or on straight pieces the height along it, changes without
   // filament.
   std::vector<Vec3> starts;
@@ -121,7 +121,7 @@ TEST_P(SupportFree, ContoursOfNeighbouringLayersBeginAtOppositeEnds) {
 TEST_P(SupportFree, WhatIsWrittenIsReadBack) {
   const auto& [name, outline, pieces] = GetParam();
   const auto part = swept_part(outline, pieces);
-  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3), coarse());
+  const auto result = plan_support_free(*part, find_structural_line(*part, 1e-3, 20e-6), coarse());
   const Program back = parse_gcode(write_gcode(result.program, {}), "p.gcode", {});
   ASSERT_EQ(back.steps.size(), result.program.steps.size());
   for (std::size_t i = 0; i < back.steps.size(); ++i) {
@@ -145,7 +145,7 @@ std::string refusal(const geometry::Mesh& part, const StructuralLine& line, cons
 
 TEST(SupportFreeRefusals, NameValueAndLimit) {
   const auto part = swept_part(circle_mm(6), one_bend());
-  const StructuralLine line = find_structural_line(*part, 1e-3);
+  const StructuralLine line = find_structural_line(*part, 1e-3, 20e-6);
   SupportFreePlan plan = coarse();
   plan.walls = 0;
   EXPECT_THAT(refusal(*part, line, plan), HasSubstr("number of walls"));
@@ -186,7 +186,7 @@ std::shared_ptr<geometry::Mesh> forked_part() {
 
 TEST(SupportFreeRefusals, APartThatForks) {
   const auto part = forked_part();
-  EXPECT_THAT(refusal(*part, find_structural_line(*part, 1e-3), coarse()),
+  EXPECT_THAT(refusal(*part, find_structural_line(*part, 1e-3, 20e-6), coarse()),
               HasSubstr("the part has branches"));
 }
 
