@@ -36,6 +36,7 @@ MachineKind kind_of(const Machine& machine) {
 /// 1 sigma of each axis [m], [rad], or whole covariances (n, 6, 6).
 struct NoiseArgument {
   MeasurementNoise assumed = kReferenceNoise;
+  py::object rows;  ///< keeps what `covariances` are
   std::optional<std::span<const double>> covariances;
 };
 
@@ -47,7 +48,8 @@ NoiseArgument noise_of(const py::object& noise, py::ssize_t rows) {
     if (array.ndim() != 3 || array.shape(0) != rows || array.shape(1) != 6 || array.shape(2) != 6)
       throw InputError(fmt::format(
           "noise: expected (position [m], rotation [rad]), or covariances of shape ({}, 6, 6)", rows));
-    argument.covariances = read_rows(array.attr("reshape")(rows, 36), {"noise", 36, "covariances", rows});
+    argument.rows = array.attr("reshape")(rows, 36);
+    argument.covariances = read_rows(argument.rows, {"noise", 36, "covariances", rows});
     return argument;
   }
   try {

@@ -60,7 +60,8 @@ void add_rehearsal(py::module_& module) {
           "summary", [](const Record& r) { return parsed(report::summary_json(r)); },
           "summary.json as a dict, in the units of files: each key names its own.")
       .def_property_readonly(
-          "findings", [](const Record& r) { return parsed(report::summary_json(r))["findings"]; },
+          "findings",
+          [](const Record& r) -> py::object { return parsed(report::summary_json(r))["findings"]; },
           "Of the summary: a dict each, errors first.")
       .def_property_readonly("trace_csv", &report::trace_csv, "The bytes of trace.csv.")
       .def_property_readonly(

@@ -93,6 +93,8 @@ py::object benchmark_gap(const std::string& machine, const std::vector<std::stri
   request.seed = seed;
   request.threads = threads;
   request.program = program;
+  if (program.empty())
+    request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
   request.command = "understudy.benchmark_gap()";
   studies::GapBenchmark benchmark;
   const Progress tell = told_to(progress);
@@ -136,12 +138,11 @@ void add_studies(py::module_& module) {
       "[m], rotation [rad]) each. disturbances: words of the command; empty: all.");
   module.def(
       "benchmark_gap", &benchmark_gap, py::arg("machine") = machine::kDefaultMachine, py::kw_only(),
-      py::arg("parts") = std::vector<std::string>{"detectors", "approach", "following"},
-      py::arg("trials") = 10, py::arg("machines") = 20,
-      py::arg("plants") = std::vector<std::string>{"quasistatic"}, py::arg("seed") = 1,
-      py::arg("threads") = 1, py::arg("program") = "", py::arg("progress") = py::none(),
-      "How well the gap is measured, closed and followed; the dict of gap.json. The part 'bottle' needs "
-      "`program`.");
+      py::arg("parts") = studies::GapBenchmarkRequest().parts, py::arg("trials") = 10,
+      py::arg("machines") = 20, py::arg("plants") = std::vector<std::string>{"quasistatic"},
+      py::arg("seed") = 1, py::arg("threads") = 1, py::arg("program") = "", py::arg("progress") = py::none(),
+      "How well the gap is measured, closed and followed; the dict of gap.json. program: of the bottle's "
+      "line; scenarios/song-bottle.gcode without one.");
   module.def("sample_poses", &sample_poses, py::arg("machine"), py::arg("count") = 24, py::kw_only(),
              py::arg("design") = "d-optimal", py::arg("as_built") = py::none(),
              py::arg("noise") = Noise{20e-6, 0.2e-3}, py::arg("seed") = 1,

@@ -158,7 +158,7 @@ void add_answers(py::module_& module) {
       .def_property_readonly("moving", [](const State& s) { return s.state.moving; })
       .def_property_readonly(
           "fault", [](const State& s) { return std::string(to_string(s.state.fault)); },
-          "'none', or the word of a sticky fault.");
+          "'no fault', or the words of a sticky one.");
   py::class_<machine::Frame>(module, "Frame", "A picture of the tool's microscope.")
       .def_property_readonly(
           "image", [](const machine::Frame& f) { return picture_of(f.image); },

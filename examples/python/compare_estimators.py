@@ -20,12 +20,13 @@ def mine(problem):
     def whitened(parameters):
         return np.einsum("nij,nj->ni", whiten, problem.residuals(parameters)).ravel()
 
-    parameters, step = problem.nominal, 1e-6  # [m]: far above rounding, far below what bends a residual
+    parameters, step = problem.nominal, 1e-5  # [m]: far above rounding, far below what bends a residual
     for _ in range(20):
         here = whitened(parameters)
-        columns = [(whitened(parameters + step * axis) - here) / step for axis in np.eye(len(parameters))]
+        columns = [(whitened(parameters + step * axis) - whitened(parameters - step * axis)) / (2 * step)
+                   for axis in np.eye(len(parameters))]
         rates = np.stack(columns, axis=1)
-        by = np.linalg.lstsq(rates, -here, rcond=None)[0]
+        by = np.linalg.lstsq(rates, -here, rcond=1e-7)[0]
         parameters = parameters + by
         if np.abs(by).max() < 1e-9:
             break

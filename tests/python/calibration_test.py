@@ -25,12 +25,13 @@ class Mine:
         parameters = problem.nominal
         for _ in range(self.steps):
             here = errors(parameters)
-            rates = np.stack([(errors(parameters + 1e-6 * e) - here) / 1e-6 for e in np.eye(len(parameters))], axis=1)
-            by = np.linalg.lstsq(rates, -here, rcond=None)[0]
+            rates = np.stack([(errors(parameters + 1e-5 * e) - errors(parameters - 1e-5 * e)) / 2e-5
+                              for e in np.eye(len(parameters))], axis=1)
+            by = np.linalg.lstsq(rates, -here, rcond=1e-7)[0]
             parameters = parameters + by
             if np.abs(by).max() < 1e-9:
                 break
-        return parameters, np.linalg.pinv(rates.T @ rates)
+        return parameters, np.linalg.pinv(rates.T @ rates, rcond=1e-14)
 
 
 class FromArrays(unittest.TestCase):
@@ -46,8 +47,8 @@ class FromArrays(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             table = Path(folder) / "measured.csv"
             table.write_text(header + "".join(",".join(map(repr, row)) + "\n" for row in rows.tolist()))
-            run = subprocess.run([os.environ["UNDERSTUDY_COMMAND"], "calibrate", table, "--machine", "hexapod", "--noise",
-                                  "20um:0.2mrad", "-o", f"{folder}/theirs.yaml", "--out", f"{folder}/report"],
+            run = subprocess.run([os.environ["UNDERSTUDY_COMMAND"], "calibrate", table, "--machine", "hexapod",
+                                  "--noise", "20", "0.2", "-o", f"{folder}/theirs.yaml"],
                                  capture_output=True, text=True, check=False)
             self.assertEqual(run.returncode, 0, run.stderr)
             found.write(f"{folder}/mine.yaml")

@@ -11,7 +11,7 @@ from understudy import InputError
 PLANS = {
     "spiral": (None, dict(machine="arm", radius=8, turns=1, temperature=210), ["--radius", "8", "--turns", "1", "--temperature", "210"]),
     "surface": ("bottle", dict(machine="hexapod", rows=2, tilt=(-10, 10), feed=4), ["--rows", "2", "--tilt", "-10", "10", "--feed", "4"]),
-    "planar": ("slanted_box", dict(machine="hexapod", layer=0.5, walls=1), ["--layer", "0.5", "--walls", "1"]),
+    "planar": ("slanted_box", dict(machine="hexapod", layer=0.3, walls=1), ["--layer", "0.3", "--walls", "1"]),
     "lattice": ("box:10x10x10", dict(machine="arm", strut=5), ["--strut", "5"]),
 }
 
@@ -41,7 +41,7 @@ class ThePlanners(unittest.TestCase):
         for kind, part, options, words in (("spiral", None, dict(radius=-1), "--radius -1 is outside 0..1000"),
                                            ("surface", "botle", {}, "bottle"),
                                            ("spiral", None, dict(radiuss=1), "--radiuss"),
-                                           ("spirral", None, {}, "spirral")):
+                                           ("spirral", None, {}, "A subcommand is required")):
             with self.subTest(words), self.assertRaisesRegex(InputError, words):
                 understudy.plan(kind, part, **options)
 

@@ -12,8 +12,8 @@ sys.path.insert(0, str(Path("examples/python").resolve()))
 import gap_controller  # noqa: E402
 
 
-def move_up(twin, way=5e-3, seconds=0.5):
-    """Queues a straight move of the tip along z; the times of its ends."""
+def move_up(twin, way=5e-3, seconds=0.5, end=1.0):
+    """Queues a straight move of the tip along z, up to a share of it; the times of its setpoints."""
     period = twin.machine.cycle_time
     count = round(seconds / period)
     poses = np.tile(twin.machine.home, (count, 1))
@@ -22,7 +22,8 @@ def move_up(twin, way=5e-3, seconds=0.5):
     times = twin.now + period * np.arange(1, count + 1)
     velocities = np.gradient(axes, period, axis=0)
     velocities[-1] = 0
-    return twin.submit(times, axes, velocities=velocities), times
+    count = int(end * count)
+    return twin.submit(times[:count].copy(), axes[:count].copy(), velocities=velocities[:count].copy()), times[:count]
 
 
 class ThePort(unittest.TestCase):
@@ -55,16 +56,21 @@ class ThePort(unittest.TestCase):
         axes = np.tile(twin.machine.home_axes, (2, 1))
         self.assertEqual(twin.submit(np.array([1.0, 1.0]), axes), Status.rejected)
         self.assertEqual(twin.submit(np.array([1.0, 2.0]), 10 * axes), Status.rejected)
-        self.assertEqual(twin.submit(twin.now + 1e-3 * np.arange(1, 10001), np.tile(axes[:1], (10000, 1))),
-                         Status.queue_full)
         self.assertEqual(twin.state.accepted, 0)
+        room = twin.state.free_slots
+        times = twin.now + twin.machine.cycle_time * np.arange(1, 2 * room + 1)
+        self.assertEqual(twin.submit(times[:room].copy(), np.tile(axes[:1], (room, 1))), Status.ok)
+        self.assertEqual(twin.submit(times[room:].copy(), np.tile(axes[:1], (room, 1))), Status.queue_full)
+        self.assertEqual(twin.state.accepted, room)
 
     def test_a_fault_is_sticky(self):
-        twin = Twin("hexapod", fault="{fault: stall, axis: l3, at_s: 0.1, for_s: 0.2}")
-        _, times = move_up(twin)
-        self.assertIn(twin.wait_until(times[-1]), (Status.faulted, Status.ok))
-        if twin.state.fault != "none":
-            self.assertEqual(move_up(twin)[0], Status.faulted)
+        twin = Twin("hexapod")
+        _, times = move_up(twin, end=0.5)  # the queue runs empty while the axes move
+        self.assertEqual(twin.wait_until(times[-1] + 1), Status.faulted)
+        self.assertEqual(twin.state.fault, "queue underrun")
+        self.assertEqual(move_up(twin)[0], Status.faulted)
+        self.assertEqual(twin.urgent(UrgentCommand.clear_fault), Status.ok)
+        self.assertEqual(twin.state.fault, "no fault")
 
     def test_bad_arrays_and_options_are_named(self):
         twin = Twin("hexapod")
