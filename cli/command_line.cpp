@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "core/text/shell_quoted.h"
 
 namespace understudy::cli {
 namespace {
@@ -12,14 +13,7 @@ std::string remembered;
 
 }  // namespace
 
-std::string shell_quoted(std::string_view word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) return std::string(word);
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
+std::string shell_quoted(std::string_view word) { return understudy::shell_quoted(word); }
 
 void remember_command_line(int argc, char** argv) {
   remember_command_line(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));

@@ -43,25 +43,40 @@ target_include_directories(understudy_settings INTERFACE
 set_property(TARGET understudy_settings PROPERTY EXPORT_NAME settings)
 set_property(GLOBAL APPEND PROPERTY UNDERSTUDY_LIBRARIES understudy_settings)
 
-# understudy_precompiled(TARGET): one precompiled header for every room and test.
+# understudy_precompiled(TARGET): one precompiled header for every room and test; one more for rooms that a shared
+# object is made of, since GCC takes it only where it was compiled alike.
 function(understudy_precompiled target)
   if(NOT UNDERSTUDY_PRECOMPILE)
     return()
   endif()
   if(NOT TARGET understudy_precompiled)
-    find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-    find_package(GTest REQUIRED)
-    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cpp CONTENT "")
-    add_library(understudy_precompiled OBJECT ${PROJECT_BINARY_DIR}/precompiled.cpp)
-    target_link_libraries(understudy_precompiled PRIVATE understudy_settings Eigen3::Eigen GTest::gmock)
-    target_precompile_headers(understudy_precompiled PRIVATE
-      <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
-      <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <gmock/gmock.h> <gtest/gtest.h>)
+    understudy_precompile(understudy_precompiled)
+    if(UNDERSTUDY_PYTHON)
+      understudy_precompile(understudy_precompiled_shared POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+    endif()
   endif()
-  target_precompile_headers(${target} REUSE_FROM understudy_precompiled)
+  get_target_property(shared ${target} POSITION_INDEPENDENT_CODE)
+  set(header understudy_precompiled)
+  if(shared)
+    string(APPEND header _shared)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${header})
   # GCC uses the header only where every macro that it mentions is what it was.
   target_compile_definitions(${target} PRIVATE GTEST_HAS_PTHREAD=1)
   cmake_language(EVAL CODE "cmake_language(DEFER CALL understudy_skip_precompiled ${target})")
+endfunction()
+
+# understudy_precompile(NAME [property value ...])
+function(understudy_precompile name)
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+  find_package(GTest REQUIRED)
+  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/${name}.cpp CONTENT "")
+  add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/${name}.cpp)
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX ${ARGN})
+  target_link_libraries(${name} PRIVATE understudy_settings Eigen3::Eigen GTest::gmock)
+  target_precompile_headers(${name} PRIVATE
+    <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
+    <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <gmock/gmock.h> <gtest/gtest.h>)
 endfunction()
 
 # A source with options of its own cannot use a header that was compiled without them.

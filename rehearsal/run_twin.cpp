@@ -91,10 +91,6 @@ std::unique_ptr<sim::Plant> make_engine(const TwinSetup& setup) {
       fmt::format("unknown engine {}: one of {}", setup.engine, fmt::join(engine_names(), ", ")));
 }
 
-std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup) {
-  return sim::with_drive_errors(make_engine(setup), setup.truth, setup.as_built);
-}
-
 /// What the printed material knows of its own temperature.
 sim::DepositionOptions deposition_options(const TwinSetup& setup,
                                           std::function<void(const sim::LaidBead&)> laid,
@@ -223,6 +219,10 @@ CollisionFigures collision_figures(const sim::CollisionObserver& collision) {
 }
 
 }  // namespace
+
+std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup) {
+  return sim::with_drive_errors(make_engine(setup), setup.truth, setup.as_built);
+}
 
 TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progress& progress) {
   const auto started = std::chrono::steady_clock::now();

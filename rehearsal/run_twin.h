@@ -28,6 +28,7 @@
 #include "toolpath/program.h"
 
 namespace understudy::sim {
+class Plant;
 struct MilledSurface;
 struct Workblank;
 }  // namespace understudy::sim
@@ -90,6 +91,9 @@ struct RunOptions {
 
 /// Words of `--engine` and of scenarios.
 const std::vector<std::string>& engine_names();
+
+/// The true machine in the engine that was asked for, with the errors of its drives.
+std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup);
 
 /// Throws MachineError when the engine fails, Interrupted.
 TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progress& progress);

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 ROOMS = ("core geometry kinematics machine toolpath vision calibration control drivers renderer sim rehearsal "
-         "regression studies report cli models").split()
+         "regression studies report cli python models").split()
 
 
 def read_exceptions(path):

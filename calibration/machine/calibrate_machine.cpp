@@ -39,6 +39,19 @@ void warn_of_noise(const CalibrationRequest& request, MachineCalibration& result
 
 }  // namespace
 
+void calibrate_measurements(const Measurements& measurements, const machine::MachineDescription& nominal,
+                            const Estimator& estimator, MachineCalibration& result) {
+  if (nominal.is_chain())
+    calibrate_chain_machine(measurements, nominal, estimator, result);
+  else
+    calibrate_hexapod(measurements, nominal, estimator, result);
+  if (const std::string lines = rejected_lines(result); !lines.empty())
+    result.warnings.push_back("poses rejected as outliers: line " + lines);
+  result.machine.calibration = {result.estimator, std::filesystem::path(result.file).filename().string(),
+                                measurements.sha256, static_cast<int>(measurements.poses.size()),
+                                result.tip.rms};
+}
+
 MachineCalibration calibrate_machine(const CalibrationRequest& request) {
   if (!request.estimator.empty() && !request.plugin.empty())
     throw InputError("--estimator and --plugin: give one of them");
@@ -59,15 +72,7 @@ MachineCalibration calibrate_machine(const CalibrationRequest& request) {
   warn_of_noise(request, result);
   const auto estimator =
       estimator_of(request, result.estimator, nominal.is_chain() ? MachineKind::chain : MachineKind::hexapod);
-  if (nominal.is_chain())
-    calibrate_chain_machine(measurements, nominal, *estimator, result);
-  else
-    calibrate_hexapod(measurements, nominal, *estimator, result);
-  if (const std::string lines = rejected_lines(result); !lines.empty())
-    result.warnings.push_back("poses rejected as outliers: line " + lines);
-  result.machine.calibration = {
-      result.estimator, std::filesystem::path(request.measurements).filename().string(), measurements.sha256,
-      static_cast<int>(measurements.poses.size()), result.tip.rms};
+  calibrate_measurements(measurements, nominal, *estimator, result);
   return result;
 }
 

@@ -4,7 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "calibration/estimators/estimator.h"
 #include "calibration/machine/machine_calibration.h"
+#include "calibration/machine/measurement_table.h"
 #include "calibration/plugin/child_process.h"
 #include "machine/default_machine.h"
 
@@ -24,5 +26,10 @@ struct CalibrationRequest {
 /// Throws InputError, with file and line where one row is at fault, for all that check_identifiability() and
 /// read_measurements() refuse, and for a plug-in that gives no machine.
 MachineCalibration calibrate_machine(const CalibrationRequest& request);
+
+/// The same of measurements and an estimator that are at hand. `result` comes with its machine (`nominal`),
+/// the names of file and estimator, and the noise.
+void calibrate_measurements(const Measurements& measurements, const machine::MachineDescription& nominal,
+                            const Estimator& estimator, MachineCalibration& result);
 
 }  // namespace understudy::calibration

@@ -36,14 +36,16 @@ std::vector<Method> entrants_of(const CalibrationBenchmarkRequest& request, bool
   const auto kind = chain ? calibration::MachineKind::chain : calibration::MachineKind::hexapod;
   const bool on_plant = !request.engine.empty();
   std::vector<std::string> names = request.estimators;
-  if (names.empty() && on_plant) names = {"maximum_likelihood", "with_play"};
-  if (names.empty()) names = calibration::estimator_names(kind);
-  if (request.estimators.empty() && on_plant)
-    names.insert(names.end(), bundle_names().begin(), bundle_names().end());
+  if (names.empty() && request.own.empty()) {
+    names = calibration::estimator_names(kind);
+    if (on_plant) names = {"maximum_likelihood", "with_play"};
+    if (on_plant) names.insert(names.end(), bundle_names().begin(), bundle_names().end());
+  }
   std::vector<Method> entrants;
   for (const std::string& name : names) entrants.push_back(method_named(name, on_plant, kind));
   for (const std::string& command : request.plugins)
     entrants.push_back({command, true, calibration::make_plugin_estimator(command, request.plugin_limits)});
+  entrants.insert(entrants.end(), request.own.begin(), request.own.end());
   for (std::size_t i = 0; i < entrants.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (entrants[i].name == entrants[j].name)

@@ -20,6 +20,7 @@ struct CalibrationBenchmarkRequest {
   int trials = 20;                      ///< built machines, of seeds seed, seed + 1 ...
   std::vector<std::string> estimators;  ///< empty: all that the machine has
   std::vector<std::string> plugins;     ///< commands
+  std::vector<Method> own;              ///< of the caller; with one, `estimators` empty is none
   calibration::ProcessLimits plugin_limits;
   MeasuredFrom from = MeasuredFrom::poses;
   /// From pixels: the plant that machines are driven on (session_engines()); empty: poses by forward

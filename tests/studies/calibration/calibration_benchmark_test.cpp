@@ -210,6 +210,21 @@ TEST(CalibrationBenchmark, RefusesWhatAMachineCannotHave) {
 }
 
 // The same likelihood: the same answer as ours within the noise, each problem solved by both.
+TEST(CalibrationBenchmark, AnEstimatorOfTheCallersOwnEntersLikeThoseWithNames) {
+  CalibrationBenchmarkRequest request = small();
+  request.disturbances = {Disturbance::none};
+  request.own = {{"mine", false, calibration::make_robust()}};
+  const CalibrationBenchmark alone = run_benchmark(request);
+  ASSERT_EQ(alone.entrants.size(), 1u);  // with one of one's own, none is entered unasked
+  request.estimators = {"robust"};
+  const CalibrationBenchmark both = run_benchmark(request);
+  ASSERT_EQ(both.entrants.size(), 2u);
+  EXPECT_EQ(score(both, Disturbance::none, "mine").median, score(both, Disturbance::none, "robust").median);
+  request.estimators = {"robust", "whitened"};
+  request.own.front().name = "whitened";
+  EXPECT_THROW(run_benchmark(request), InputError);
+}
+
 TEST(CalibrationBenchmark, APlugInEntersForTheArm) {
   CalibrationBenchmarkRequest request;
   request.machine = "arm";
