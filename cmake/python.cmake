@@ -7,4 +7,4 @@ if(Python_FOUND AND UNDERSTUDY_TWIN AND PROJECT_IS_TOP_LEVEL AND NOT UNDERSTUDY_
   find_package(pybind11 2.10 QUIET CONFIG)
   set(possible ${pybind11_FOUND})
 endif()
-option(UNDERSTUDY_PYTHON "Build the Python module; the rooms are then compiled for a shared object" ${possible})
+option(UNDERSTUDY_PYTHON "Build the Python module" ${possible})

@@ -12,9 +12,8 @@ function(understudy_room name)
   endforeach()
   target_link_libraries(understudy_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
   set_property(TARGET understudy_${name} PROPERTY EXPORT_NAME ${name})
-  if(UNDERSTUDY_PYTHON)  # compiled once, for the command and for the module
-    set_target_properties(understudy_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
-  endif()
+  # Compiled once: for the command, for the Python module, and in every preset alike.
+  set_target_properties(understudy_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
   set_property(GLOBAL APPEND PROPERTY UNDERSTUDY_LIBRARIES understudy_${name})
   understudy_precompiled(understudy_${name})
 endfunction()
