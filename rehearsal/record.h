@@ -16,6 +16,7 @@
 #include "core/library_versions.h"
 #include "machine/port.h"
 #include "rehearsal/findings/finding.h"
+#include "rehearsal/replay.h"
 #include "rehearsal/scene.h"
 
 namespace understudy::sim {
@@ -229,6 +230,7 @@ struct Record {
   std::vector<StrandRow> strands;                    ///< those that sag most first
   std::shared_ptr<const sim::MilledSurface> milled;  ///< before and after; null: nothing was
   std::optional<Scene> scene;                        ///< what pictures are drawn from; where it was asked for
+  std::optional<Replay> replay;                      ///< likewise: the machine along the trace
 };
 
 }  // namespace understudy::rehearsal

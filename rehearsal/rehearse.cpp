@@ -133,9 +133,19 @@ Scene scene_of(const TwinSetup& setup, const std::vector<TracePoint>& trace,
   scene.simulated = point != nullptr;
   scene.time = point ? point->time : 0;
   scene.part = setup.workblank ? setup.workblank->part : setup.built_part;
-  scene.path = printed_path(setup.program);
+  scene.path = printed_path(setup.program, point ? point->line : 0);
   scene.printed = std::move(printed);
   return scene;
+}
+
+Replay replay_of(const RehearsalRequest& request, const TwinSetup& setup,
+                 const toolpath::FeatureTypes& features, const std::vector<TracePoint>& trace) {
+  std::vector<Moment> moments;
+  for (const TracePoint& point : trace) moments.push_back({point.time, {point.X_WT, point.axes}});
+  Replay replay = make_replay(setup.machine, setup.as_built, moments);
+  replay.program = read_file(request.program);
+  replay.features = feature_changes(replay.program, features);
+  return replay;
 }
 
 bool any_error(const std::vector<Finding>& findings) {
@@ -259,7 +269,10 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
   tell_features(mended.features, record.findings);
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
-  if (request.keep_scene) record.scene = scene_of(setup, record.trace, printed);
+  if (request.keep_scene) {
+    record.scene = scene_of(setup, record.trace, printed);
+    record.replay = replay_of(request, setup, mended.features, record.trace);
+  }
   report(1, "done");
   return record;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "geometry/mesh.h"
@@ -21,7 +22,8 @@ struct Scene {
   std::vector<geometry::Shape> bodies;  ///< of the machine, their poses in W
   geometry::Shape table;
   std::shared_ptr<const geometry::Mesh> part;     ///< may be null
-  std::vector<std::vector<Vec3>> path;            ///< [m], programmed; print move after print move
+  std::vector<std::vector<Vec3>> path;            ///< [m], programmed, what is still to be printed at `time`
+  std::optional<Pose> X_WO;                       ///< of the machine's frame, where axes move the table
   std::shared_ptr<const sim::Workpiece> printed;  ///< null: nothing was simulated
 };
 
@@ -29,7 +31,8 @@ struct Scene {
 Scene machine_scene(const machine::MachineDescription& machine, const sim::AsBuilt& as_built,
                     const sim::Configuration& configuration);
 
-/// Where the tip goes while it prints, one polyline [m] for each stretch between two travels.
-std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program);
+/// Where the tip goes while it prints, one polyline [m] for each stretch between two travels; of the moves
+/// behind a line of the program only.
+std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program, int after_line = 0);
 
 }  // namespace understudy::rehearsal

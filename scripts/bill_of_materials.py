@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the bill of materials of a build by Ninja, as CycloneDX 1.5: the Debian packages of the libraries that the
 command loads, of the headers that were compiled into it and of the files that it embeds; each with version, source
-and licences.
+and licences; and the npm packages that are bundled into its pages.
 
 usage: bill_of_materials.py BUILD -o FILE [--notices FILE] [--release VERSION] [--optional]
 
@@ -143,8 +143,20 @@ def package_roles(build):
     return roles
 
 
-def bill(roles, release):
-    parts = components(roles)
+def bundled(build):
+    """The npm packages within the page's script, as web/build.mjs wrote them; none in the plain page."""
+    listed = Path(build) / "web/packages.json"
+    if str(listed) not in (Path(build) / "embedded.txt").read_text():
+        return []
+    return [{"type": "library", "bom-ref": f"pkg:npm/{p['name']}@{p['version']}", "name": p["name"], "version": p["version"],
+             "purl": f"pkg:npm/{p['name']}@{p['version']}".replace("/@", "/%40"), "licenses": [licence_value(p["license"])],
+             "properties": [{"name": "understudy:part", "value": "embedded"},
+                            {"name": "understudy:licences-from", "value": "package.json"}]}
+            for p in json.loads(listed.read_text())]
+
+
+def bill(roles, pages, release):
+    parts = components(roles) + pages
     ours = {"type": "application", "bom-ref": "understudy", "name": "understudy", "version": release,
             "licenses": [licence_value("Apache-2.0")]}
     return {"bomFormat": "CycloneDX", "specVersion": "1.5", "version": 1, "metadata": {"component": ours},
@@ -173,8 +185,11 @@ def main():
     options = parser.parse_args()
     try:
         roles = package_roles(options.build)
-        text = json.dumps(bill(roles, options.release), indent=1) + "\n"
+        pages = bundled(options.build)
+        text = json.dumps(bill(roles, pages, options.release), indent=1) + "\n"
         compiled = notices(roles) if options.notices else ""
+        if pages:
+            compiled += f"{'=' * 100}\nwithin report.html\n{'=' * 100}\n" + (Path(options.build) / "web/notices.txt").read_text()
     except Fault as fault:
         print(f"bill_of_materials.py: {fault}", file=sys.stderr)
         for file in filter(None, (options.out, options.notices)):

@@ -9,6 +9,8 @@ install_packages() {
   while read -r name; do
     [ "$name" != '# check' ] || [ "${1:-}" = check ] || break
     case "$name" in '' | '#'*) continue ;; esac
+    # Node of another source than Debian's brings its npm along, and Debian's cannot stand beside it.
+    [ "$name" != npm ] || ! command -v npm >/dev/null || continue
     dpkg-query -W -f='${Status}' "$name" 2>/dev/null | grep -q 'ok installed' || missing+=("$name")
   done < packages.txt
   if [ ${#missing[@]} -eq 0 ]; then say "packages: all of packages.txt${1:+ ($1)} are installed"; return; fi

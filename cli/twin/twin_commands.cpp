@@ -11,6 +11,7 @@
 #include "machine/description.h"
 #include "rehearsal/library_versions.h"
 #include "renderer/scene_view.h"
+#include "report/page/pack.h"
 #include "report/page/page_parts.h"
 #include "sim/as_built/as_built.h"
 #include "sim/plant/plant.h"
@@ -67,7 +68,8 @@ std::vector<std::string> left_out_commands() { return {}; }
 
 LibraryVersions library_versions_of_rooms() {
   LibraryVersions all = rehearsal::library_versions();
-  all["dygraphs"] = report::dygraphs_version();
+  all["zlib"] = report::loaded_zlib();
+  all.merge(report::page_packages());
   return all;
 }
 

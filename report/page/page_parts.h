@@ -1,24 +1,20 @@
-// The report's page, drawing and charts, embedded at build time from web/report/ and libjs-dygraphs.
+// The page of a rehearsal, embedded at build time: cmake/web.cmake says from where.
 #pragma once
 
+#include <map>
+#include <string>
 #include <string_view>
 
 namespace understudy::report {
 
 extern const std::string_view kPageTemplate;
 extern const std::string_view kPageStyle;
-extern const std::string_view kPageFormat;
-extern const std::string_view kPageElements;
-extern const std::string_view kPageVerdict;
-extern const std::string_view kPageTables;
-extern const std::string_view kPageCharts;
-extern const std::string_view kPageFrames;
-extern const std::string_view kPageMain;
-extern const std::string_view kDygraphScript;
-extern const std::string_view kDygraphStyle;
-extern const std::string_view kDygraphLicence;
+extern const std::string_view kPageScript;
+extern const std::string_view kPlotsStyle;    ///< of the plots' library
+extern const std::string_view kPageNotices;   ///< licences of what the script has of others
+extern const std::string_view kPagePackages;  ///< what that is: name, version and licence, in JSON
 
-/// Of the dygraphs that pages carry, as its script tells it: "2.2.1".
-std::string_view dygraphs_version();
+/// The libraries within the page and their versions; none in the plain page of a build without npm.
+std::map<std::string, std::string> page_packages();
 
 }  // namespace understudy::report

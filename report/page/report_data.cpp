@@ -7,6 +7,7 @@
 #include "core/text/stable_number.h"
 #include "core/units.h"
 #include "rehearsal/findings/verdict.h"
+#include "report/page/replay_data.h"
 #include "report/picture/png.h"
 #include "report/summary_json.h"
 #include "report/trace_values.h"
@@ -21,9 +22,9 @@ using rehearsal::StrandRow;
 using rehearsal::TracePoint;
 using Json = nlohmann::ordered_json;
 
-// A chart is about a thousand pixels wide: four points a pixel hide nothing and keep the page near a
-// megabyte.
-constexpr std::size_t kChartPoints = 4000;
+// A chart is about a thousand pixels wide: two points a pixel, extremes kept, hide nothing and keep the page
+// small.
+constexpr std::size_t kChartPoints = 2000;
 constexpr int kTraceDigits = 8;
 
 std::string data_uri(const std::string& png) { return "data:image/png;base64," + base64(png); }
@@ -191,6 +192,7 @@ Json report_data(const rehearsal::Record& record, const std::vector<Illustration
   if (!record.strands.empty()) report["strands"] = strands_value(record.strands);
   if (!record.profile.empty()) report["profile"] = profile_value(record);
   if (!record.deviation_note.empty()) report["deviation_note"] = record.deviation_note;
+  if (Json replay = replay_data(record); !replay.is_null()) report["replay"] = std::move(replay);
   report["frames"] = Json::array();
   const bool all_frames = record.frames.size() <= kFramesShown;
   for (const FrameRecord& frame : record.frames)

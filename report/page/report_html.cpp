@@ -48,14 +48,6 @@ std::string fill(std::string_view page, const std::vector<std::pair<std::string_
   return filled;
 }
 
-std::string drawing() {
-  std::string script;
-  for (const std::string_view part :
-       {kPageFormat, kPageElements, kPageVerdict, kPageTables, kPageCharts, kPageFrames, kPageMain})
-    script.append(part).append("\n");
-  return script;
-}
-
 }  // namespace
 
 std::string report_html(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
@@ -64,12 +56,11 @@ std::string report_html(const rehearsal::Record& record, const std::vector<Illus
   return fill(kPageTemplate, {{"title", html_text(verdict + ": " + record.title)},
                               {"verdict", verdict},
                               {"reason", html_text(rehearsal::verdict_sentence(record))},
-                              {"dygraph-licence", std::string(kDygraphLicence)},
-                              {"dygraph-style", std::string(kDygraphStyle)},
+                              {"notices", std::string(kPageNotices)},
+                              {"plots-style", std::string(kPlotsStyle)},
                               {"style", std::string(kPageStyle)},
-                              {"dygraph-script", std::string(kDygraphScript)},
                               {"record", escape_json_for_script(to_text(report, -1))},
-                              {"script", drawing()}});
+                              {"script", std::string(kPageScript)}});
 }
 
 }  // namespace understudy::report

@@ -28,6 +28,8 @@ class ChainBodies {
   void pose(const kinematics::AxisVector& axes);
   /// Of the shape's own frame, as last posed.
   Pose place(std::size_t item) const;
+  /// The frame O of the machine, likewise: where axes move the table, it moves in W.
+  const Pose& X_WO() const { return X_WO_; }
   /// [m], at most, by which any point of the item moves in W while each axis moves by at most `travel` and
   /// the tip by `path`.
   double motion(std::size_t item, const kinematics::AxisVector& travel, double path = 0) const;

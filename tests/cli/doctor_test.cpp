@@ -1,6 +1,8 @@
 // `doctor` against what Debian's package database says of the installed libraries.
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
@@ -31,7 +33,7 @@ const Versions kPackagesOfTheController{{"Boost", "libboost-math-dev"},
                                         {"yaml-cpp", "libyaml-cpp-dev"}};
 const Versions kPackagesOfTheTwin{{"Bullet", "libbullet-dev"}, {"FCL", "libfcl-dev"},
                                   {"LLVM", "libllvm15"},       {"Mesa", "libosmesa6-dev"},
-                                  {"MuJoCo", "libmujoco-dev"}, {"dygraphs", "libjs-dygraphs"}};
+                                  {"MuJoCo", "libmujoco-dev"}, {"zlib", "zlib1g-dev"}};
 
 Versions printed_versions(const std::string& text) {
   Versions versions;
@@ -69,6 +71,16 @@ TEST(Doctor, TellsTheVersionOfEveryLibraryThatIsInstalled) {
     if (library == "assimp") versions[library] = versions[library].substr(0, versions[library].rfind('.'));
     EXPECT_THAT(installed_version(package), testing::StartsWith(versions[library])) << library;
     versions.erase(library);
+  }
+  // What npm bundles into the page: all of it or, in a build without npm, nothing.
+  std::ifstream file(std::string(UNDERSTUDY_SOURCE_DIR) + "/web/package.json");
+  const std::string wanted((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const bool bundled = versions.contains("three");
+  for (const char* package : {"fflate", "three", "uplot"}) {
+    EXPECT_EQ(versions.contains(package), bundled) << package;
+    EXPECT_THAT(wanted, testing::HasSubstr('"' + std::string(package) + "\": \"" + versions[package]))
+        << package;
+    versions.erase(package);
   }
   EXPECT_THAT(versions, testing::IsEmpty());
 }

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 # Compiled in or embedded without a trace among the loaded libraries.
-HEADERS_ONLY = {"libeigen3-dev", "nlohmann-json3-dev", "libcli11-dev", "libjs-dygraphs"}
+HEADERS_ONLY = {"libeigen3-dev", "nlohmann-json3-dev", "libcli11-dev"}
 
 
 def files_of(package):
@@ -32,9 +32,9 @@ def faults_of(bill, libraries, files):
         names = [licence["license"].get("id") or licence["license"].get("name") for licence in part["licenses"]]
         if not names or not all(names):
             yield f"{part['name']} has no licence"
-        if not re.match(r"[0-9]", part.get("version", "")) or not part["purl"].startswith("pkg:deb/debian/"):
+        if not re.match(r"[0-9]", part.get("version", "")) or not re.match("pkg:(deb/debian|npm)/", part["purl"]):
             yield f"{part['name']} has no version or no package URL"
-    names = {part["name"] for part in parts}
+    names = {part["name"] for part in parts if part["purl"].startswith("pkg:deb/")}
     known = {file for name in names for file in files(name)}
     for library in libraries:
         if library not in known:

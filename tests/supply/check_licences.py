@@ -44,7 +44,8 @@ def faults_of(rows, names, exists):
 
 def main(source, build):
     embedded = [line for line in (build / "embedded.txt").read_text().splitlines() if line]
-    names = {line.removeprefix(f"{source}/") for line in embedded}
+    # What the build wrote is build/web/report.js, whatever the folder's name.
+    names = {line.replace(f"{build}/", "build/").removeprefix(f"{source}/") for line in embedded}
     names |= {file.relative_to(source).as_posix() for file in (source / "docs/pictures").iterdir()}
     with tempfile.TemporaryDirectory() as prefix:
         subprocess.run(["cmake", "--install", build, "--component", "program", "--prefix", prefix], check=True,

@@ -1,14 +1,17 @@
-'use strict';
 // The answer, the reason, and the few figures that carry it.
-const kGrades = { go: 'GO', 'go-with-warnings': 'GO with warnings', 'no-go': 'NO-GO' };
+import { element } from './elements';
+import { format } from './format';
+import type { Report } from './record';
 
-function drawVerdict(report) {
+const kGrades: Record<string, string> = { go: 'GO', 'go-with-warnings': 'GO with warnings', 'no-go': 'NO-GO' };
+
+export function drawVerdict(report: Report, theme: HTMLElement): HTMLElement {
   const summary = report.summary;
   const errors = summary.findings.filter((f) => f.severity === 'error').length;
   const warnings = summary.findings.length - errors;
   const tally = format.plural(errors, 'error') + ' · ' + format.plural(warnings, 'warning');
   return element('header', {},
-    element('p', { class: 'eyebrow' }, 'Understudy rehearsal'),
+    element('div', { class: 'top' }, element('p', { class: 'eyebrow' }, 'Understudy rehearsal'), theme),
     element('h1', {}, report.title),
     element('div', { class: 'verdict ' + summary.grade },
       element('strong', {}, kGrades[summary.grade]),
@@ -18,11 +21,11 @@ function drawVerdict(report) {
     drawKeyFigures(report));
 }
 
-function drawKeyFigures(report) {
+function drawKeyFigures(report: Report) {
   const { gap, accuracy, collision, print } = report.summary;
   const band = report.gap_band;
-  const tiles = [];
-  const tile = (label, value, note) => tiles.push(element('div', {},
+  const tiles: HTMLElement[] = [];
+  const tile = (label: string, value: string, note?: string) => tiles.push(element('div', {},
     element('dt', {}, label), element('dd', {}, value), element('dd', { class: 'aside' }, note || '')));
   if (gap) {
     tile('Gap at the start', format.quantity(gap.start_mm, 'mm'),
@@ -46,11 +49,11 @@ function drawKeyFigures(report) {
 }
 
 // Below zero a clearance is the depth of a contact.
-function distance(clearance_mm) {
+function distance(clearance_mm: number): string {
   return clearance_mm < 0 ? format.quantity(-clearance_mm, 'mm') + ' deep' : format.quantity(clearance_mm, 'mm');
 }
 
-function formatDuration(seconds) {
+function formatDuration(seconds: number): string {
   if (seconds < 120) return format.number(seconds, 1) + '\u00a0s';
   const minutes = Math.floor(seconds / 60);
   const rest = Math.round(seconds - 60 * minutes);

@@ -1,71 +1,13 @@
-'use strict';
-// What was found, every figure of the summary, and where it comes from.
-function drawFindings(report) {
-  const { findings, finding_groups: groups } = report.summary;
-  const title = 'What was found, and where';
-  if (findings.length === 0) return section(title, null, element('p', {}, 'Nothing: no limit was broken.'));
-  const note = 'Alike findings are one row, with their worst; what causes others stands before them.';
-  return section(title, note, groupsTable(groups),
-    groups.length < findings.length ? element('details', {},
-      element('summary', {}, 'Each of the ' + format.plural(findings.length, 'finding')),
-      findingsTable(findings.map(findingRow))) : null);
-}
+// Every figure of the summary, strands, and where it all comes from: folded until they are asked for.
+import { element, folded, section } from './elements';
+import { format } from './format';
+import type { Report } from './record';
 
-function groupsTable(groups) {
-  const head = ['', 'Kind', 'Lines', 'Times', 'Worst', 'Limit', 'Message'];
-  const numeric = new Set(['Lines', 'Times', 'Worst', 'Limit']);
-  return element('table', { class: 'findings' },
-    element('thead', {}, element('tr', {}, ...head.map((h) => element('th', { class: numeric.has(h) ? 'number' : null }, h)))),
-    element('tbody', {}, ...groups.map(groupRow)));
-}
-
-function groupRow(group) {
-  const { worst } = group;
-  const cell = (label, text, kind) => element('td', { 'data-label': label, class: kind }, text);
-  const lines = group.first_line === undefined ? '\u2013'
-    : group.first_line === group.last_line ? String(group.first_line) : group.first_line + '\u2013' + group.last_line;
-  return element('tr', {},
-    element('td', { class: 'mark' }, element('span', { class: 'severity ' + group.severity }, group.severity)),
-    cell('Kind', format.kind(group.kind)),
-    cell('Lines', lines, 'number'),
-    cell('Times', format.count(group.count), 'number'),
-    cell('Worst', format.quantity(worst.value, worst.unit), 'number'),
-    cell('Limit', format.quantity(worst.limit, worst.unit), 'number'),
-    element('td', { 'data-label': 'Message', class: 'message' }, format.message(worst.message),
-      group.advice ? element('p', { class: 'advice' }, ...withCode(group.advice)) : null));
-}
-
-// What stands between backquotes is to be typed.
-function withCode(text) {
-  return text.split('`').map((part, i) => (i % 2 ? element('code', {}, part) : part));
-}
-
-function findingsTable(rows) {
-  const head = ['', 'Line', 'Time', 'Kind', 'Value', 'Limit', 'Message'];
-  const numeric = new Set(['Line', 'Time', 'Value', 'Limit']);
-  return element('table', { class: 'findings' },
-    element('thead', {}, element('tr', {}, ...head.map((h) => element('th', { class: numeric.has(h) ? 'number' : null }, h)))),
-    element('tbody', {}, ...rows));
-}
-
-function findingRow(finding) {
-  const cell = (label, text, kind) => element('td', { 'data-label': label, class: kind }, text);
-  const severity = element('span', { class: 'severity ' + finding.severity }, finding.severity);
-  return element('tr', {},
-    element('td', { class: 'mark' }, severity),
-    cell('Line', finding.gcode_line === undefined ? '\u2013' : String(finding.gcode_line), 'number'),
-    cell('Time', format.quantity(finding.time_s, 's'), 'number'),
-    cell('Kind', format.kind(finding.kind)),
-    cell('Value', format.quantity(finding.value, finding.unit), 'number'),
-    cell('Limit', format.quantity(finding.limit, finding.unit), 'number'),
-    cell('Message', format.message(finding.message), 'message'));
-}
-
-const kGroupTitles = {
+const kGroupTitles: Record<string, string> = {
   placement: 'Placement', print: 'Print', accuracy: 'Accuracy', calibration: 'Calibration', registration: 'Part as found', gap: 'Gap', sag: 'Sag', collision: 'Collision', surface: 'Surface', removal: 'Milling', engine: 'Engine',
 };
 
-const kFigureLabels = {
+const kFigureLabels: Record<string, string> = {
   duration_s: 'Duration', moves: 'Moves', extruded_mm: 'Filament fed', printed_mm: 'Of that, printed', purged_mm: 'Of that, purged at a standstill',
   missing_mm: 'Of that, missing on the part', primed_mm: 'Besides, pushed back after retractions',
   deposited_mm: 'Laid on something, sticks', spanning_mm: 'Laid in air, held',
@@ -100,7 +42,7 @@ const kFigureLabels = {
   closure_max_um: 'Loop closure error, largest',
 };
 
-function figureText(key, value) {
+function figureText(key: string, value: any): string {
   if (typeof value === 'string') return value;
   if (Array.isArray(value)) return value.join('; ');
   if (key.endsWith('_fraction')) return format.percent(value);
@@ -110,21 +52,21 @@ function figureText(key, value) {
   return Number.isInteger(value) ? format.count(value) : format.quantity(value, '');
 }
 
-function drawFigures(report) {
+export function drawFigures(report: Report): HTMLElement | null {
   const groups = Object.entries(report.summary).filter(([key, value]) =>
     key !== 'provenance' && value && typeof value === 'object' && !Array.isArray(value));
   if (groups.length === 0) return null;
-  return section('Figures', null, element('div', { class: 'figures' }, ...groups.map(([key, values]) =>
+  return folded('All figures', element('div', { class: 'figures' }, ...groups.map(([key, values]) =>
     element('table', {}, element('caption', {}, kGroupTitles[key] || key),
-      element('tbody', {}, ...Object.entries(values).filter(([, value]) => value !== '').map(([name, value]) => element('tr', {},
+      element('tbody', {}, ...Object.entries(values as Record<string, any>).filter(([, value]) => value !== '').map(([name, value]) => element('tr', {},
         element('th', { scope: 'row' }, kFigureLabels[name] || format.kind(name)),
         element('td', { class: Array.isArray(value) || typeof value === 'string' ? 'text' : 'number' }, figureText(name, value)))))))));
 }
 
-function calibrationTable(figures) {
+export function calibrationTable(figures: Record<string, any>): HTMLElement {
   const rows = [['Tip error, RMS', 'tip_rms', 'um'], ['Tip error, 95th percentile', 'tip_p95', 'um'],
     ['Tip error, largest', 'tip_max', 'um'], ['Orientation error, largest', 'orientation_max', 'mrad']];
-  const number = (text) => element('td', { class: 'number' }, text);
+  const number = (text: string) => element('td', { class: 'number' }, text);
   return element('table', { class: 'comparison' },
     element('thead', {}, element('tr', {}, element('th', {}, ''),
       ...['Before', 'After', 'Before / after'].map((text) => element('th', { class: 'number' }, text)))),
@@ -136,7 +78,7 @@ function calibrationTable(figures) {
 }
 
 // The description before the calibration may not reach what the program asks for.
-function drawCalibrationNotRun(report) {
+export function drawCalibrationNotRun(report: Report): HTMLElement | null {
   const calibration = report.summary.calibration;
   if (!calibration || !calibration.not_run_before) return null;
   return section('Tip error before and after calibration', null, element('p', {}, 'Not compared: with the description before, ' +
@@ -144,7 +86,7 @@ function drawCalibrationNotRun(report) {
 }
 
 // Those that sag most, as the record sorts them.
-function drawStrands(report) {
+export function drawStrands(report: Report): HTMLElement | null {
   if (!report.strands) return null;
   const all = report.summary.sag.strands;
   const head = ['Line', 'Time', 'Length', 'Thickness', 'Speed', 'Sag', 'Laid in', 'Solid after', 'Far end'];
@@ -154,22 +96,22 @@ function drawStrands(report) {
     strand.sag_um === undefined ? 'not solved' : (strand.small ? '' : '> ') + format.quantity(strand.sag_um, 'um'),
     format.quantity(strand.duration_s, 's'), format.quantity(strand.solid_after_s, 's'),
     strand.held_at_end ? 'held' : 'free'].map((text, i) => element('td', { 'data-label': head[i], class: 'number' }, text))));
-  return section('Strands in air', 'How far each lies from where it was laid, once it is solid.' +
-    (all > rows.length ? ' The ' + rows.length + ' that sag most of ' + all + '.' : ''),
+  return folded('Strands in air', element('p', { class: 'note' }, 'How far each lies from where it was laid, once it is solid.' +
+    (all > rows.length ? ' The ' + rows.length + ' that sag most of ' + all + '.' : '')),
     element('table', { class: 'findings' },
       element('thead', {}, element('tr', {}, ...head.map((h) => element('th', { class: 'number' }, h)))),
       element('tbody', {}, ...rows)));
 }
 
-function drawDeviation(report) {
+export function drawDeviation(report: Report): HTMLElement | null {
   if (!report.deviation_note) return null;
   return section('Surface as printed', null, element('p', {}, format.message(report.deviation_note[0].toUpperCase() +
     report.deviation_note.slice(1) + '.')));
 }
 
-function drawProvenance(report) {
-  const provenance = report.summary.provenance;
-  const rows = [
+export function drawProvenance(report: Report): HTMLElement {
+  const provenance: Record<string, any> = report.summary.provenance || {};
+  const rows = ([
     ['Program', report.names.program, provenance.program_sha256],
     ['Machine', report.names.machine, provenance.machine_sha256],
     ['Machine before', (report.summary.calibration || {}).machine_before, provenance.machine_before_sha256],
@@ -181,9 +123,20 @@ function drawProvenance(report) {
     ['Understudy', provenance.version],
     ['Libraries', Object.entries(provenance.libraries || {}).map((library) => library.join(' ')).join(', ')],
     ['Command', provenance.command],
-  ].filter((row) => row[1]);
-  return section('Provenance', null, element('table', { class: 'provenance' }, element('tbody', {},
+  ] as [string, string | undefined, string?][]).filter((row) => row[1]);
+  return folded('Provenance', element('table', { class: 'provenance' }, element('tbody', {},
     ...rows.map(([label, text, hash]) => element('tr', {}, element('th', { scope: 'row' }, label),
       element('td', {}, label === 'Command' ? element('code', {}, text) : text,
         hash ? element('code', { class: 'hash' }, 'sha256 ' + hash) : null))))));
+}
+
+/** As they were drawn with the run: what paper and browsers without WebGL show. */
+export function drawPictures(report: Report, open: boolean): HTMLElement | null {
+  if (report.pictures.length === 0) return null;
+  const node = folded('Pictures', element('div', { class: 'pictures' }, ...report.pictures.map((picture) =>
+    element('figure', {},
+      element('img', { src: picture.image, width: picture.width, height: picture.height, alt: picture.caption || 'scene', loading: 'lazy' }),
+      picture.caption ? element('figcaption', {}, picture.caption) : null))));
+  if (open) node.setAttribute('open', '');
+  return node;
 }
