@@ -198,11 +198,9 @@ MachineFile read_text_of(const std::string& bytes, const std::filesystem::path& 
   MachineFile file;
   MachineDescription& machine = file.description;
   machine.file = path;
-  const std::string told = (tool.empty() ? "" : "
-+" + tool) + changed_file(path.string()).braces();
+  const std::string told = (tool.empty() ? "" : "\n+" + tool) + changed_file(path.string()).braces();
   machine.sha256 = sha256_hex(bytes + told);
-  YamlMap::read_text(bytes, path.string(), [&](YamlMap& root) {
-    read_machine(root, file, tool); });
+  YamlMap::read_text(bytes, path.string(), [&](YamlMap& root) { read_machine(root, file, tool); });
   return file;
 }
 
