@@ -28,13 +28,6 @@ void read_optics(Keys keys, BuiltTolerances& t) {
   keys.read("ambient_light_permille", kShare, "of the grey levels without the laser", t.ambient_light);
 }
 
-void read_part(Keys keys, BuiltTolerances& t) {
-  keys.read("position_mm", {0, 5}, "each coordinate of the clamped part", t.part_position);
-  keys.read("rotation_mrad", {0, 100}, "of the clamped part, about each axis of W", t.part_rotation);
-  keys.read("size_permille", {0, 100}, "of the part's size", t.part_size);
-  keys.read("ripple_um", {0, 1000}, "amplitude of waves of its surface", t.part_ripple);
-}
-
 void read_table(Keys keys, BuiltTolerances& t) {
   keys.read("height_mm", {0, 5}, "of the table's top", t.table_height);
   keys.read("tilt_mrad", {0, 100}, "of the table's top, about x and y of W", t.table_tilt);
@@ -49,13 +42,23 @@ void read_process(Keys keys, BuiltTolerances& t) {
 
 }  // namespace
 
+void read_part_tolerances(YamlMap& map, BuiltTolerances& t) {
+  Keys keys{map};
+  keys.read("position_mm", {0, 5}, "each coordinate of the clamped part", t.part_position);
+  keys.read("rotation_mrad", {0, 100}, "of the clamped part, about each axis of W", t.part_rotation);
+  keys.read("size_permille", {0, 100}, "of the part's size", t.part_size);
+  keys.read("ripple_um", {0, 1000}, "amplitude of waves of its surface", t.part_ripple);
+}
+
 void read_built_tolerances(YamlMap& map, BuiltTolerances& tolerances) {
   const auto section = [&](const char* name, const char* about, auto read) {
     if (map.has(name)) map.section(name, about, [&](YamlMap& keys) { read(Keys{keys}, tolerances); });
   };
   section("drives", "screws and joints", read_drives);
   section("optics", "laser and camera", read_optics);
-  section("part", "what is clamped on the table", read_part);
+  if (map.has("part"))
+    map.section("part", "what is clamped on the table",
+                [&](YamlMap& keys) { read_part_tolerances(keys, tolerances); });
   section("table", "what the work stands on", read_table);
   section("process", "filament and nozzle", read_process);
 }

@@ -39,6 +39,9 @@ struct BuiltTolerances {
 /// The optional maps `drives`, `optics`, `part` and `process` of the section `tolerances`.
 void read_built_tolerances(YamlMap& map, BuiltTolerances& tolerances);
 
+/// The keys of `part`, which a fixture file has as well. Those that are left out leave `tolerances` as it is.
+void read_part_tolerances(YamlMap& map, BuiltTolerances& tolerances);
+
 /// Of a machine file or a name, as load_machine() finds it; throws InputError as that does.
 BuiltTolerances load_built_tolerances(const std::string& name_or_path);
 

@@ -52,6 +52,7 @@ rehearsal::RehearsalRequest request_of(const Scenario& scenario) {
   request.dialect = scenario.dialect;
   request.surface = scenario.surface;
   request.registration = scenario.registration;
+  request.part_pose = scenario.part_pose;
   request.faults = scenario.faults;
   request.camera_faults = scenario.camera_faults;
   request.command = "understudy scenario run " + scenario.file.filename().string();

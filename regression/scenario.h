@@ -52,6 +52,7 @@ struct Scenario {
   rehearsal::DialectRequest dialect;                                  ///< how the program is read
   rehearsal::SurfaceRequest surface;                                  ///< what is asked about the surface
   rehearsal::RegistrationRequest registration;                        ///< of the part, before the print
+  std::string part_pose;                                              ///< path of what `register` wrote
   std::vector<rehearsal::FaultRequest> faults;
   std::vector<rehearsal::CameraFaultRequest> camera_faults;
   std::vector<Expectation> expect;  ///< of the run with `seed`

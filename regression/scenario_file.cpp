@@ -50,6 +50,14 @@ std::string name_or_path(YamlMap& map, const std::string& key, const fs::path& f
   return path.string();
 }
 
+std::string read_fixture(YamlMap& map, const fs::path& folder) {
+  const std::string name = name_or_path(map, "fixture", folder, ".stl",
+                                        "part that is printed on: a name, an STL or a fixture file");
+  return name.ends_with(".yaml") && !is_path(name, ".stl")
+             ? name_or_path(map, "fixture", folder, ".yaml", "likewise")
+             : name;
+}
+
 /// A word, or the path of an as-built file.
 std::string read_as_built(YamlMap& map, const fs::path& folder) {
   const std::string text =
@@ -192,9 +200,7 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
     scenario.program = existing_file(map, "program", folder, "path of the G-code file");
   if (!scenario.program.empty() && !scenario.plan.empty() && !map.recording())
     map.fail("plan", "plan and program exclude each other: which is to be printed?");
-  if (map.has("fixture"))
-    scenario.fixture =
-        name_or_path(map, "fixture", folder, ".stl", "part that is printed on: a name or an STL");
+  if (map.has("fixture")) scenario.fixture = read_fixture(map, folder);
   scenario.as_built = read_as_built(map, folder);
   scenario.seed = map.seed("seed", "of the built machine and of all noise");
   scenario.gap_control = map.word("gap_control", kGapControls, "whether the gap is measured");
@@ -206,6 +212,12 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   read_dialect(map, folder, scenario.dialect);
   read_surface(map, folder, scenario.surface);
   read_registration(map, folder, scenario.registration);
+  if (map.has("part_pose")) {
+    scenario.part_pose =
+        existing_file(map, "part_pose", folder, "where `register` found the part, a path").string();
+    if (map.has("register") && !map.recording())
+      map.fail("part_pose", "part_pose and register exclude each other: is the part found, or to be found?");
+  }
   scenario.faults = read_faults(map);
   scenario.camera_faults = read_camera_faults(map);
   scenario.expect = read_expectations(map, FiguresOf::run);

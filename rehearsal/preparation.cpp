@@ -5,7 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "control/registration/moved_program.h"
+#include "control/registration/part_pose_file.h"
+#include "core/digest.h"
 #include "core/error.h"
+#include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/findings/process_check.h"
@@ -40,6 +44,26 @@ void read_into(const RehearsalRequest& request, TwinSetup& setup, Mended& mended
   for (const auto& lines : read.passed_over) mended.passed_over.emplace_back(lines.line, lines.last_line);
   mended.facts = std::move(read.facts);
   mended.features = std::move(read.features);
+}
+
+/// The program, and the part as the controller holds it, go to where the part was found.
+void believe_part_pose(const RehearsalRequest& request, TwinSetup& setup) {
+  if (!setup.part)
+    throw InputError("--part-pose needs the part that was found: --fixture FILE.stl or a name");
+  if (request.registration.wanted)
+    throw InputError("--part-pose and --register exclude each other: is the part found, or to be found?");
+  const control::PartPose pose = control::read_part_pose(request.part_pose);
+  const auto check = [&](const char* what, const std::string& told, const std::string& actual) {
+    if (!told.empty() && told != actual)
+      throw InputError({request.part_pose},
+                       fmt::format("the part was found with another {}, of checksum {:.12}... and not "
+                                   "{:.12}...: find it with this one, by understudy register",
+                                   what, told, actual));
+  };
+  check("machine file", pose.machine_sha256, setup.machine.sha256);
+  check("part", pose.part_sha256, sha256_hex(read_file(machine::find_fixture(request.fixture))));
+  setup.program = control::moved_program(setup.program, pose.X_W);
+  setup.part = control::moved_part(*setup.part, pose.X_W);
 }
 
 /// What cannot be fed is refused, or left out.
@@ -77,9 +101,10 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   const sim::TruthSeeds seeds = request.truth_seeds.value_or(request.seed);
   setup.as_built = sim::make_as_built(
       setup.machine, request.as_built.empty() ? sim::default_as_built(setup.machine) : request.as_built,
-      seeds);
+      seeds, request.fixture);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
+  if (!request.part_pose.empty()) believe_part_pose(request, setup);
   if (setup.machine.tool.prints() && !setup.cure)
     setup.layers = std::make_shared<ProgrammedLayers>(setup.program, setup.machine, setup.part,
                                                       told_layer(request.dialect, mended.facts));

@@ -10,7 +10,7 @@
 #include "control/registration/registration_tolerance.h"
 #include "core/error.h"
 #include "core/units.h"
-#include "machine/built_tolerances.h"
+#include "machine/fixture_file.h"
 #include "rehearsal/findings/findings.h"
 
 namespace understudy::rehearsal {
@@ -87,7 +87,7 @@ std::optional<control::RegistrationTask> registration_task(const RehearsalReques
     throw InputError("registration needs the part that is to be found: --fixture FILE.stl or a name");
   if (!machine.has_microscope)
     throw InputError(fmt::format("registration needs a laser and a microscope; {} has none", machine.name));
-  const auto stated = machine::load_built_tolerances(request.machine);
+  const auto stated = machine::load_built_tolerances(request.machine, request.fixture);
   control::RegistrationTask task;
   task.part = part;
   task.tolerance = control::part_tolerance(stated);

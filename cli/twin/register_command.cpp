@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
@@ -12,10 +11,13 @@
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
+#include "control/registration/part_pose_file.h"
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
+#include "core/file/read_file.h"
 #include "core/interrupt.h"
-#include "core/units.h"
+#include "machine/fixture_file.h"
 #include "rehearsal/rehearse.h"
 
 namespace understudy::cli {
@@ -26,38 +28,18 @@ struct RegisterCall {
   std::string output;
 };
 
-/// Shifts in um and turns in mrad.
-std::string covariance_text(const Mat6& covariance) {
-  Eigen::Matrix<double, 6, 1> factor;
-  factor << Vec3::Constant(to_um(1)), Vec3::Constant(to_mrad(1));
-  const Mat6 scaled = factor.asDiagonal() * covariance * factor.asDiagonal();
-  std::string text;
-  for (const auto& row : scaled.rowwise()) text += fmt::format("  - [{:.6g}]\n", fmt::join(row, ", "));
-  return text;
-}
-
-std::string quoted(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", word);
-  return text;
-}
-
-std::string pose_text(const rehearsal::Record& record, const rehearsal::RegistrationFigures& figures) {
+control::PartPose pose_of(const RegisterCall& call, const rehearsal::Record& record) {
+  const rehearsal::RegistrationFigures& figures = *record.registration;
   const control::PartFit& fit = *figures.fit;
-  const Vec3 p = fit.X_W.translation();
-  const Quat q(fit.X_W.linear());
-  return fmt::format(
-             "# Where the part stands: a point of the drawn part is at R p + position, in W. By: {}\n"
-             "part: {}\nmachine: {}\nposition_mm: [{:.6f}, {:.6f}, {:.6f}]\n"
-             "quaternion: [{:.9f}, {:.9f}, {:.9f}, {:.9f}]   # w, x, y, z\nreference_mm: [{:.3f}]\n"
-             "# Of the shift of the reference point in um and the turn about it in mrad, along x, y, z of "
-             "W.\n"
-             "covariance:\n",
-             command_line(), record.fixture_name, record.machine_word, to_mm(p.x()), to_mm(p.y()),
-             to_mm(p.z()), q.w(), q.x(), q.y(), q.z(), fmt::join(figures.reference_mm, ", ")) +
-         covariance_text(fit.covariance) +
-         fmt::format("unseen: [{}]\nchi_square: {:.3f}\ndegrees_of_freedom: {}\nplaces: {}\n",
-                     quoted(figures.unseen), fit.chi_square, fit.degrees_of_freedom, figures.places);
+  const std::string shape = machine::find_fixture(call.request.fixture);
+  return {record.fixture_name,
+          sha256_hex(read_file(shape)),
+          record.machine_word,
+          record.provenance.machine_sha256,
+          fit.X_W,
+          fit.reference_W,
+          fit.covariance,
+          figures.unseen};
 }
 
 int run_register(const RegisterCall& call) {
@@ -84,7 +66,7 @@ int run_register(const RegisterCall& call) {
       fmt::print("  {}: {}\n", finding.kind, finding.message);
   print_registration(figures);
   if (!found) return kNo;
-  write_file(call.output, pose_text(record, figures));
+  write_file(call.output, control::write_part_pose(pose_of(call, record), command_line()));
   fmt::print("pose: {}\n", call.output);
   return kGood;
 }
@@ -112,7 +94,8 @@ void add_register(CLI::App& app, Action& action) {
       ->required();
   command->footer(
       "Example: understudy register --fixture bottle --as-built manufactured --seed 4 -o pose.yaml\n"
-      "`understudy rehearse --register` finds the part and then prints on it where it stands.");
+      "`understudy rehearse --part-pose pose.yaml` prints where it stands; `rehearse --register` finds the "
+      "part and prints in one.");
   command->callback([=, &action] { action = [=] { return run_register(*call); }; });
 }
 

@@ -107,6 +107,12 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
                    ->group("Finding the part");
   add_registration_options(command, request.registration);
   for (const char* option : {"--pattern", "--places"}) command.get_option(option)->needs(find);
+  command
+      .add_option(
+          "--part-pose", request.part_pose,
+          "where the part stands, a .yaml that `understudy register` wrote: the program is moved there")
+      ->excludes(find)
+      ->group("Finding the part");
   add_tolerances(command, request);
   add_dialect_options(command, request.dialect);
   add_robot_options(command, request.dialect.robot);

@@ -6,10 +6,12 @@
 
 #include "calibration/table/column_map.h"
 #include "cli/command.h"
+#include "control/registration/part_pose_file.h"
 #include "core/file/output_file.h"
 #include "core/yaml/map_schema.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
+#include "machine/fixture_file.h"
 #include "machine/material.h"
 #include "machine/model_files.h"
 #include "regression/golden_file.h"
@@ -46,6 +48,10 @@ const Kind kKinds[] = {
      [](const SchemaRequest& r) { regression::load_golden(r.file); }},
     {"as-built", "Understudy: machine as built", sim::as_built_schema,
      [](const SchemaRequest& r) { sim::make_as_built(machine::load_machine(r.machine), r.file, 1); }},
+    {"fixture", "Understudy: what is clamped on a table", machine::fixture_schema,
+     [](const SchemaRequest& r) { machine::check_fixture_file(r.file); }},
+    {"part-pose", "Understudy: where a clamped part was found", control::part_pose_schema,
+     [](const SchemaRequest& r) { control::read_part_pose(r.file); }},
     {"rig", "Understudy: two cameras that measure a machine", vision::rig_schema,
      [](const SchemaRequest& r) { vision::load_rig(r.file); }},
     {"columns", "Understudy: columns of tables of measurements", calibration::column_map_schema,

@@ -293,6 +293,10 @@ std::string ContinuousGapController::why_follower_stopped() const {
         "the gap reads {:.3f} mm and has not followed the tool, which may come nearer by {:.3f} mm "
         "until it does: what shines may not be the dot",
         to_mm(sample.reading.gap), to_mm(limits.unproved_max));
+  if (stop_ == GapStop::implausible && follower_.mixed() > 0)
+    return fmt::format(
+        "{} of the last {} readings do not fit the others: more than one spot shines; the last: {}",
+        follower_.mixed(), GapFollower::kMixedReadings, why_unused());
   return fmt::format("{} frames in {:.2f} s could not be used; the last: {}", follower_.missed(),
                      stopped_.time - follower_.blind_since(),
                      reading_.seen == GapStop::none ? why_unused() : sample.why);

@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kBefore = 4;       // readings that show the tool before it moves
 constexpr std::size_t kReadingsMin = 5;  // with fewer, a line explains everything
-constexpr int kLate = 6;                 // readings after an arrival: three are on their way, three show it
+constexpr double kAgrees = 1;  // [nats] of the second look alone, for what its first readings say as well
+constexpr int kLate = 6;       // readings after an arrival: three are on their way, three show it
 
 // What shines has changed since the first of the readings: an edge, or a thread that came.
 constexpr double kChanged = 2.0 / 3;  // of the amplitude, root mean square
@@ -123,14 +124,20 @@ GapExcitation::Answer GapExcitation::observe(const ExcitedReading& reading) {
   if (motion_.arrived()) ++after_;
   const auto [evidence, scatter] = test_.result(slope_, slope_sigma_);
   if (scatter > std::pow(kChanged * options_.amplitude, 2)) test_.begin(kBefore);
-  if (evidence >= options_.decided) return finish(Answer::follows);
+  double second_look = 0;
   if (suspected_) {
-    if (evidence <= -options_.decided) return finish(Answer::stands_still);
+    second_look_.add(reading);
+    second_look = second_look_.result(slope_, slope_sigma_).evidence;
+  }
+  if (std::max(evidence, second_look) >= options_.decided) return finish(Answer::follows);
+  if (suspected_) {
+    if (evidence <= -options_.decided && second_look < -kAgrees) return finish(Answer::stands_still);
   } else if (evidence <= -options_.suspected) {
     suspected_ = true;
     phase_ = Phase::second;
     after_ = 0;
     test_.begin(kBefore);
+    second_look_.clear();
     go_to(2 * options_.amplitude);
     return Answer::open;
   }

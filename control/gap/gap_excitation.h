@@ -80,6 +80,9 @@ class GapExcitation {
 
   bool available() const { return options_.amplitude > 0; }
   bool running() const { return phase_ != Phase::idle; }
+  /// The tool rises farther because what shines has not followed it so far. Any other motion would hide the
+  /// answer.
+  bool suspects() const { return running() && suspected_; }
   /// The tool rises and comes back; an answer may come before that. The gap's own change over the path has a
   /// slope and its sigma [m/m].
   void begin(double slope, double slope_sigma);
@@ -106,6 +109,7 @@ class GapExcitation {
   double slope_ = 0, slope_sigma_ = 0;
   ExcitationMotion motion_;
   ExcitationTest test_;
+  ExcitationTest second_look_;  // its readings alone: those before it are what made it necessary
   Phase phase_ = Phase::idle;
   int after_ = 0;           // readings since the motion arrived
   bool undecided_ = false;  // the readings of the excitation before count on

@@ -1,6 +1,7 @@
 #include "control/gap/gap_follower.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "control/gap/confidence.h"
@@ -10,6 +11,8 @@ namespace {
 
 constexpr int kRepeatsMax = 3;          // readings equal to the last bit: a camera's noise forbids one
 constexpr double kSpeckleShare = 0.01;  // of a new pattern that a sample from the same place is worth
+// Noise puts one reading in 16 000 beyond the gate; a crossing of a bead is one run, or two with its edges.
+constexpr int kMixedOff = 6, kMixedRuns = 4;
 // Of the correction's rate and acceleration, while the tool is excited: the correction has the rest.
 constexpr double kExcitedShare = 0.6;
 
@@ -99,8 +102,10 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
   const double spread = std::sqrt(line_.covariance().height + o.sigma * o.sigma) + options_.unmodelled;
   if (std::abs(innovation) > options_.gate * spread && !lasting_step(innovation, o.sigma * o.sigma)) {
     miss(o.time, o.path, GapStop::implausible);
+    judge_mixture(true);
     return GapVerdict::jump;
   }
+  judge_mixture(false);
   if (steps_ >= options_.step_samples) {
     response_.forget();
   } else {
@@ -115,6 +120,16 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
   resume(o.time, o.path);
   judge(o);
   return GapVerdict::used;
+}
+
+/// A bead or an edge is off for a part of the path, a step of the machine for good. What is off again and
+/// again, among readings that are not, is a second spot, and nothing tells which of the two is the dot.
+void GapFollower::judge_mixture(bool jump) {
+  jumps_ = (jumps_ << 1 | (jump ? 1U : 0U)) & ((1U << kMixedReadings) - 1);
+  const int off = std::popcount(jumps_), runs = std::popcount(jumps_ & ~(jumps_ << 1));
+  if (!jump || off < kMixedOff || runs < kMixedRuns) return;
+  if (stop_ == GapStop::none) mixed_ = off;
+  raise(GapStop::implausible);
 }
 
 /// Readings in a row that agree on a step too small for a bead: the machine's own (play that changes sides).
@@ -278,7 +293,7 @@ GapFollower::Correction GapFollower::advance(double dt, double path, bool follow
   const double rate_max = options_.rate_max * (excited ? 1 - kExcitedShare : 1);
   const double acceleration_max = options_.acceleration_max * (excited ? 1 - kExcitedShare : 1);
   double rate = 0;
-  if (follow && known_) {
+  if (follow && known_ && !excitation_.suspects()) {
     const double wanted = options_.aim - predicted_error(path);
     const double target = std::clamp(wanted, lowest(), options_.travel_max);
     const double left = target - correction_.value;

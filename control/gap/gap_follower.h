@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "control/gap/confidence.h"
 #include "control/gap/gap_controller.h"
@@ -66,6 +67,8 @@ enum class GapVerdict { used, jump, repeated, not_yet };
 
 class GapFollower {
  public:
+  static constexpr int kMixedReadings = 24;
+
   struct Correction {
     double value = 0;       ///< [m], along the tool axis, positive away from the part
     double rate = 0;        ///< [m/s]
@@ -110,6 +113,9 @@ class GapFollower {
   GapStop stop() const { return stop_; }
   double blind_since() const { return seen_time_; }  ///< [s], the last good reading
   int missed() const { return missed_; }             ///< frames since then
+  /// Of the last kMixedReadings readings, those that were off by more than noise explains, while others
+  /// between them were not; 0: its stop has another reason.
+  int mixed() const { return mixed_; }
   /// Its stop is that of a reading that has not followed the tool, which rose by this [m]; else 0.
   double unanswered() const { return unanswered_; }
   double wanted() const {
@@ -120,6 +126,7 @@ class GapFollower {
   double predicted_error(double path) const;
   double line_end() const { return used_path_ + options_.extrapolated_max; }  // [m] of path
   bool lasting_step(double innovation, double variance);
+  void judge_mixture(bool jump);
   void begin(const GapObservation& o);
   void judge(const GapObservation& o);
   void judge_proof(const GapObservation& o);
@@ -143,6 +150,8 @@ class GapFollower {
   double step_sum_ = 0, step_squares_ = 0;
   double seen_time_ = 0, seen_path_ = 0;  // of the last good reading, or where readings began
   int missed_ = 0;
+  std::uint32_t jumps_ = 0;  // a bit for each of the last readings, the newest lowest
+  int mixed_ = 0;
   CusumTest response_;
   double held_time_ = 0, held_path_ = 0;  // since when readings ask for more than is proved
   bool held_ = false;

@@ -82,6 +82,7 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   else
     inputs.word("program", program_sha256);
   inputs.bytes_of("fixture", request.fixture.empty() ? "" : machine::find_fixture(request.fixture));
+  inputs.bytes_of("fixture file", machine::fixture_file_of(request.fixture));
   const std::string material =
       request.material.empty() ? machine::load_machine(request.machine).process.material : request.material;
   inputs.bytes_of("material", material.empty() ? "" : machine::find_material(changed_file(material).file));
@@ -115,6 +116,7 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   if (!surface.stock.empty()) inputs.bytes_of("stock", machine::find_fixture(surface.stock));
   inputs.values("registration", request.registration.wanted, request.registration.places);
   inputs.bytes_of("pattern", request.registration.pattern);
+  inputs.bytes_of("part pose", request.part_pose);
   return inputs.sha256();
 }
 

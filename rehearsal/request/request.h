@@ -56,8 +56,9 @@ struct RehearsalRequest {
   DialectRequest dialect;
   SurfaceRequest surface;
   RegistrationRequest registration;
-  std::string record;   ///< file of what goes through the port to write (docs/port-record.md); empty: none
-  std::string command;  ///< for the record: how a user repeats this
+  std::string record;     ///< file of what goes through the port to write (docs/port-record.md); empty: none
+  std::string part_pose;  ///< file of `register`: where the part stands; empty: as drawn, or found
+  std::string command;    ///< for the record: how a user repeats this
   double max_time = 86400;  ///< [s], of the program; what would take longer is refused
   bool keep_scene = true;   ///< keep what pictures are drawn from; sweeps leave it out
   bool compare_without_gap_control =

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/random_vector.h"
+#include "machine/fixture_file.h"
 #include "machine/optics_mounting.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/as_built/calibrated_draw.h"
@@ -49,6 +50,7 @@ enum class Geometry { drawn, described };
 AsBuilt without_errors(const machine::MachineDescription& machine, Geometry geometry) {
   const bool before_calibration = geometry == Geometry::drawn && machine.calibration;
   AsBuilt built;
+  built.machine = machine.name;
   machine.visit(
       [&](const machine::HexapodModel& hexapod) {
         built.hexapod = before_calibration ? hexapod.design : hexapod.geometry;
@@ -79,8 +81,8 @@ AsBuilt as_described(const machine::MachineDescription& machine) {
 }
 
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set,
-                      const TruthSeeds& seeds) {
-  if (set == "calibrated") return draw_calibrated(machine, seeds);
+                      const TruthSeeds& seeds, const std::string& fixture) {
+  if (set == "calibrated") return draw_calibrated(machine, seeds, fixture);
   AsBuilt built = without_errors(machine, Geometry::drawn);
   built.source = set;
   built.seed = seeds[TruthGroup::geometry];
@@ -91,7 +93,7 @@ AsBuilt make_as_built(const machine::MachineDescription& machine, const std::str
     if (machine.tolerances.mounting) draw_mounting(*machine.tolerances.mounting, seeds, built);
     // A description that was made in memory has no file, and no tolerances but its own.
     if (!machine.file.empty())
-      draw_world(machine::load_built_tolerances(machine.file.string()), seeds, built);
+      draw_world(machine::load_built_tolerances(machine.file.string(), fixture), seeds, built);
   } else if (set != "nominal") {
     read_as_built(set, built);
   }

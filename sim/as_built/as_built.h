@@ -30,6 +30,7 @@ struct BuiltPart {
 struct AsBuilt {
   /// "nominal", "sampled", "manufactured", "calibrated", the file it was read from, or empty: as described.
   std::string source;
+  std::string machine;     ///< name of what it is built after
   std::uint64_t seed = 0;  ///< of the geometry
   // Hexapod.
   kinematics::HexapodGeometry hexapod;       ///< true 42 parameters and dev
@@ -58,10 +59,11 @@ AsBuilt as_described(const machine::MachineDescription& machine);
 /// sampled (the drawing, off by the tolerances that a calibration is expected to leave), manufactured (off by
 /// those of manufacture, and in drives, play, sensors, part and process by the file's other tolerances) or an
 /// as-built file (as_built_file.h), which alters the drawing: calibrating a machine file changes none of
-/// these. Or it is calibrated (calibrated_draw.h): what the calibration of this file leaves open. Throws
-/// InputError for another word.
+/// these. Or it is calibrated (calibrated_draw.h): what the calibration of this file leaves open. `fixture`,
+/// as machine::find_fixture() takes it, may state tolerances of what is clamped. Throws InputError for
+/// another word.
 AsBuilt make_as_built(const machine::MachineDescription& machine, const std::string& set,
-                      const TruthSeeds& seeds);
+                      const TruthSeeds& seeds, const std::string& fixture = {});
 
 /// What a print is tried on unless something else is asked for: calibrated where the file has a calibration,
 /// else sampled.

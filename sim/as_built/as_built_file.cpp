@@ -89,6 +89,12 @@ void read_geometry(YamlMap& root, AsBuilt& built) {
 }
 
 void read_built(YamlMap& root, AsBuilt& built) {
+  if (root.has("machine")) {
+    const std::string name = root.text("machine", "name of the machine that it tells of, as its file has it");
+    if (!root.recording() && name != built.machine)
+      root.fail("machine", fmt::format("this is the truth of a machine '{}', and --machine is a '{}'",
+                                       printable(name), printable(built.machine)));
+  }
   read_geometry(root, built);
   read_world(root, built);
 }
@@ -140,8 +146,8 @@ MapSchema as_built_schema() {
 }
 
 std::string write_as_built(const AsBuilt& built) {
-  return fmt::format("# As built: {}, seed {}. Every parameter that the plant uses.\n",
-                     printable(built.source), built.seed) +
+  return fmt::format("# As built: {}, seed {}. Every parameter that the plant uses.\nmachine: {}\n",
+                     printable(built.source), built.seed, machine::quoted_text(built.machine)) +
          geometry_text(built) + write_world(built);
 }
 

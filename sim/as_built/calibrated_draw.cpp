@@ -9,6 +9,7 @@
 #include "core/assert.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "machine/fixture_file.h"
 #include "sim/as_built/world_draw.h"
 
 namespace understudy::sim {
@@ -92,7 +93,8 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine,
   return built;
 }
 
-AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthSeeds& seeds) {
+AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthSeeds& seeds,
+                        const std::string& fixture) {
   constexpr const char* kOthers = "nominal, sampled, manufactured or an as-built file";
   const Place file{machine.file.string(), 0, 0};
   if (!machine.calibration)
@@ -102,7 +104,7 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthS
                                  kOthers));
   machine::CalibratedParameters parameters;
   (void)machine::load_machine(machine.file.string(), parameters);
-  machine::BuiltTolerances others = machine::load_built_tolerances(machine.file.string());
+  machine::BuiltTolerances others = machine::load_built_tolerances(machine.file.string(), fixture);
   if (parameters.play) others.play = 0;
   if (machine.gap_sensor) others.camera_centre = 0;  // found as a turn of the microscope
   if (parameters.covariance.size() == 0)

@@ -15,8 +15,10 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine,
                         const machine::CalibratedParameters& parameters, std::uint64_t seed);
 
 /// The same for the file that `machine` was read from, with what the calibration does not tell drawn within
-/// the file's tolerances: drives, sensors, part and filament, and play unless it was found. Throws
+/// the tolerances of the file and of `fixture`: drives, sensors, part and filament, and play unless it was
+/// found. Throws
 /// InputError, with what to do, where it has no calibration or its calibration no covariance.
-AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthSeeds& seeds);
+AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthSeeds& seeds,
+                        const std::string& fixture = {});
 
 }  // namespace understudy::sim

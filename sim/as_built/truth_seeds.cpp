@@ -44,9 +44,10 @@ const char* to_string(TruthGroup group) {
 }
 
 /// Asks the draws themselves: a tolerance says little where what it spreads is 0.
-std::vector<TruthGroup> drawn_truths(const machine::MachineDescription& machine, const std::string& set) {
+std::vector<TruthGroup> drawn_truths(const machine::MachineDescription& machine, const std::string& set,
+                                     const std::string& fixture) {
   const auto drawn = [&](const TruthSeeds& seeds) {
-    AsBuilt built = make_as_built(machine, set, seeds);
+    AsBuilt built = make_as_built(machine, set, seeds, fixture);
     built.seed = 0;  // is written, too, as are the phases of waves that are not there
     if (built.part.ripple == 0) built.part.phase = 0;
     for (DriveError& drive : built.drives)

@@ -43,6 +43,7 @@ class TruthSeeds {
 
 /// The groups whose seed changes a machine that is built by `set` (make_as_built()), in their order; none
 /// of a file's. Throws what that throws.
-std::vector<TruthGroup> drawn_truths(const machine::MachineDescription& machine, const std::string& set);
+std::vector<TruthGroup> drawn_truths(const machine::MachineDescription& machine, const std::string& set,
+                                     const std::string& fixture = {});
 
 }  // namespace understudy::sim

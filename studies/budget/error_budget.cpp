@@ -117,7 +117,7 @@ BudgetPlan plan_budget(const BudgetRequest& request) {
   const machine::MachineDescription machine = machine::load_machine(request.print.machine);
   BudgetPlan plan;
   plan.as_built = request.print.as_built.empty() ? sim::default_as_built(machine) : request.print.as_built;
-  plan.groups = sim::drawn_truths(machine, plan.as_built);
+  plan.groups = sim::drawn_truths(machine, plan.as_built, request.print.fixture);
   const bool camera = camera_in_use(request.print, machine);
   if (!camera) std::erase_if(plan.groups, seen_by_camera);
   if (plan.groups.empty()) throw nothing_varies(machine, plan.as_built);

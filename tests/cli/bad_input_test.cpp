@@ -121,6 +121,30 @@ TEST(BadMachine, UnknownNameListsTheKnown) {
                  {"hexapode", "hexapod"});
 }
 
+/// The truth of one machine is none of another.
+TEST(BadAsBuilt, AFileOfAnotherMachineIsNamed) {
+  const Folder folder;
+  const std::string rest = " --fixture bottle --out " + (folder / "out") + " --as-built ";
+  const std::string named = folder.write("named.yaml", "machine: delta\ndeviation_mm: 15\n");
+  expect_refused("rehearse " + kBottleLine + rest + named, folder, {"named.yaml:1", "delta", "hexapod"});
+  const std::string chain = folder.write("chain.yaml", "tip_mm: [0, 0, 0]\n");
+  expect_refused("rehearse " + kBottleLine + rest + chain, folder, {"chain.yaml:1", "tip_mm"});
+}
+
+TEST(BadFixtureFile, ANegativeToleranceOrAnotherUnitIsNamedWithItsLine) {
+  const Folder folder;
+  const std::string rest = " --out " + (folder / "out") + " --fixture ";
+  const auto clamp = [&](const std::string& tolerance) {
+    return folder.write("clamp.yaml", "shape: bottle\ntolerances:\n  " + tolerance + "\n");
+  };
+  const std::string negative = clamp("position_mm: -0.2");
+  expect_refused("rehearse " + kBottleLine + rest + negative, folder,
+                 {"clamp.yaml:3", "position_mm", "-0.2"});
+  const std::string unit = clamp("position_um: 200");
+  expect_refused("rehearse " + kBottleLine + rest + unit, folder,
+                 {"clamp.yaml:3", "position_um", "position_mm"});
+}
+
 TEST(BadUsage, OneLineAndStatusTwo) {
   const Folder folder;
   expect_refused("", folder, {"understudy"});

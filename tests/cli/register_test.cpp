@@ -52,9 +52,40 @@ TEST(RegisterCommand, WritesThePoseWithItsCovariance) {
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("found"), HasSubstr("not seen, left as drawn"), HasSubstr("turn about")));
   const std::string text = contents(pose);
-  for (const char* key : {"position_mm: [", "quaternion: [", "reference_mm: [", "covariance:\n  - [",
-                          "unseen: [\"", "chi_square: "})
+  for (const char* key : {"part: \"bottle\"", "part_sha256: ", "machine_sha256: ", "part_mm: [",
+                          "part_quaternion: [", "reference_mm: [", "covariance_mm_rad: [", "unseen:"})
     EXPECT_THAT(text, HasSubstr(key));
+}
+
+/// One line, status 2, and no folder of results.
+void expect_no_print(const std::string& words, const std::vector<std::string>& parts) {
+  const Folder folder;
+  const Outcome outcome = understudy("rehearse " + std::string(UNDERSTUDY_SOURCE_DIR) +
+                                     "/scenarios/song-bottle.gcode " + words + " --out " + (folder / "out"));
+  EXPECT_EQ(outcome.status, 2) << outcome.out;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  for (const auto& part : parts) EXPECT_THAT(outcome.err, HasSubstr(part));
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+const std::string kPose = std::string(UNDERSTUDY_SOURCE_DIR) + "/scenarios/registration/bottle-pose.yaml";
+
+TEST(PartPose, OfAnotherPartOrMachineIsRefused) {
+  const Folder folder;
+  const std::string shipped = contents(kPose);
+  EXPECT_THAT(shipped, HasSubstr("part_sha256: "));
+  expect_no_print("--fixture slanted_box --part-pose " + kPose,
+                  {"bottle-pose.yaml", "another part", "understudy register"});
+  const std::string other =
+      folder.write("other.yaml", shipped + "machine_sha256: \"" + std::string(64, '0') + "\"\n");
+  expect_no_print("--fixture bottle --part-pose " + other,
+                  {"other.yaml", "another machine file", "understudy register"});
+}
+
+TEST(PartPose, NeedsThePartAndExcludesRegistering) {
+  expect_no_print("--part-pose " + kPose, {"--fixture"});
+  expect_no_print("--fixture bottle --register --part-pose " + kPose, {"--register", "--part-pose"});
+  expect_no_print("--fixture bottle --part-pose none.yaml", {"none.yaml"});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "control/registration/part_pose_file.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "machine/fixture_file.h"
@@ -63,6 +64,31 @@ TEST(RegisteredRehearsal, PrintsInTheBandOnAPartThatStandsBesideItsPlace) {
   // 0.35 mm low, as the tool meets it.
   EXPECT_NEAR(found.shift_um[2], -350, 40);
   for (const TracePoint& p : record.trace) ASSERT_GT(p.gap, 0.05e-3) << "at " << p.time;
+}
+
+// What was found once serves another print: the same file, told to a rehearsal that does not look.
+TEST(RegisteredRehearsal, APoseFromAFilePutsProgramAndBeliefWhereThePartStands) {
+  const MovedPart moved;
+  RehearsalRequest request = bottle();
+  request.as_built = moved.path.string();
+  const std::string file = (std::filesystem::path(testing::TempDir()) / "told-pose.yaml").string();
+  control::PartPose pose;
+  // As MovedPart has it.
+  pose.X_W = make_pose(Quat(0.999994875, 0.002, 0, 0.0025).normalized(), Vec3(0.3e-3, -0.2e-3, -0.35e-3));
+  pose.covariance = 1e-12 * Mat6::Identity();
+  write_file(file, control::write_part_pose(pose, "by hand"));
+  request.part_pose = file;
+  const Record told = rehearse(request);
+  std::filesystem::remove(file);
+  request.part_pose.clear();
+  request.as_built = "nominal";
+  const Record in_place = rehearse(request);
+  ASSERT_TRUE(told.gap && in_place.gap);
+  EXPECT_FALSE(told.registration);
+  // The machine is as drawn: play changes sides and a microstep rounds by some micrometres elsewhere.
+  EXPECT_NEAR(told.gap->path_min_mm, in_place.gap->path_min_mm, 0.010);
+  EXPECT_NEAR(told.gap->path_max_mm, in_place.gap->path_max_mm, 0.010);
+  EXPECT_TRUE(told.go);
 }
 
 // Waves of 0.3 mm, where the tolerances speak of 10 um: no pose of the drawn bottle explains them.

@@ -86,6 +86,23 @@ TEST(TruthAndBeliefOfSensors, ABeliefThatIsWrongMovesTheGapAndNoTruth) {
   EXPECT_GT(std::abs(wrong.deposition.start_gap - as_drawn().deposition.start_gap), 40e-6);
 }
 
+// 20 times the tolerance of k1, so that speckle does not hide it: of a dot r px from the principal point,
+// with a focal length f in px, a share k1 (r / f)^2 of r.
+TEST(TruthAndBeliefOfSensors, ALensThatDistortsMovesTheDotAndNoBelief) {
+  constexpr double kBarrel = -1;
+  const TwinRun distorts = run_built([](sim::AsBuilt& built) { built.microscope.camera.k1 += kBarrel; });
+  const Camera& camera = bottle().machine.microscope.camera;
+  const Vec2 from_centre = first_dot(as_drawn()) - camera.centre_px;
+  const double ratio = from_centre.norm() / camera.focal_px;
+  const Vec2 expected = kBarrel * ratio * ratio * from_centre;
+  EXPECT_GT(expected.norm(), 0.3) << "the dot is too near the middle of the picture to tell";
+  EXPECT_NEAR((first_dot(distorts) - first_dot(as_drawn()) - expected).norm(), 0, 0.1 * expected.norm());
+  const TwinRun believed =
+      run_believing([](machine::MachineDescription& machine) { machine.microscope.camera.k1 += kBarrel; });
+  EXPECT_LT((first_dot(believed) - first_dot(as_drawn())).norm(), 1e-9) << "before the first correction";
+  EXPECT_NE(believed.frames.at(0).look.reading.gap, as_drawn().frames.at(0).look.reading.gap);
+}
+
 TEST(TruthAndBeliefOfSensors, TheSameErrorInBothCancels) {
   TwinSetup setup = bottle();
   const Pose by = make_pose(Quat::Identity(), Vec3(0, kMove, 0));

@@ -21,7 +21,7 @@ import tempfile
 import jsonschema
 import yaml
 
-KINDS = ("machine", "material", "scenario", "campaign", "golden", "as-built", "rig", "columns")
+KINDS = ("machine", "material", "scenario", "campaign", "golden", "as-built", "fixture", "part-pose", "rig", "columns")
 HEADER = re.compile(r"^# yaml-language-server: \$schema=(\S+)$")
 SLIPS_IN_A_FILE = 5
 

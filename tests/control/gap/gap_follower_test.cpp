@@ -171,6 +171,37 @@ double apart(const FollowerLoop& a, const FollowerLoop& b) {
   return most;
 }
 
+// A ghost in three of five frames reads 16 um less than the aim wherever the tool is. The follower takes it
+// for the dot and rises; the dot's own readings, between the ghost's, say how far.
+TEST(GapFollower, ASecondSpotAmongTheDotsReadingsIsFoundOut) {
+  int implausible = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    auto loop = loop_with([](double, double) { return kAim; }, 1.4e-6, seed, options_of_hexapod());
+    Random random(seed, "which spot");
+    loop.set_camera([&random](double time, double, double gap) -> FollowerLoop::Look {
+      const bool ghost = time > 0.8 && random.uniform() < 0.6;
+      return {GapStop::none, ghost ? kAim - 16e-6 : gap};
+    });
+    loop.run(4);
+    EXPECT_NE(loop.follower.stop(), GapStop::none) << seed;
+    EXPECT_LT(loop.points.back().gap, 0.5e-3) << seed;  // from 0.63 mm on it is too far in any case
+    EXPECT_GT(loop.points.back().gap, 0.05e-3) << seed;
+    implausible += loop.follower.stop() == GapStop::implausible;
+  }
+  EXPECT_GE(implausible, 15) << "of 20: not by how far it was led";
+}
+
+// Four times in three millimetres a reading is off, a bead or a flake under the dot: no second spot.
+TEST(GapFollower, ASingleReadingThatIsOffNowAndThenIsNoSecondSpot) {
+  auto loop = loop_with([](double, double) { return kAim; }, 1.4e-6, 1, options_of_hexapod());
+  int frame = 0;
+  loop.set_camera([&frame](double, double, double gap) -> FollowerLoop::Look {
+    return {GapStop::none, gap + (++frame % 6 == 0 ? 80e-6 : 0)};
+  });
+  loop.run(4);
+  EXPECT_EQ(loop.follower.stop(), GapStop::none);
+}
+
 TEST(GapFollower, ABeadOrAnEdgeUnderTheDotIsNotChased) {
   const auto error = [](double, double) { return kAim; };
   for (double jump : {-0.13e-3, -0.1e-3, 0.3e-3, 2e-3}) {
