@@ -26,6 +26,7 @@ class PortOnTrial {
   std::size_t capacity = 0;     ///< of the queue, at least 1000
   double clock_step = 0;        ///< [s], grain of the clock
   double resolution = 0;        ///< [m], grain of axis 0
+  double drift = 0;             ///< [s], of a moving axis against its command: no real-time kernel
 };
 
 using MakePort = std::unique_ptr<PortOnTrial> (*)();
@@ -40,10 +41,15 @@ class PortConformance : public testing::TestWithParam<MakePort> {
   PortOnTrial& trial() { return *trial_; }
   MachinePort& port() { return trial_->port(); }
   double position() { return port().state().position[0] - start_[0]; }
+  /// [s], of the position that a moving axis has: a real machine is behind the port's clock.
+  double age() { return port().now() - port().state().sampled_at; }
+  /// [m], where the first setpoints of travel() are at that time after its begin; at its full speed.
+  static double travelled(double time) { return kSpeed * (time - 0.05); }
   /// What an axis at that speed may be off: its grain, and what it does in a grain of the clock.
   double slack(double speed = kSpeed) const {
     return 1e-12 + trial_->resolution + 2 * speed * trial_->clock_step;
   }
+  double moving_slack(double speed) const { return slack(speed) + trial_->drift * speed; }
 
   Setpoint at(double time, double position, double velocity = 0) const {
     Setpoint s;
@@ -97,7 +103,8 @@ TEST_P(PortConformance, AcceptedIsNotExecuted) {
   EXPECT_EQ(port().state().free_slots, trial().capacity - 300);
   EXPECT_TRUE(port().state().moving);
   ASSERT_EQ(wait(0.15), Status::ok);
-  EXPECT_NEAR(static_cast<double>(port().state().executed), 150, 1 + trial().clock_step / kCycle);
+  EXPECT_NEAR(static_cast<double>(port().state().executed), 150 - age() / kCycle,
+              1 + trial().clock_step / kCycle);
   ASSERT_EQ(wait(0.2), Status::ok);
   EXPECT_EQ(port().state().executed, 300U);
   EXPECT_FALSE(port().state().moving);
@@ -113,7 +120,7 @@ TEST_P(PortConformance, FollowsACubicBetweenSetpoints) {
             Status::ok);
   for (double t = 0.01; t < 1; t += 0.01) {
     ASSERT_EQ(port().wait_until(begin + t), Status::ok);
-    ASSERT_NEAR(position(), x(t), slack(1.5 * depth)) << t;
+    ASSERT_NEAR(position(), x(std::max(0.0, t - age())), moving_slack(1.5 * depth)) << t;
   }
 }
 
@@ -123,7 +130,8 @@ TEST_P(PortConformance, RestsUntilAnIdleQueueIsFedAgain) {
   const double begin = port().now();
   ASSERT_EQ(submit({at(begin + 0.2, 2e-3)}), Status::ok);
   ASSERT_EQ(port().wait_until(begin + 0.1), Status::ok);
-  EXPECT_NEAR(position(), 1.5e-3, slack());
+  const double u = 0.5 - age() / 0.2;
+  EXPECT_NEAR(position(), 1e-3 * (1 + u * u * (3 - 2 * u)), moving_slack(7.5e-3));
 }
 
 TEST_P(PortConformance, AFullQueueTakesNothingOfTheCall) {
@@ -195,7 +203,7 @@ TEST_P(PortConformance, AfterAFaultOutputsCanOnlyBeSwitchedOff) {
 TEST_P(PortConformance, HoldBrakesAndKeepsTheQueueUntilResume) {
   ASSERT_EQ(submit(travel(0.8)), Status::ok);
   ASSERT_EQ(wait(0.3), Status::ok);
-  const double before = position();
+  const double before = travelled(0.3);
   ASSERT_EQ(port().urgent(UrgentCommand::hold), Status::ok);
   ASSERT_EQ(wait(2), Status::ok);
   EXPECT_NEAR(position() - before, kSpeed * kBraking / 2, slack());
@@ -210,7 +218,7 @@ TEST_P(PortConformance, HoldBrakesAndKeepsTheQueueUntilResume) {
 TEST_P(PortConformance, StopBrakesAlongTheQueueAndDropsIt) {
   ASSERT_EQ(submit(travel(0.8)), Status::ok);
   ASSERT_EQ(wait(0.3), Status::ok);
-  const double before = position();
+  const double before = travelled(0.3);
   ASSERT_EQ(port().urgent(UrgentCommand::stop), Status::ok);
   EXPECT_TRUE(port().state().moving) << "a stop is not instant";
   ASSERT_EQ(wait(0.5), Status::ok);
