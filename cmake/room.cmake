@@ -31,10 +31,12 @@ function(understudy_sources out recurse exclude)
   set(${out} ${sources} PARENT_SCOPE)
 endfunction()
 
-# understudy_test(NAME [RECURSE] [EXCLUDE regex] [SOURCES extra ...] USES room ... [PRIVATE lib ...] [TIMEOUT s])
+# understudy_test(NAME [RECURSE] [EXCLUDE regex] [SOURCES extra ...] USES room ... [PRIVATE lib ...] [TIMEOUT s]
+# [LOCK what])
+# LOCK: tests that share what there is once on a computer never run at the same time.
 # One GoogleTest program of every source in the folder; tests whose name starts with Slow run under ./test --all only.
 function(understudy_test name)
-  cmake_parse_arguments(TEST "RECURSE" "TIMEOUT;EXCLUDE" "SOURCES;USES;PRIVATE" ${ARGN})
+  cmake_parse_arguments(TEST "RECURSE" "TIMEOUT;EXCLUDE;LOCK" "SOURCES;USES;PRIVATE" ${ARGN})
   understudy_sources(sources "${TEST_RECURSE}" "${TEST_EXCLUDE}")
   add_executable(${name}_test ${sources} ${TEST_SOURCES})
   foreach(used IN LISTS TEST_USES)
@@ -51,9 +53,12 @@ function(understudy_test name)
     math(EXPR TEST_TIMEOUT "4 * ${TEST_TIMEOUT}")
   endif()
   set(leaks "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0")
+  if(TEST_LOCK)
+    set(lock RESOURCE_LOCK ${TEST_LOCK})
+  endif()
   gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "-Slow*" NO_PRETTY_VALUES
-    PROPERTIES ENVIRONMENT ${leaks} TIMEOUT ${TEST_TIMEOUT} DISCOVERY_TIMEOUT 60)
+    PROPERTIES ENVIRONMENT ${leaks} TIMEOUT ${TEST_TIMEOUT} ${lock} DISCOVERY_TIMEOUT 60)
   gtest_discover_tests(${name}_test TEST_PREFIX "${name}." TEST_FILTER "Slow*" NO_PRETTY_VALUES
     TEST_LIST ${name}_slow_tests
-    PROPERTIES ENVIRONMENT ${leaks} LABELS slow TIMEOUT 3600 DISCOVERY_TIMEOUT 60)
+    PROPERTIES ENVIRONMENT ${leaks} LABELS slow TIMEOUT 3600 ${lock} DISCOVERY_TIMEOUT 60)
 endfunction()
