@@ -41,6 +41,7 @@ void add_benchmark_calibration(CLI::App& benchmark, Action& action);
 void add_benchmark_gap(CLI::App& benchmark, Action& action);
 void add_benchmark_faults(CLI::App& benchmark, Action& action);
 void add_drive(CLI::App& app, Action& action);
+void add_post(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_inspection(CLI::App& app, Action& action);  ///< machines, doctor
 

@@ -81,6 +81,7 @@ int run(int argc, char** argv) {
   cli::add_export(app, action);
   cli::add_new_machine(app, action);
   cli::add_drive(app, action);
+  cli::add_post(app, action);
   cli::add_inspection(app, action);
   check_first_word(app, argc, argv);
   try {

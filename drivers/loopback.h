@@ -9,8 +9,8 @@
 
 namespace understudy::drivers {
 
-/// Rests at home, in the ranges of the machine's axes, on the clock of a twin: 0.5 ms. Throws InputError for
-/// a place or options, which it has none of.
+/// Rests at home, in the ranges of the machine's axes, on the clock of a twin: 0.5 ms, or clock_ms. Throws
+/// InputError for a place and for other options.
 std::unique_ptr<machine::LoopbackPort> open_loopback(const PortUri& uri,
                                                      const machine::MachineDescription& machine);
 

@@ -14,25 +14,12 @@ using machine::Status;
 
 namespace {
 
-constexpr double kSample = 1e-3;     // [s], of the path
 constexpr double kTick = 4e-3;       // [s], between two looks at the link
 constexpr double kSlip = 0.02;       // [s], by which our clock catches up; beyond, it is put back
 constexpr double kBacklogMax = 1.0;  // [s], of blocks that the controller does not take
 constexpr double kHeatTime = 600;    // [s], to any temperature
 constexpr double kSettleTime = 10;   // [s], for what a fault leaves on its way
 constexpr double kBlockTime = 0.1;   // [s], at most: what a stop waits for
-
-machine::SetpointQueueOptions queue_options(const GcodeSetup& setup,
-                                            const machine::MachineDescription& machine) {
-  machine::SetpointQueueOptions queue;
-  queue.capacity = setup.queue_capacity;
-  const auto mechanism = machine.make_mechanism();
-  for (int i = 0; i < mechanism->axis_count(); ++i) {
-    queue.ranges.push_back(mechanism->axis_range(i));
-    queue.rest_velocity[static_cast<std::size_t>(i)] = machine.drives[static_cast<std::size_t>(i)].step();
-  }
-  return queue;
-}
 
 FitTolerance driving(FitTolerance tolerance) {
   tolerance.block_time_max = std::min(tolerance.block_time_max, kBlockTime);
@@ -53,12 +40,11 @@ GcodePort::GcodePort(std::unique_ptr<ByteLink> link, const GcodeSetup& setup,
       link_(std::move(link)),
       writer_(setup.family, setup.axes),
       session_(*link_, writer_, setup.session),
-      queue_(queue_options(setup, machine), connected(session_).position(), 0),
+      path_(machine, setup.queue_capacity, connected(session_).position()),
       fitter_(driving(setup.tolerance), setup.axes.grid, setup.axes.turns),
       anchor_(link_->now()) {
-  last_.position = session_.position();
-  fitter_.begin(last_);
-  writer_.begin(last_);
+  fitter_.begin(path_.last());
+  writer_.begin(path_.last());
 }
 
 machine::AxisState GcodePort::state() const {
@@ -66,10 +52,11 @@ machine::AxisState GcodePort::state() const {
   s.time = now_;
   s.sampled_at = std::min(now_, session_.position_time() - anchor_);
   s.position = session_.position();
-  s.accepted = queue_.accepted();
+  s.accepted = path_.queue().accepted();
   s.executed = session_.executed();
-  s.free_slots = queue_.free_slots();
-  s.moving = fault_ == Fault::none && (queue_.moving() || queue_.rate_changes() || in_motion_ || streaming_);
+  s.free_slots = path_.queue().free_slots();
+  s.moving = fault_ == Fault::none &&
+             (path_.queue().moving() || path_.queue().rate_changes() || path_.in_motion() || streaming_);
   s.fault = fault_;
   return s;
 }
@@ -77,7 +64,7 @@ machine::AxisState GcodePort::state() const {
 Status GcodePort::submit(std::span<const machine::Setpoint> setpoints, double deadline) {
   if (fault_ != Fault::none) return Status::faulted;
   if (now_ > deadline) return Status::deadline_exceeded;
-  return queue_.submit(setpoints, now_);
+  return path_.queue().submit(setpoints, now_);
 }
 
 /// Nothing of the path is on its way any more.
@@ -85,8 +72,8 @@ void GcodePort::raise(Fault fault, const std::string& why) {
   if (fault_ != Fault::none) return;
   fault_ = fault;
   fault_text_ = why;
-  queue_.advance_to(now_);
-  queue_.clear(now_);
+  path_.queue().advance_to(now_);
+  path_.queue().clear(now_);
 }
 
 bool GcodePort::time_stands() const { return heating_ || session_.backlog() > kBacklogMax; }
@@ -108,38 +95,19 @@ void GcodePort::hand_over(bool all) {
 void GcodePort::end_of_motion() {
   fitter_.finish();
   hand_over(true);
-  PathSample rest = last_;
-  rest.executed = queue_.executed();
-  fitter_.begin(rest);
-  session_.push_rest(rest.position);
+  session_.push_rest(path_.last().position);
   streaming_ = true;
-  in_motion_ = false;
 }
 
 /// The queue's clock runs to `until`, and the path that it passes becomes blocks.
 void GcodePort::release(double until) {
   while (now_ < until && fault_ == Fault::none) {
-    const double next = std::min(until, now_ + kSample);
-    const bool passing = queue_.moving() || queue_.rate_changes();
-    if (passing) {
-      if (!in_motion_) {
-        last_.time = now_;
-        last_.executed = queue_.executed();
-        fitter_.begin(last_);
-        in_motion_ = true;
-      }
-      const auto& target = queue_.advance_to(next);
-      last_ = {next, target.position, target.filament, target.line, queue_.executed()};
-      fitter_.add(last_);
-      if (queue_.ran_dry()) {
-        now_ = next;
-        end_of_motion();
-        return raise(Fault::underrun, "the queue ran empty in motion: the computer is too slow for the path");
-      }
-    }
-    queue_.pass(next - now_, next);
+    const double next = std::min(until, now_ + kSampleTime);
+    const auto passed = path_.pass(now_, next, fitter_);
     now_ = next;
-    if (in_motion_ && !queue_.moving() && !queue_.rate_changes()) end_of_motion();
+    if (passed != PathSampler::Passed::on) end_of_motion();
+    if (passed == PathSampler::Passed::ran_dry)
+      raise(Fault::underrun, "the queue ran empty in motion: the computer is too slow for the path");
   }
   hand_over(false);
 }
@@ -194,13 +162,13 @@ Status GcodePort::wait_until(double time) {
 Status GcodePort::urgent(machine::UrgentCommand command) {
   switch (command) {
     case machine::UrgentCommand::hold:
-      queue_.hold();
+      path_.queue().hold();
       return Status::ok;
     case machine::UrgentCommand::resume:
-      queue_.resume();
+      path_.queue().resume();
       return Status::ok;
     case machine::UrgentCommand::stop:
-      queue_.stop(now_);
+      path_.queue().stop(now_);
       return Status::ok;
     case machine::UrgentCommand::clear_fault:
       if (fault_ != Fault::none && session_.fault() != Fault::none) return Status::faulted;
@@ -225,7 +193,7 @@ Status GcodePort::set_outputs(const machine::Outputs& outputs, double deadline) 
       session_.push(line, waits ? kHeatTime : 0, 0);
       heating_ = heating_ || waits;
     }
-    if (!lines.empty()) session_.push_rest(last_.position);
+    if (!lines.empty()) session_.push_rest(path_.last().position);
     session_.pump();
   }
   outputs_ = outputs;

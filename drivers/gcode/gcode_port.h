@@ -11,8 +11,8 @@
 #include "drivers/gcode/byte_link.h"
 #include "drivers/gcode/gcode_session.h"
 #include "drivers/gcode/gcode_words.h"
+#include "drivers/gcode/path_sampler.h"
 #include "machine/description.h"
-#include "machine/setpoint_queue.h"
 
 namespace understudy::drivers {
 
@@ -61,15 +61,13 @@ class GcodePort : public DriverPort {
   std::unique_ptr<ByteLink> link_;
   GcodeWriter writer_;
   GcodeSession session_;
-  machine::SetpointQueue queue_;
+  PathSampler path_;
   BlockFitter fitter_;
   std::vector<Block> held_;      ///< until the controller has enough ahead
   double held_time_ = 0;         ///< [s], of these
-  bool in_motion_ = false;       ///< samples were taken since the machine rested
   bool streaming_ = false;       ///< the controller has work: blocks go on at once
   double now_ = 0, anchor_ = 0;  ///< [s]; link's clock = anchor_ + now_, unless it is ahead
   double stood_from_ = 0;        ///< [s], the anchor when the clock last ran
-  PathSample last_;              ///< taken last
   machine::Outputs outputs_;
   bool heating_ = false;
   machine::Fault fault_ = machine::Fault::none;

@@ -120,15 +120,11 @@ GcodeAxes gcode_axes(GcodeFamily family, const machine::MachineDescription& mach
 GcodeWriter::GcodeWriter(GcodeFamily family, GcodeAxes axes) : family_(family), axes_(std::move(axes)) {}
 
 std::vector<std::string> GcodeWriter::preamble() const {
-  switch (family_) {
-    case GcodeFamily::grblhal:
-      return {"G21", "G90", "G93"};
-    case GcodeFamily::reprapfirmware:
-      return {"G21", "G90", "M82", "G93"};
-    case GcodeFamily::marlin:
-      break;
-  }
-  return {"G21", "G90", "M82"};
+  std::vector<std::string> lines{"G21", "G90"};
+  if (family_ != GcodeFamily::grblhal) lines.emplace_back("M82");
+  if (family_ != GcodeFamily::marlin) lines.emplace_back("G93");
+  if (axes_.extruder != '\0') lines.push_back(fmt::format("G92 {}0", axes_.extruder));
+  return lines;
 }
 
 void GcodeWriter::begin(const PathSample& at) {

@@ -6,6 +6,7 @@
 
 #include "tests/machine/port_conformance.h"
 #include "tests/machine/port_properties.h"
+#include "tests/machine/record/recorded_on_trial.h"
 
 namespace understudy::machine {
 namespace {
@@ -55,6 +56,9 @@ class LoopbackOnTrial : public PortOnTrial {
   bool lost_ = false;
 };
 
+INSTANTIATE_TEST_SUITE_P(Recorded, PortConformance, testing::Values(+[]() -> std::unique_ptr<PortOnTrial> {
+                           return std::make_unique<RecordedOnTrial>();
+                         }));
 INSTANTIATE_TEST_SUITE_P(Loopback, PortConformance, testing::Values(+[]() -> std::unique_ptr<PortOnTrial> {
                            return std::make_unique<LoopbackOnTrial>();
                          }));
