@@ -62,7 +62,7 @@ void CampaignFolder::take(bool resume) {
     check();
     refuse("holds runs of this campaign: --resume goes on with them; or name another folder");
   }
-  studies::ResultStore(store(), header_);
+  studies::ResultStore(store(), header_, studies::StoreUse::merged);
 }
 
 void CampaignFolder::check() const {
@@ -111,7 +111,7 @@ void CampaignFolder::merge(std::uint64_t end) {
   }
   std::vector<studies::RunRow> in_order;
   for (auto& [index, row] : rows) in_order.push_back(std::move(row));
-  if (!in_order.empty()) studies::ResultStore(store(), header_).add_all(in_order);
+  if (!in_order.empty()) studies::ResultStore(store(), header_, studies::StoreUse::merged).add_all(in_order);
   std::error_code ignored;
   for (const fs::path& part : taken)
     for (const char* file : {"", "-wal", "-shm"}) fs::remove(part.string() + file, ignored);

@@ -151,7 +151,8 @@ std::vector<std::string> YamlMap::texts(const std::string& key, const char* abou
   if (!node) return words;
   if (node->IsScalar()) return {node->Scalar()};
   if (!node->IsSequence() || node->size() == 0)
-    fail(key, fmt::format("{} is {}, where a list of words is expected", path(key), kind_of(*node)));
+    fail(key, fmt::format("{} is {}, where a list of words is expected", path(key),
+                          node->IsSequence() ? "an empty list" : kind_of(*node)));
   for (const auto& item : *node) {
     if (!item.IsScalar())
       fail(key, fmt::format("{} holds {}, where a word is expected", path(key), kind_of(item)));

@@ -263,16 +263,17 @@ std::string insert_text(const StoreHeader& header) {
 }  // namespace
 
 struct ResultStore::Connection {
-  Connection(const fs::path& path, const StoreHeader& header)
+  Connection(const fs::path& path, const StoreHeader& header, StoreUse use)
       : database(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) {
-    // One process writes: while it holds the lock, the log needs no memory that processes share, which
-    // network file systems have not.
-    database.run("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
+    // While its one process holds the lock, a log needs no memory that processes share, which network file
+    // systems have not.
+    if (use == StoreUse::part) database.run("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL");
+    database.run("PRAGMA synchronous = FULL");
     if (is_empty(database))
       create(database, header);
     else
       check_header(path, header_of(database), header);
-    database.run("BEGIN EXCLUSIVE; COMMIT");  // from here on the lock is held
+    if (use == StoreUse::part) database.run("BEGIN EXCLUSIVE; COMMIT");  // from here on the lock is held
     insert = std::make_unique<Statement>(database.path(), database.handle(), insert_text(header));
   }
 
@@ -280,8 +281,8 @@ struct ResultStore::Connection {
   std::unique_ptr<Statement> insert;
 };
 
-ResultStore::ResultStore(const fs::path& path, const StoreHeader& header)
-    : connection_(std::make_unique<Connection>(path, header)) {}
+ResultStore::ResultStore(const fs::path& path, const StoreHeader& header, StoreUse use)
+    : connection_(std::make_unique<Connection>(path, header, use)) {}
 ResultStore::~ResultStore() = default;
 ResultStore::ResultStore(ResultStore&&) noexcept = default;
 ResultStore& ResultStore::operator=(ResultStore&&) noexcept = default;
@@ -293,7 +294,7 @@ void ResultStore::add(const RunRow& row) {
 }
 
 void ResultStore::add_all(const std::vector<RunRow>& rows) {
-  connection_->database.run("BEGIN");
+  connection_->database.run("BEGIN IMMEDIATE");
   for (const RunRow& row : rows) add(row);
   connection_->database.run("COMMIT");
 }

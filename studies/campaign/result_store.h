@@ -23,13 +23,19 @@ struct StoreHeader {
   std::vector<std::string> parameters;
 };
 
+/// What a store is for.
+enum class StoreUse {
+  part,    ///< of one process, which holds it from the beginning to the end: a row costs one flush of its log
+  merged,  ///< that people read meanwhile: who has it open does not keep rows from coming
+};
+
 /// A file that one process writes. Rows are durable when add() returns. Throws InputError for a file of
 /// another schema version, campaign or program version, one that is none, and one that another process is
 /// writing; MachineError where the disk fails.
 class ResultStore {
  public:
   /// Opens it, or begins it.
-  ResultStore(const std::filesystem::path& path, const StoreHeader& header);
+  ResultStore(const std::filesystem::path& path, const StoreHeader& header, StoreUse use = StoreUse::part);
   ~ResultStore();
   ResultStore(ResultStore&&) noexcept;
   ResultStore& operator=(ResultStore&&) noexcept;

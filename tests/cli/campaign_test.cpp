@@ -190,7 +190,8 @@ TEST_F(Campaign, AnUnknownKeyIsRefusedBeforeAnyRun) {
        "begins with none of machine, material, as_built, scenario, plan; did you mean 'machine'?"},
       {"{key: machine.gap.aim_mm, values: [0.13, 5]}", "gap.aim_mm is 5 mm"},
       {"{key: scenario.turn_dg, values: [1]}", "unknown key 'turn_dg', did you mean 'turn_deg'?"},
-      {"{key: material.density, values: [1]}", "unknown key 'density', did you mean 'density_kg_per_m3'?"},
+      {"{key: material.density_kg_per_m, values: [1]}",
+       "unknown key 'density_kg_per_m', did you mean 'density_kg_per_m3'?"},
       {"{key: plan.layer, values: [1]}", "scenario 'line' has no plan: its program is a file"},
       {"{key: as_built.part.size, values: [1]}", "is as-built 'sampled', which is no file"},
   };
@@ -205,16 +206,19 @@ TEST_F(Campaign, AnUnknownKeyIsRefusedBeforeAnyRun) {
 }
 
 TEST_F(Campaign, ARunThatCannotBeMadeHasNoAnswer) {
-  // Nothing refuses the value alone, but the nozzle's temperature is above what the material may have.
-  write("hot",
-        "parameters:\n  - {key: scenario.strict, values: ['yes']}\n  - {key: material.nozzle_max_c, values: "
-        "[225, 280]}\n  - {key: material.nozzle_c, values: [222]}\n",
+  // Each value goes with the others' first ones; the largest aim lies outside of the narrower band.
+  write("band",
+        "parameters:\n  - {key: machine.gap.accepted_max_mm, values: [0.2, 0.16]}\n"
+        "  - {key: machine.gap.aim_mm, values: [0.13, 0.18]}\n",
         "1-2");
-  const Outcome outcome = run(at("hot.yaml") + " --out " + at("out"));
+  const Outcome outcome = run(at("band.yaml") + " --out " + at("out"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("2 runs, 2 without an answer"));
+  EXPECT_THAT(
+      outcome.out,
+      HasSubstr("machine.gap.accepted_max_mm 0.16, machine.gap.aim_mm 0.18: 2 runs, 2 without an answer"));
   EXPECT_EQ(asked(at("out/runs.sqlite"),
-                  "SELECT count(*) FROM runs WHERE status = 'refused' AND error LIKE '%225.0 C%'"),
+                  "SELECT count(*) FROM runs WHERE status = 'refused' AND error LIKE '%gap.aim_mm is 0.18 "
+                  "mm, not between%'"),
             "2");
 }
 

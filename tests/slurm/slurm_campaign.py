@@ -8,7 +8,9 @@ cancel  Ctrl-C takes the jobs out of the queue; --resume ends the campaign
 usage: slurm_campaign.py (smoke|death|cancel) --understudy PROGRAM
 """
 import argparse
+import contextlib
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -54,11 +56,10 @@ class Trial:
         return told
 
     def rows(self, out):
-        import sqlite3
         count = 0
         for file in [self.folder / out / "runs.sqlite", *(self.folder / out / "parts").glob("*.sqlite")]:
             try:
-                with sqlite3.connect(file, timeout=0) as store:
+                with contextlib.closing(sqlite3.connect(file, timeout=0)) as store:
                     count += store.execute("SELECT count(*) FROM runs").fetchone()[0]
             except sqlite3.Error:
                 pass  # it is being written

@@ -46,7 +46,7 @@ TEST_F(CampaignFile, AGridHasValuesOrSteps) {
 
 TEST_F(CampaignFile, WhatDoesNotGoTogetherIsRefusedWithItsLine) {
   EXPECT_THAT(error("parameters:\n  - {key: machine.a, from: 2, to: 1, steps: 3}\n"),
-              HasSubstr("c.yaml:5:34: machine.a runs from 2 to 1: an empty range"));
+              HasSubstr("c.yaml:5:31: machine.a runs from 2 to 1: an empty range"));
   EXPECT_THAT(error("parameters:\n  - {key: machine.a, values: []}\n"), HasSubstr("an empty list"));
   EXPECT_THAT(error("plan: sobol\nparameters:\n  - {key: machine.a, values: [1]}\n"),
               HasSubstr("'values' are those of a grid; a plan sobol needs 'from' and 'to'"));

@@ -131,6 +131,16 @@ TEST_F(ResultStoreTest, IsRefusedWhileAnotherProcessWritesIt) {
   EXPECT_FALSE(being_written(path()));
 }
 
+TEST_F(ResultStoreTest, AReaderThatKeepsItOpenKeepsNobodyFromMerging) {
+  ResultStore(path(), kHeader, StoreUse::merged).add_all({row(1)});
+  sqlite3* reader = nullptr;
+  sqlite3_open(path().c_str(), &reader);
+  ASSERT_EQ(sqlite3_exec(reader, "SELECT count(*) FROM runs", nullptr, nullptr, nullptr), SQLITE_OK);
+  ResultStore(path(), kHeader, StoreUse::merged).add_all({row(2)});
+  sqlite3_close(reader);
+  EXPECT_THAT(stored_runs(path(), kHeader), ElementsAre(1, 2));
+}
+
 TEST_F(ResultStoreTest, AnotherVersionCampaignOrInputIsRefused) {
   ResultStore(path(), kHeader).add(row(1));
   StoreHeader other = kHeader;
