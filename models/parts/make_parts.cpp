@@ -85,31 +85,15 @@ Mesh bottle() {
   return {std::move(vertices), std::move(triangles)};
 }
 
-constexpr double kSlantHeight = 18;  // [mm], of the middle of the slanted top
-
 // Song 2015, 6.2: a box whose top is a plane slanted by 15 degrees, here falling towards +x.
 Mesh slanted_box() {
-  constexpr double kHalfLength = 30, kHalfWidth = 20;  // [mm]
+  constexpr double kHalfLength = 30, kHalfWidth = 20, kMiddleHeight = 18;  // [mm]
   const double rise = kHalfLength * std::tan(15 * kDegree);
   std::vector<Vec3> vertices;
   for (int i = 0; i < 8; ++i) {
     const double x = i & 1 ? kHalfLength : -kHalfLength;
-    const double top = kSlantHeight + (i & 1 ? -rise : rise);
+    const double top = kMiddleHeight + (i & 1 ? -rise : rise);
     vertices.push_back(Vec3(x, i & 2 ? kHalfWidth : -kHalfWidth, i & 4 ? top : 0) * kMillimetre);
-  }
-  return {std::move(vertices), geometry::box_triangles()};
-}
-
-// Song 2015, figure 15: what is built on a slope. Three layers of 0.13 mm on the slanted top, and 0.3 mm of
-// it inside the box, so that the box is its core.
-Mesh slanted_plate() {
-  constexpr double kHalfLength = 6, kHalfWidth = 4, kInside = 0.3, kOutside = 0.39;  // [mm]
-  const Mat3 turn = Eigen::AngleAxisd(15 * kDegree, Vec3::UnitY()).toRotationMatrix();
-  std::vector<Vec3> vertices;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 p(i & 1 ? kHalfLength : -kHalfLength, i & 2 ? kHalfWidth : -kHalfWidth,
-                 i & 4 ? kOutside : -kInside);
-    vertices.push_back((Vec3(0, 0, kSlantHeight) + turn * p) * kMillimetre);
   }
   return {std::move(vertices), geometry::box_triangles()};
 }
@@ -229,8 +213,6 @@ void make_parts(const std::filesystem::path& folder) {
   write_file(
       folder / "slanted_box.stl",
       geometry::write_stl(slanted_box(), "box, top slanted 15 degrees towards +x, on z = 0, millimetres"));
-  write_file(folder / "slanted_plate.stl",
-             geometry::write_stl(slanted_plate(), "plate of 0.39 mm on the slanted box, millimetres"));
   write_file(folder / "crown.stl",
              geometry::write_stl(crown(0), "block with a crown of 40.39 mm, millimetres"));
   write_file(folder / "crown_core.stl",

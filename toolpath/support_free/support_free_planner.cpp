@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -183,6 +184,34 @@ class SupportFreePrint {
   Vec2 along_{1, 0};
 };
 
+double distance_to(const Contour& contour, const Vec2& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < contour.size(); ++i) {
+    const Vec2 &a = contour[i], way = contour[(i + 1) % contour.size()] - a;
+    const double along =
+        way.squaredNorm() > 0 ? std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0) : 0;
+    least = std::min(least, (p - a - along * way).norm());
+  }
+  return least;
+}
+
+/// A bead whose middle has nothing below is in the air: there no line is one that the part follows.
+void check_overhangs(const std::vector<CurvedLayer>& layers, double bead_width) {
+  for (std::size_t k = 1; k < layers.size(); ++k) {
+    const CurvedLayer &below = layers[k - 1], &layer = layers[k];
+    for (const Vec2& q : layer.section.contours.front()) {
+      const Vec2 under = below.middle.in(layer.middle.out(q));
+      if (below.section.holds(under)) continue;
+      const double over = distance_to(below.section.contours.front(), under);
+      if (over > bead_width)
+        throw InputError(fmt::format(
+            "layer {} at {} stands {:.2f} mm over the edge of the one below, more than a bead of {:g} mm: "
+            "the part follows no structural line there",
+            k + 1, in_mm(layer.middle.out(q)), to_mm(over), to_mm(bead_width)));
+    }
+  }
+}
+
 }  // namespace
 
 SupportFreeProgram plan_support_free(const geometry::Mesh& part, const StructuralLine& line,
@@ -197,6 +226,7 @@ SupportFreeProgram plan_support_free(const geometry::Mesh& part, const Structura
         "layers across the structural line hold {:.0f} % of the part's volume, less than {:.0f} %: the part "
         "has branches, or the line does not run through all of it",
         100 * covered / part.volume(), 100 * kLeastCovered));
+  check_overhangs(layers, plan.bead_width);
   SupportFreePrint print(plan);
   for (const CurvedLayer& layer : layers) print.add(layer);
   return print.finish();

@@ -33,7 +33,7 @@ struct SupportFreeProgram {
 /// the section and ends where the next layer begins (Han 2024, 3.2). The tool stands across the
 /// layer, its tip on the layer's top; beads are as thick as the layer at their place. Throws InputError for
 /// values out of range, an open part, and as curved_layers() does; for a part of which the layers hold less
-/// than `kLeastCovered`.
+/// than `kLeastCovered`, and where a layer stands over the edge of the one below by more than a bead's width.
 SupportFreeProgram plan_support_free(const geometry::Mesh& part, const StructuralLine& line,
                                      const SupportFreePlan& plan);
 

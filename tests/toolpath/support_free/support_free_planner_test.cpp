@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "models/parts/block_part.h"
 #include "tests/toolpath/support_free/bent_parts_for_test.h"
 #include "toolpath/gcode/gcode.h"
 
@@ -188,6 +189,16 @@ TEST(SupportFreeRefusals, APartThatForks) {
   const auto part = forked_part();
   EXPECT_THAT(refusal(*part, find_structural_line(*part, 1e-3, 20e-6), coarse()),
               HasSubstr("the part has branches"));
+}
+
+/// A T of cubes of 5 mm: the middles of its sections lie on one line, but its bar follows none.
+TEST(SupportFreeRefusals, APartThatGrowsOverItsOwnEdge) {
+  Cubes cubes;
+  add_block(cubes, {0, 0, 0}, {1, 1, 4});
+  add_block(cubes, {-3, 0, 4}, {4, 1, 6});
+  const auto part = block_part(cubes, 5);
+  EXPECT_THAT(refusal(*part, find_structural_line(*part, 1e-3, 20e-6), coarse()),
+              HasSubstr("stands 15.00 mm over the edge of the one below"));
 }
 
 /// A line up to the middle of the part only.
