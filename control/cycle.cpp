@@ -8,14 +8,12 @@ using machine::Status;
 
 namespace {
 
-constexpr double kLead = 0.05;     // [s], a stretch begins this far ahead: time to plan its first batch
-constexpr double kReserve = 0.02;  // of the axes' velocity and acceleration, for what gap control adds
-
 MotionLimits limits_for(const machine::MachineDescription& machine, bool gap_control) {
   MotionLimits limits = motion_limits(machine);
   if (!gap_control) return limits;
-  for (double& v : limits.axis_velocity) v *= 1 - kReserve;
-  for (double& a : limits.axis_acceleration) a *= 1 - kReserve;
+  const double kept = 1 - limits.planner.gap_reserve;
+  for (double& v : limits.axis_velocity) v *= kept;
+  for (double& a : limits.axis_acceleration) a *= kept;
   return limits;
 }
 
@@ -101,9 +99,9 @@ Stop ControlCycle::gap_stop() const {
 
 Stop ControlCycle::push(const toolpath::Step& step) {
   if (!planner_) {
-    planner_ =
-        std::make_unique<MotionPlanner>(*mechanism_, machine_.X_WB, limits_,
-                                        MotionStart{X_WT_rest_, port().now() + kLead, axes_rest_}, poses_);
+    planner_ = std::make_unique<MotionPlanner>(
+        *mechanism_, machine_.X_WB, limits_,
+        MotionStart{X_WT_rest_, port().now() + limits_.planner.lead_time, axes_rest_}, poses_);
     filament_at_start_ = filament_;
   }
   planner_->push(step);

@@ -32,6 +32,7 @@ class PrintLoop {
         port_(port),
         options_(options),
         observer_(observer),
+        approach_(options.gap.value_or(gap_controller_options(machine))),
         part_{options.part, options.gap_control == GapControl::off ? DepositedBeadMap()
                                                                    : DepositedBeadMap(program, machine)},
         gap_(make_gap_controller()),
@@ -65,9 +66,9 @@ class PrintLoop {
   std::unique_ptr<ContinuousGapController> make_gap_controller() {
     if (options_.gap_control != GapControl::continuous) return nullptr;
     GapFollowerOptions following = options_.following.value_or(gap_follower_options(machine_));
-    if (!options_.following && options_.gap.aim > 0) following.aim = options_.gap.aim;
+    if (!options_.following && approach_.aim > 0) following.aim = approach_.aim;
     return std::make_unique<ContinuousGapController>(machine_, part_,
-                                                     ContinuousGapOptions{options_.gap, following}, port_,
+                                                     ContinuousGapOptions{approach_, following}, port_,
                                                      [this](const OffsetChange& change) { publish(change); });
   }
 
@@ -150,8 +151,7 @@ class PrintLoop {
     X_WT_start.translation() += offset_;
     const Vec3 from = cycle_.resting_pose().translation();
     ApproachMotion motion(cycle_, step);
-    GapApproach record{step.line, 0,
-                       close_gap(machine_, surface, X_WT_start, standoff, motion, options_.gap)};
+    GapApproach record{step.line, 0, close_gap(machine_, surface, X_WT_start, standoff, motion, approach_)};
     record.done_at = port_.now();
     result_.approaches.push_back(std::move(record));
     const GapOutcome& outcome = result_.approaches.back().outcome;
@@ -187,7 +187,7 @@ class PrintLoop {
   void end_early() {
     Stop& stop = result_.stop;
     if (gap_ && gap_->stop() != GapStop::none && stop.fault == machine::Fault::none) {
-      const double retreat = options_.gap.retreat;
+      const double retreat = approach_.retreat;
       const Stop failed = lift(retreat, gap_->filament_at(port_.now()));
       stop.why += failed ? fmt::format("; could not retreat: {}", failed.why)
                          : fmt::format("; retreated by {:.3f} mm", to_mm(retreat));
@@ -234,6 +234,7 @@ class PrintLoop {
   machine::MachinePort& port_;
   const PrintOptions& options_;
   PrintObserver* observer_;
+  const GapControllerOptions approach_;
   PrintedPart part_;
   std::unique_ptr<ContinuousGapController> gap_;
   ControlCycle cycle_;

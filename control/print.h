@@ -23,7 +23,7 @@ struct PrintOptions {
   GapControl gap_control = GapControl::start;
   /// A port that holds its axes within their ranges may be given a program that breaks limits.
   PoseCheck poses = PoseCheck::limits;
-  GapControllerOptions gap;
+  std::optional<GapControllerOptions> gap;      ///< nothing: gap_controller_options() of the machine
   std::optional<GapFollowerOptions> following;  ///< nothing: gap_follower_options() of the machine
   /// The nominal part in the program's frame, for the dot's geometry; without it the surface is taken as
   /// flat and perpendicular to the tool at S.

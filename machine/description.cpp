@@ -17,6 +17,7 @@
 #include "machine/cure.h"
 #include "machine/file/calibration_section.h"
 #include "machine/file/chain_section.h"
+#include "machine/file/control_section.h"
 #include "machine/file/gap_sensor_section.h"
 #include "machine/file/gcode_section.h"
 #include "machine/file/hexapod_section.h"
@@ -188,6 +189,7 @@ void read_machine(YamlMap& root, MachineFile& file, const std::string& wanted_to
                  [&](YamlMap& map) { read_accepted_errors(map, file.accepted.emplace()); });
   root.section("table", "what the work stands on", [&](YamlMap& map) { read_table(map, m.table); });
   root.section("motion", "speeds of the tip, and the cycle", [&](YamlMap& map) { read_motion(map, m); });
+  read_control_section(root, m.control);
   if (!root.complete()) return;
   if (!chain) settle_home(root.place(m.calibration ? "calibration" : "geometry"), m);
   if (m.has_microscope) check_optics(root, m);

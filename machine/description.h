@@ -15,6 +15,7 @@
 #include "geometry/shape.h"
 #include "kinematics/chain/chain.h"
 #include "kinematics/hexapod/hexapod_passive_rotation.h"
+#include "machine/control_settings.h"
 #include "machine/program_dialect.h"
 
 namespace understudy::machine {
@@ -221,8 +222,8 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 struct MachineDescription {
   std::string name;
   std::string mechanism;       ///< kinematics::kHexapod, or the name of a ChainKind
-  std::filesystem::path file;  ///< where it was read
-  std::string sha256;          ///< of the file's bytes, hexadecimal
+  std::filesystem::path file;  ///< where it was read, with the values that its word changes in braces
+  std::string sha256;          ///< of the file's bytes and these changes, hexadecimal
 
   /// The mechanism's base B in the world. The world stands on the work: where axes move the table, W moves
   /// with it and X_WB is the identity.
@@ -261,6 +262,7 @@ struct MachineDescription {
   double travel_velocity = 0;       ///< [m/s], tip speed of G0
   double orientation_velocity = 0;  ///< [rad/s], limit of the tool's angular speed
   double acceleration = 0;          ///< [m/s^2], of the tip along the path
+  ControlSettings control;          ///< gains and limits of the controller
 
   std::unique_ptr<kinematics::Mechanism> make_mechanism() const;
   /// How the joints turn the screws of a hexapod; lead 0 where rails guide them.
@@ -273,9 +275,10 @@ struct MachineDescription {
   double tip_play() const;
 };
 
-/// `name_or_path` is a folder name under the models folder or a path of a machine.yaml (or its folder).
-/// Throws InputError with file, line and the key's name for unknown, missing or misspelt keys (naming the
-/// nearest known one), values of the wrong type or unit and impossible values (with the limit).
+/// `name_or_path` is a folder name under the models folder or a path of a machine.yaml (or its folder), and
+/// may change values of the file: `hexapod{gap.aim_mm: 0.14}` (core/yaml/changed_file.h). Throws InputError
+/// with file, line and the key's name for unknown, missing or misspelt keys (naming the nearest known one),
+/// values of the wrong type or unit and impossible values (with the limit).
 MachineDescription load_machine(const std::string& name_or_path);
 
 /// Folder with the shipped models: $UNDERSTUDY_MODELS, the installed one beside the program, or the source

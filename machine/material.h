@@ -22,8 +22,9 @@ struct Material {
   double nozzle_temperature_min = 0, nozzle_temperature_max = 0;  ///< [K], outside: refused
 };
 
-/// `name_or_path` is a name under models_folder()/materials or a path of a file. Throws InputError naming the
-/// known materials, or file, line, key, value and limit.
+/// `name_or_path` is a name under models_folder()/materials or a path of a file, and may change its
+/// values: `abs{glass_transition_c: 95}`. Throws InputError naming the known materials, or file, line, key,
+/// value and limit.
 Material load_material(const std::string& name_or_path);
 
 /// Its file. Throws InputError naming the known materials.

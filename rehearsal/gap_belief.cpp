@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "calibration/strut_model.h"
-#include "control/gap/gap_controller.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -15,7 +14,6 @@ using control::GapControl;
 using control::GapSample;
 
 constexpr double kUnstated = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFrameAgeMax = control::GapControllerOptions{}.frame_age_max;  // [s]
 
 using Rows = Eigen::RowVectorXd;
 
@@ -69,6 +67,7 @@ class Beliefs {
   }
 
  private:
+  double frame_age_max() const { return knowledge_.machine.control.gap.approach.frame_age_max; }  // [s]
   /// Nothing before the first frame of this bead; no sigma where frames are too far apart.
   std::optional<GapBelief> from_frames(double time) {
     while (frame_ < frames_.size() && frames_[frame_]->time <= time) ++frame_;
@@ -77,12 +76,13 @@ class Beliefs {
     const GapSample& before = *frames_[frame_ - 1];
     if (frame_ == frames_.size())
       return GapBelief{before.believed,
-                       time - before.time < kFrameAgeMax ? before.believed_sigma : kUnstated};
+                       time - before.time < frame_age_max() ? before.believed_sigma : kUnstated};
     const GapSample& after = *frames_[frame_];
     const double span = after.time - before.time, share = (time - before.time) / span;
     const auto between = [&](double a, double b) { return a + share * (b - a); };
-    return GapBelief{between(before.believed, after.believed),
-                     span < kFrameAgeMax ? between(before.believed_sigma, after.believed_sigma) : kUnstated};
+    return GapBelief{
+        between(before.believed, after.believed),
+        span < frame_age_max() ? between(before.believed_sigma, after.believed_sigma) : kUnstated};
   }
 
   GapBelief from_start(const control::GapOutcome& start, const Pose& X_WT) const {

@@ -268,6 +268,10 @@ void Approach::retreat() {
 
 }  // namespace
 
+GapControllerOptions gap_controller_options(const machine::MachineDescription& machine) {
+  return {machine.control.gap.approach, 0};
+}
+
 GapOutcome close_gap(const machine::MachineDescription& machine, const LocalSurface& surface,
                      const Pose& X_WT_start, double standoff, GapMotion& motion,
                      const GapControllerOptions& options) {

@@ -12,19 +12,13 @@
 
 namespace understudy::control {
 
-struct GapControllerOptions {
-  double aim = 0;               ///< [m]; 0 takes the machine's
-  double tolerance = 8e-6;      ///< [m], stop when the reading is this near to the aim
-  double step_fraction = 0.7;   ///< of the distance left, while farther than `slow_zone`
-  double slow_zone = 0.15e-3;   ///< [m], above the aim: frames are averaged and steps shortened here
-  int frames_averaged = 3;      ///< in the slow zone; the tip creeps between them, so speckle changes
-  int stops_max = 40;           ///< steps before giving up
-  double residual_max_px = 12;  ///< farther off its line, the dot is implausible
-  double depth_max = 4e-3;    ///< [m], below S: a surface that lies lower is not the one that was programmed
-  double settle_time = 0.05;  ///< [s], rest before an exposure
-  double frame_age_max = 0.25;  ///< [s]
-  double retreat = 2e-3;        ///< [m], along the tool axis, after a stop for a reason
+/// Gains and limits, by default those of a machine file that does not say.
+struct GapControllerOptions : machine::GapApproachSettings {
+  double aim = 0;  ///< [m]; 0 takes the machine's
 };
+
+/// The machine's own gains and limits, and its aim.
+GapControllerOptions gap_controller_options(const machine::MachineDescription& machine);
 
 /// One frame: what was seen and what it was taken for.
 struct GapSample {

@@ -28,6 +28,8 @@ GapExcitationOptions excitation_options(const GapFollowerOptions& options) {
 
 GapFollowerOptions gap_follower_options(const machine::MachineDescription& machine) {
   GapFollowerOptions options;
+  static_cast<machine::GapFollowingSettings&>(options) = machine.control.gap.following;
+  options.line = machine.control.gap.line;
   options.aim = machine.gap.aim;
   options.speckle_length = machine.laser.waist_diameter;
   options.floor = options.step_max = machine.gap.accepted_min / 2;

@@ -21,34 +21,23 @@
 
 namespace understudy::control {
 
-struct GapFollowerOptions {
-  double aim = 0;                   ///< [m], gap along the path
-  double rate_max = 0.5e-3;         ///< [m/s], of the correction
-  double acceleration_max = 20e-3;  ///< [m/s^2], of the correction: it is smooth
-  double travel_max = 0.5e-3;       ///< [m], of the correction: the open-loop error of the paper's machine
+/// Gains and limits, by default those of a machine file that does not say.
+struct GapFollowerOptions : machine::GapFollowingSettings {
+  double aim = 0;  ///< [m], gap along the path
   /// [m], of the correction towards the part until readings show that they follow it: a spot that stands
   /// still in the picture leads no farther.
   double unproved_max = 40e-6;
-  double settle_time = 0.03;       ///< [s], in which a small step of the estimate is taken over
-  double gate = kPlausibleSigmas;  ///< standard deviations that a reading may be off
-  double unmodelled = 2e-6;        ///< [m], a reading may be off besides: facets and roughness
   GapLineOptions line;
   double speckle_length = 0.15e-3;  ///< [m] of path after which speckle is new
   double step_max = 50e-6;          ///< [m], a lasting step of the machine; a bead is at least twice as high
-  int step_samples = 4;             ///< in a row that show the same step
-  double extrapolated_max = 1e-3;   ///< [m] of path beyond the last good reading; the correction rests then
-  double blind_time = 0.5;          ///< [s] without a good reading ...
-  double blind_path = 1.5e-3;       ///< [m] ... and at least so far, is a stop: longer than a bead is wide
-  double blind_time_max = 3;        ///< [s], however slow
   double floor = 50e-6;             ///< [m], the gap less three sigma must stay above this
   /// [m], how far the tool rises to see whether readings follow it; 0: never.
   double excitation = 0;
-  double silent_time_max = 1;  ///< [s] of excitation without an answer: four of them
 };
 
-/// For a machine: its aim, its speckle, half of its smallest accepted gap as floor and as the largest step,
-/// half of what lies between aim and floor as unproved travel, and a third of what the band leaves above
-/// the aim as excitation.
+/// For a machine: its gains and limits, its aim, its speckle, half of its smallest accepted gap as floor and
+/// as the largest step, half of what lies between aim and floor as unproved travel, and a third of what the
+/// band leaves above the aim as excitation.
 GapFollowerOptions gap_follower_options(const machine::MachineDescription& machine);
 
 /// One reading, brought together with what was commanded in the middle of its exposure.

@@ -2,13 +2,11 @@
 // Kalman filter. The slope walks over the path, and the height with time.
 #pragma once
 
+#include "machine/control_settings.h"
+
 namespace understudy::control {
 
-struct GapLineOptions {
-  double slope_sigma = 0.025;  ///< [m/m], before it was measured
-  double slope_walk = 0.04;    ///< [1/m], variance of the slope's change over a metre
-  double drift = 2e-6;         ///< [m/sqrt(s)], of the height of a tool at rest
-};
+using GapLineOptions = machine::GapLineSettings;
 
 /// Of a line's height [m] and slope [m/m].
 struct GapLineCovariance {

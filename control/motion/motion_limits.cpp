@@ -13,6 +13,7 @@ MotionLimits motion_limits(const machine::MachineDescription& machine) {
   limits.travel_velocity = machine.travel_velocity;
   limits.orientation_velocity = machine.orientation_velocity;
   limits.cycle_time = machine.cycle_time;
+  limits.planner = machine.control.planner;
   return limits;
 }
 

@@ -14,6 +14,7 @@ struct MotionLimits {
   double travel_velocity = 0;                  ///< [m/s], G0
   double orientation_velocity = 0;             ///< [rad/s]
   double cycle_time = 0;                       ///< [s]
+  machine::PlannerSettings planner;
 };
 MotionLimits motion_limits(const machine::MachineDescription& machine);
 

@@ -16,7 +16,6 @@ using kinematics::SolveStatus;
 
 namespace {
 
-constexpr double kWindowLength = 0.2;        // [m]
 constexpr std::size_t kWindowPieces = 8192;  // some 4 MB
 
 void require_positive(const char* what, double value) {
@@ -36,6 +35,7 @@ ChannelLimits channel_limits(const MotionLimits& limits, int axis_count) {
                   [](double v) { return v > 0; }))
     channels.velocity_jump[tip] = std::numeric_limits<double>::infinity();
   channels.cycle_time = limits.cycle_time;
+  channels.corner_share = limits.planner.corner_share;
   return channels;
 }
 
@@ -184,7 +184,7 @@ void MotionPlanner::State::finish() {
 // Plans everything that is cut. Final is what a stop at the window's end cannot reach back to: its first
 // half.
 bool MotionPlanner::State::plan() {
-  const bool full = pieces.size() >= kWindowPieces || window_length >= kWindowLength;
+  const bool full = pieces.size() >= kWindowPieces || window_length >= limits.motion.planner.lookahead;
   if (settled == 0 && !full) return false;
   limit_corners(pieces, limits.channels);
   plan_speeds(pieces, speed2, limits.channels);

@@ -25,8 +25,8 @@ struct MotionStart {
 };
 
 /// Streams a program: call next() until it is false after each push(), and memory is bounded by the lookahead
-/// window (200 mm of path or some thousand pieces, whichever is shorter), not by the program. The plan can
-/// always stop at the window's end.
+/// window (`planner.lookahead` of path or some thousand pieces, whichever is shorter), not by the program.
+/// The plan can always stop at the window's end.
 ///
 /// Feeds (G94) are speeds of the tip; where the tool turns by more than a radian in 5 mm of tip travel, the
 /// turn is what is timed, at most at `orientation_velocity` (of the tool's axis, where B and C are named:

@@ -127,7 +127,7 @@ void take_share(Piece& piece, const CornerWindow& window, const ChannelLimits& l
     const double jump = window.speed * window.jump[i];
     if (jump <= limits.velocity_jump[i]) continue;
     const double share = (jump - limits.velocity_jump[i]) / (limits.acceleration[i] * limits.cycle_time);
-    piece.used[i] = std::max(piece.used[i], std::min(share, kCornerShare));
+    piece.used[i] = std::max(piece.used[i], std::min(share, limits.corner_share));
   }
 }
 
@@ -142,9 +142,9 @@ double corner_speed(const ChannelArray& jump, const ChannelLimits& limits) {
   double speed = kInfinity;
   for (int i = 0; i < limits.count; ++i)
     if (jump[i] > 0)
-      speed = std::min(
-          speed,
-          (kCornerShare * limits.acceleration[i] * limits.cycle_time + limits.velocity_jump[i]) / jump[i]);
+      speed = std::min(speed, (limits.corner_share * limits.acceleration[i] * limits.cycle_time +
+                               limits.velocity_jump[i]) /
+                                  jump[i]);
   return speed;
 }
 

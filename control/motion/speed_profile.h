@@ -38,11 +38,10 @@ struct ChannelLimits {
   ChannelArray acceleration{};   ///< [m/s^2 or rad/s^2]
   ChannelArray velocity_jump{};  ///< [m/s or rad/s], at corners, besides the share of acceleration
   double cycle_time = 0;         ///< [s]
+  /// Of each acceleration limit, for the jump of velocity at a corner; the rest is for what else happens in
+  /// that cycle. The corners passed within one cycle share it, and `velocity_jump`.
+  double corner_share = machine::PlannerSettings{}.corner_share;
 };
-
-/// Half of each acceleration limit is for the jump of velocity at a corner, the rest for what else happens in
-/// that cycle. The corners passed within one cycle share it, and `velocity_jump`.
-constexpr double kCornerShare = 0.5;
 
 /// Largest speed at which a lone corner stays within its share.
 double corner_speed(const ChannelArray& jump, const ChannelLimits& limits);

@@ -141,7 +141,8 @@ void Registrar::read_place(PlaceReading& reading) {
   const Pose X_WT = reading.place.X_WT(0);
   ApproachMotion motion(cycle_, approach_);
   const LocalSurface surface = local_surface(*task_.part, X_WT);
-  reading.outcome = close_gap(machine_, surface, X_WT, check_.standoff(), motion, task_.gap);
+  reading.outcome = close_gap(machine_, surface, X_WT, check_.standoff(), motion,
+                              task_.gap.value_or(gap_controller_options(machine_)));
   const GapOutcome& outcome = reading.outcome;
   if (outcome.stop != GapStop::none) {
     reading.why = fmt::format("{}: {}", to_string(outcome.stop), outcome.why);

@@ -22,7 +22,7 @@ struct RegistrationTask {
   /// [m], 1 sigma of a place beside the reading's noise: waviness of the part, what the machine's calibration
   /// leaves of the tip from place to place, repeatability.
   double place_sigma = 10e-6;
-  GapControllerOptions gap;
+  std::optional<GapControllerOptions> gap;  ///< nothing: gap_controller_options() of the machine
 };
 
 /// One place, as it was measured.

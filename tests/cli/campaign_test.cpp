@@ -222,6 +222,31 @@ TEST_F(Campaign, ARunThatCannotBeMadeHasNoAnswer) {
             "2");
 }
 
+TEST_F(Campaign, VariesTheGainsOfTheController) {
+  ASSERT_EQ(understudy("plan surface bottle --tilt -2 2 -o " + at("bottle.gcode")).status, 0);
+  folder_.write(
+      "b.yaml",
+      "name: bottle\ndescription: d\nsource: s\nmachine: hexapod\nprogram: bottle.gcode\nfixture: bottle\n"
+      "as_built: sampled\nseed: 1\ngap_control: start\nengine: quasistatic\nexpect:\n"
+      "  - {metric: verdict, equals: go, source: a test}\n");
+  folder_.write(
+      "gains.yaml",
+      "name: gains\nscenarios: [b.yaml]\nseeds: 1-2\nmetrics: [gap.frames, print.duration_s]\nparameters:\n"
+      "  - {key: machine.gap_control.approach.step_fraction, values: [0.2, 0.9]}\n"
+      "  - {key: machine.planner.lead_time_ms, values: [50, 1500]}\n");
+  const Outcome outcome = run(at("gains.yaml") + " --out " + at("out"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto figure = [&](const std::string& what, const std::string& where) {
+    return std::stod(asked(at("out/runs.sqlite"), "SELECT min(\"" + what + "\") FROM runs WHERE " + where));
+  };
+  // Steps of a fifth of what is left need more looks than steps of nine tenths.
+  EXPECT_GT(figure("gap.frames", "\"machine.gap_control.approach.step_fraction\" = 0.2"),
+            figure("gap.frames", "\"machine.gap_control.approach.step_fraction\" = 0.9"));
+  // Each stretch of motion begins later by the difference: one at least.
+  EXPECT_GT(figure("print.duration_s", "\"machine.planner.lead_time_ms\" = 1500"),
+            figure("print.duration_s", "\"machine.planner.lead_time_ms\" = 50") + 1.4);
+}
+
 TEST_F(Campaign, WithoutSlurmSaysWhatIsMissing) {
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", at("empty").c_str(), 1);

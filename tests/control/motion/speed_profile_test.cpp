@@ -141,9 +141,10 @@ TEST(SpeedProfile, PiecesAroundACornerLeaveItItsShare) {
   for (int n = 0; n < 20; ++n) pieces.push_back(straight_piece(1e-6, 1));
   pieces[10].corner = true;
   pieces[10].jump[0] = 1;
-  limit_corners(pieces, limits_of(1, 1.0, 1e-3));
-  EXPECT_DOUBLE_EQ(pieces[9].used[0], kCornerShare);
-  EXPECT_DOUBLE_EQ(pieces[10].used[0], kCornerShare);
+  const ChannelLimits limits = limits_of(1, 1.0, 1e-3);
+  limit_corners(pieces, limits);
+  EXPECT_DOUBLE_EQ(pieces[9].used[0], limits.corner_share);
+  EXPECT_DOUBLE_EQ(pieces[10].used[0], limits.corner_share);
   EXPECT_EQ(pieces[5].used[0], 0);
   EXPECT_EQ(pieces[15].used[0], 0);
 }
