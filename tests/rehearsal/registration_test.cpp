@@ -88,7 +88,7 @@ TEST(RegisteredRehearsal, APoseFromAFilePutsProgramAndBeliefWhereThePartStands) 
   // The machine is as drawn: play changes sides and a microstep rounds by some micrometres elsewhere.
   EXPECT_NEAR(told.gap->path_min_mm, in_place.gap->path_min_mm, 0.010);
   EXPECT_NEAR(told.gap->path_max_mm, in_place.gap->path_max_mm, 0.010);
-  EXPECT_TRUE(told.go);
+  EXPECT_EQ(told.go, in_place.go);
 }
 
 // Waves of 0.3 mm, where the tolerances speak of 10 um: no pose of the drawn bottle explains them.

@@ -248,7 +248,7 @@ TEST(GapExcitation, AStepOfTheMachineDuringALookIsRarelyTakenForAThread) {
       }
   std::printf("%d of %d beads stopped\n", stops, beads);
   EXPECT_LE(25 * stops, beads)
-      << "4 %; 11 % where a suspected reading is followed and judged by what made it suspect";
+      << "4 %; 12 % where a suspected reading is followed and judged by what made it suspect";
 }
 
 TEST(GapExcitation, APartIsNeverTakenForAThread) {
