@@ -106,7 +106,7 @@ inline std::vector<SweptPiece> s_bend() {
 }
 /// Ours, small: two bends one after the other in one plane, one that turns back, and one across the other.
 inline std::vector<SweptPiece> bends_to_one_side() {
-  return {straight_mm(3), arc_mm(14, 40), straight_mm(2), arc_mm(14, 40), straight_mm(8)};
+  return {straight_mm(10), arc_mm(14, 40), straight_mm(2), arc_mm(14, 40), straight_mm(8)};
 }
 inline std::vector<SweptPiece> bends_to_both_sides() {
   return {straight_mm(3), arc_mm(15, 55, 45), straight_mm(2), arc_mm(15, 80, 225), straight_mm(3)};
