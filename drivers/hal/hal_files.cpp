@@ -158,10 +158,8 @@ std::string state_nets(const HalSettings& s) {
              "newsig probe bit\n\n"
              "net row streamer.0.pin.{2} => sampler.0.pin.{2} sampler.1.pin.{2} sampler.3.pin.{2}\n"
              "net underruns streamer.0.underruns => sampler.0.pin.{3}\n"
-             "net depth streamer.0.curr-depth => sampler.2.pin.{2}\n\n"
-             "# How a port knows that this is the machine that it drives.\n"
-             "newsig understudy-{4} bit\n\n",
-             n + 2, n + 3, n, n + 1, s.fingerprint);
+             "net depth streamer.0.curr-depth => sampler.2.pin.{2}\n\n",
+             n + 2, n + 3, n, n + 1);
 }
 
 std::string machine_file(const HalSettings& s) {
@@ -172,7 +170,11 @@ std::string machine_file(const HalSettings& s) {
          "source steps.hal\n"
          "addf sampler.0 servo\naddf sampler.1 servo\naddf sampler.2 servo\naddf sampler.3 servo\n"
          "source pins.hal\n"
-         "start\n";
+         "start\n" +
+         fmt::format(
+             "# How a port knows that this is the machine that it drives, and that all of it is loaded.\n"
+             "newsig understudy-{} bit\n",
+             s.fingerprint);
 }
 
 std::string steps_file(const HalSettings& s) {

@@ -59,6 +59,14 @@ void check_folder(const HalSettings& settings, const std::string& folder) {
         file.string(), signal_name(settings), settings.machine, folder));
 }
 
+/// What HAL says of a line that it does not take, "pins.hal:9: Pin 'x' does not exist"; empty: of none.
+std::string wrong_line(const std::string& log) {
+  const std::size_t place = log.find(".hal:");
+  if (place == std::string::npos) return {};
+  const std::size_t begin = log.rfind(';', place);
+  return log.substr(begin == std::string::npos ? 0 : begin + 1, log.find(';', place) - begin - 1);
+}
+
 /// Names of the configurations that run: one, or none.
 std::string running_configuration() {
   std::istringstream lines(answer_of({"halcmd", "-s", "show", "sig"}, kAnswerPatience));
@@ -141,6 +149,8 @@ void HalSession::start(const std::string& folder) {
     if (!hal_->running())
       throw MachineError(
           fmt::format("halrun ended with status {}: {}", WEXITSTATUS(hal_->status()), log_text()));
+    if (const std::string wrong = wrong_line(log_text()); !wrong.empty())
+      throw InputError(fmt::format("hal://{}: HAL refuses {}", folder, wrong));
     if (Clock::now() > until) throw MachineError("HAL does not start: " + log_text());
     std::this_thread::sleep_for(milliseconds(20));
   }
