@@ -7,22 +7,15 @@
 #include <cstdint>
 #include <span>
 
+#include "kinematics/pose_row.h"
 #include "machine/description.h"
 
 namespace understudy::machine {
 
-constexpr std::size_t kPoseNumbers = 7;
-
-/// A quaternion farther from length 1 is none, as in G-code.
-constexpr double kUnitQuaternion = 1e-4;
+using kinematics::kPoseNumbers;
 
 /// The statuses of a table's rows: kinematics::SolveStatus as one byte each.
 using StatusBytes = std::span<std::uint8_t>;
-
-/// The pose of a row. False where the quaternion is none.
-bool read_pose(const double* row, Pose& X);
-/// The row of a pose; w of the quaternion is not negative.
-void write_pose(const Pose& X, double* row);
 
 /// Axes [m] or [rad] of each pose, near home. A row without an answer, or whose quaternion is none
 /// (`bad_input`), is NaN. The spans hold 7, Mechanism::axis_count() and 1 number a row. `threads` 0: one for

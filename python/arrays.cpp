@@ -111,17 +111,17 @@ py::array_t<double> matrix_of(const Pose& pose) {
 
 py::array_t<double> numbers_of(const Pose& pose) {
   py::array_t<double> array(static_cast<py::ssize_t>(machine::kPoseNumbers));
-  machine::write_pose(pose, array.mutable_data());
+  kinematics::write_pose(pose, array.mutable_data());
   return array;
 }
 
 Pose pose_of(std::span<const double> numbers, const char* name) {
   Pose pose;
-  if (machine::read_pose(numbers.data(), pose)) return pose;
+  if (kinematics::read_pose(numbers.data(), pose)) return pose;
   const double length =
       std::sqrt(std::inner_product(numbers.begin() + 3, numbers.begin() + 7, numbers.begin() + 3, 0.0));
   throw InputError(fmt::format("{}: the quaternion's length is {:.6f}, not 1 within {:g}", name, length,
-                               machine::kUnitQuaternion));
+                               kinematics::kUnitQuaternion));
 }
 
 py::array_t<std::uint8_t> picture_of(const Image& image) {

@@ -18,7 +18,7 @@ py::array poses_of(const std::vector<TracePoint>& trace, Pose TracePoint::*pose)
       {static_cast<py::ssize_t>(trace.size()), static_cast<py::ssize_t>(machine::kPoseNumbers)});
   double* row = rows.mutable_data();
   for (const TracePoint& point : trace) {
-    machine::write_pose(point.*pose, row);
+    kinematics::write_pose(point.*pose, row);
     row += machine::kPoseNumbers;
   }
   return rows;

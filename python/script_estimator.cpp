@@ -259,7 +259,7 @@ void add_script_problem(py::module_& module) {
           "poses",
           [](const ScriptProblem& p) {
             return rows_of(p, static_cast<py::ssize_t>(machine::kPoseNumbers),
-                           [&](std::size_t j, double* at) { machine::write_pose(p.measured(j), at); });
+                           [&](std::size_t j, double* at) { kinematics::write_pose(p.measured(j), at); });
           },
           "(n, 7), measured: of a hexapod X_BT, of a chain X_ST.")
       .def_property_readonly(

@@ -119,7 +119,7 @@ py::tuple sample_poses(const Machine& machine, int count, const std::string& des
   std::vector<double> axes, poses(machine::kPoseNumbers * measured.poses.size());
   for (std::size_t j = 0; j < measured.poses.size(); ++j) {
     axes.insert(axes.end(), measured.poses[j].axes.begin(), measured.poses[j].axes.end());
-    machine::write_pose(measured.poses[j].X_WT, &poses[machine::kPoseNumbers * j]);
+    kinematics::write_pose(measured.poses[j].X_WT, &poses[machine::kPoseNumbers * j]);
   }
   return py::make_tuple(copied(axes, n), copied(poses, static_cast<py::ssize_t>(machine::kPoseNumbers)));
 }

@@ -49,7 +49,7 @@ void measure(const machine::MachineDescription& machine, std::size_t rows, int r
     const Pose X =
         machine.X_BT_home * make_pose(exp_rotation(uniform_vec3(random, 0.1)), uniform_vec3(random, 0.02));
     poses[n] = X;
-    machine::write_pose(machine.X_WB * X, &numbers[kPoseNumbers * n]);
+    kinematics::write_pose(machine.X_WB * X, &numbers[kPoseNumbers * n]);
   }
   std::vector<double> axes(6 * rows);
   std::vector<kinematics::StrutLengths> lengths(rows);

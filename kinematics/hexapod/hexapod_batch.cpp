@@ -8,6 +8,7 @@
 #include "core/simd.h"
 #include "kinematics/hexapod/hexapod_batch_simd.h"
 #include "kinematics/hexapod/hexapod_numbers.h"
+#include "kinematics/pose_row.h"
 
 namespace understudy::kinematics {
 namespace {
@@ -28,6 +29,19 @@ simd::InverseMany inverse_many() {
   if (instructions == Simd::avx2) return simd::inverse_many_avx2;
 #endif
   return instructions == Simd::scalar ? nullptr : simd::inverse_many<TwoLanes>;
+}
+
+simd::InverseRows inverse_rows_many() {
+  const Simd instructions = understudy::simd();
+#ifdef UNDERSTUDY_AVX2
+  if (instructions == Simd::avx2) return simd::inverse_rows_avx2;
+#endif
+  return instructions == Simd::scalar ? nullptr : simd::inverse_rows<TwoLanes>;
+}
+
+SolveStatus inverse_of_row(const HexapodGeometry& geometry, const double* row, StrutLengths& lengths) {
+  Pose X;
+  return read_pose(row, X) ? inverse(geometry, X, lengths) : SolveStatus::bad_input;
 }
 
 simd::ForwardMany forward_many() {
@@ -68,6 +82,24 @@ void inverse_batch(const HexapodGeometry& geometry, std::span<const Pose> X_BT,
       }
     }
   });
+}
+
+void inverse_rows(const HexapodGeometry& geometry, std::span<const double> rows,
+                  std::span<StrutLengths> lengths, std::span<SolveStatus> status) {
+  const auto count = static_cast<long>(std::min({rows.size() / kPoseNumbers, lengths.size(), status.size()}));
+  const simd::Hexapod g = plain_numbers(geometry);
+  const simd::InverseRows many = inverse_rows_many();
+  std::array<bool, kBlock> ok;
+  for (long at = 0; at < count; at += kBlock) {
+    const long size = std::min(kBlock, count - at);
+    const double* const first = &rows[kPoseNumbers * static_cast<std::size_t>(at)];
+    const long done = many ? many(g, first, kUnitQuaternion, lengths[at].data(), ok.data(), size) : 0;
+    for (long n = 0; n < size; ++n) {
+      const bool have = n < done && ok[n];
+      status[at + n] =
+          have ? SolveStatus::ok : inverse_of_row(geometry, first + kPoseNumbers * n, lengths[at + n]);
+    }
+  }
 }
 
 void forward_batch(const HexapodGeometry& geometry, std::span<const StrutLengths> lengths,

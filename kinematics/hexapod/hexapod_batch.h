@@ -14,6 +14,11 @@ namespace understudy::kinematics {
 void inverse_batch(const HexapodGeometry& geometry, std::span<const Pose> X_BT,
                    std::span<StrutLengths> lengths, std::span<SolveStatus> status, int threads = 0);
 
+/// Of poses as rows of seven numbers (kinematics/pose_row.h), on the calling thread; a row that is no pose is
+/// `bad_input`.
+void inverse_rows(const HexapodGeometry& geometry, std::span<const double> rows,
+                  std::span<StrutLengths> lengths, std::span<SolveStatus> status);
+
 /// Each from its own seed, by the branch rule of forward().
 void forward_batch(const HexapodGeometry& geometry, std::span<const StrutLengths> lengths,
                    std::span<const Pose> seeds, std::span<ForwardResult> results,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinematics/hexapod/hexapod_newton.h"
+#include "kinematics/quaternion_rotation.h"
 
 namespace understudy::kinematics::simd {
 
@@ -17,6 +18,13 @@ struct Answer {
 using InverseMany = long (*)(const Hexapod&, const double* poses, double* lengths, bool* ok, long count);
 using ForwardMany = long (*)(const Hexapod&, const double* lengths, const double* seeds,
                              const NewtonSettings&, Answer* answers, long count);
+
+/// The same of rows of seven numbers (kinematics/pose_row.h); `unit`: how far from length 1 a quaternion may
+/// be.
+using InverseRows = long (*)(const Hexapod&, const double* rows, double unit, double* lengths, bool* ok,
+                             long count);
+long inverse_rows_avx2(const Hexapod&, const double* rows, double unit, double* lengths, bool* ok,
+                       long count);
 
 long inverse_many_avx2(const Hexapod&, const double* poses, double* lengths, bool* ok, long count);
 long forward_many_avx2(const Hexapod&, const double* lengths, const double* seeds, const NewtonSettings&,
@@ -36,24 +44,56 @@ void gather(const double* poses, Platform<Lane>& X) {
   }
 }
 
+/// Lanes of one after the other; false where a row is no pose.
+template <class Lane>
+Mask<Lane> gather_rows(const double* rows, double unit, Platform<Lane>& X) {
+  Lane w{}, x{}, y{}, z{};
+  for (int l = 0; l < kLanes<Lane>; ++l) {
+    const double* row = rows + 7 * static_cast<long>(l);
+    for (int k = 0; k < 3; ++k) X.p[k][l] = row[k];
+    w[l] = row[3];
+    x[l] = row[4];
+    y[l] = row[5];
+    z[l] = row[6];
+  }
+  return rotation(w, x, y, z, unit, X.R);
+}
+
+/// Lengths of lanes `done` and on, where `good` and the struts allow it; which, in `ok`.
+template <class Lane>
+void put_lengths(const Hexapod& g, const Platform<Lane>& X, Mask<Lane> good, double* lengths, bool* ok) {
+  Struts<Lane> struts;
+  find_struts(g, X, struts);
+  for (int i = 0; i < kStrutCount; ++i)
+    good = good & (struts.squared[i] > 0.0) & (struts.squared[i] < __builtin_inf());
+  for (int i = 0; i < kStrutCount; ++i) {
+    const Lane length = root(struts.squared[i]);
+    for (int l = 0; l < kLanes<Lane>; ++l)
+      if (good[l]) lengths[kStrutCount * l + i] = length[l];
+  }
+  for (int l = 0; l < kLanes<Lane>; ++l) ok[l] = good[l] != 0;
+}
+
 template <class Lane>
 long inverse_many(const Hexapod& g, const double* poses, double* lengths, bool* ok, long count) {
   constexpr int kCount = kLanes<Lane>;
   long done = 0;
   for (; done + kCount <= count; done += kCount) {
     Platform<Lane> X;
-    Struts<Lane> struts;
     gather(poses + 16 * done, X);
-    find_struts(g, X, struts);
-    Mask<Lane> good = struts.squared[0] > 0.0;
-    for (int i = 0; i < kStrutCount; ++i)
-      good = good & (struts.squared[i] > 0.0) & (struts.squared[i] < __builtin_inf());
-    for (int i = 0; i < kStrutCount; ++i) {
-      const Lane length = root(struts.squared[i]);
-      for (int l = 0; l < kCount; ++l)
-        if (good[l]) lengths[kStrutCount * (done + l) + i] = length[l];
-    }
-    for (int l = 0; l < kCount; ++l) ok[done + l] = good[l] != 0;
+    put_lengths(g, X, X.p[0] == X.p[0], lengths + kStrutCount * done, ok + done);
+  }
+  return done;
+}
+
+template <class Lane>
+long inverse_rows(const Hexapod& g, const double* rows, double unit, double* lengths, bool* ok, long count) {
+  constexpr int kCount = kLanes<Lane>;
+  long done = 0;
+  for (; done + kCount <= count; done += kCount) {
+    Platform<Lane> X{};
+    const Mask<Lane> poses = gather_rows(rows + 7 * done, unit, X);
+    put_lengths(g, X, poses, lengths + kStrutCount * done, ok + done);
   }
   return done;
 }

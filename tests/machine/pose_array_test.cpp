@@ -28,7 +28,7 @@ Rows rows_about_home(const MachineDescription& machine, std::size_t count) {
     const Vec3 turn = uniform_vec3(random, 0.2), way = uniform_vec3(random, 0.04);
     const Pose X = machine.X_WB * machine.X_BT_home * make_pose(exp_rotation(turn), way);
     rows.numbers.resize(kPoseNumbers * (n + 1));
-    write_pose(X, &rows.numbers[kPoseNumbers * n]);
+    kinematics::write_pose(X, &rows.numbers[kPoseNumbers * n]);
     rows.X_WT.push_back(X);
   }
   return rows;
@@ -94,19 +94,6 @@ TEST(PoseArray, ARowThatIsNoPoseIsNaNAndBadInput) {
   }
   EXPECT_EQ(status[1], static_cast<std::uint8_t>(SolveStatus::bad_input));
   EXPECT_EQ(status[2], static_cast<std::uint8_t>(SolveStatus::bad_input));
-}
-
-TEST(PoseArray, APoseIsReadBackFromItsRow) {
-  Random random(2, "pose array");
-  for (int n = 0; n < 200; ++n) {
-    const Pose X = make_pose(exp_rotation(uniform_vec3(random, 3)), uniform_vec3(random, 1));
-    double row[kPoseNumbers];
-    write_pose(X, row);
-    EXPECT_GE(row[3], 0);
-    Pose back;
-    ASSERT_TRUE(read_pose(row, back));
-    EXPECT_LT((back.matrix() - X.matrix()).cwiseAbs().maxCoeff(), 1e-14);  // some roundings of numbers near 1
-  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/simd.h"
+#include "kinematics/pose_row.h"
 #include "tests/kinematics/workspace/workspace_pose.h"
 
 namespace understudy::kinematics {
@@ -78,6 +79,36 @@ void expect_inverse_of_single_calls() {
 TEST(HexapodBatch, InverseIsThatOfSingleCallsToTheBit) {
   with_all_instructions(expect_inverse_of_single_calls);
 }
+
+// Rows are the single calls of the poses that read_pose() makes of them, in every lane and at every place.
+void expect_rows_of_single_calls() {
+  for (const double deviation : {0.0, 0.015}) {
+    const HexapodGeometry g = nominal_g4(deviation);
+    const Cases cases = mixed_cases(g, 5003);
+    std::vector<double> rows(kPoseNumbers * cases.poses.size());
+    for (std::size_t n = 0; n < cases.poses.size(); ++n) {
+      double* const row = &rows[kPoseNumbers * n];
+      write_pose(cases.poses[n], row);
+      if (n % 97 == 4) row[4] += 0.01;                          // of another length
+      for (int k = 3; n % 89 == 2 && k < 7; ++k) row[k] *= -1;  // the same rotation
+    }
+    std::vector<StrutLengths> lengths(cases.poses.size(), StrutLengths{9, 9, 9, 9, 9, 9});
+    std::vector<SolveStatus> status(cases.poses.size(), SolveStatus::not_converged);
+    inverse_rows(g, rows, lengths, status);
+    int refused = 0;
+    for (std::size_t n = 0; n < cases.poses.size(); ++n) {
+      StrutLengths expected{9, 9, 9, 9, 9, 9};
+      Pose X;
+      const bool is_pose = read_pose(&rows[kPoseNumbers * n], X);
+      ASSERT_EQ(status[n], is_pose ? inverse(g, X, expected) : SolveStatus::bad_input) << n;
+      ASSERT_TRUE(same_bytes(lengths[n].data(), expected.data(), sizeof expected)) << n;
+      refused += !is_pose;
+    }
+    EXPECT_GT(refused, 50);
+  }
+}
+
+TEST(HexapodBatch, RowsAreSingleCallsToTheBit) { with_all_instructions(expect_rows_of_single_calls); }
 
 void expect_forward_of_single_calls() {
   for (const double deviation : {0.0, 0.015}) {
