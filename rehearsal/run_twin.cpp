@@ -118,7 +118,7 @@ struct Watch {
         deposition(setup.truth, workpiece,
                    deposition_options(
                        setup, [this](const auto& bead) { laid(bead); }, strands)),
-        trace(deposition),
+        trace(deposition, TraceObserver::kCapacity, setup.asked),
         collision(setup.truth, setup.as_built, setup.workblank ? setup.workblank->stock : setup.built_part,
                   collision_options(setup)),
         removal(removal_of(setup)),
