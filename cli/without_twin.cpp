@@ -14,7 +14,7 @@ void add_export_mjcf(CLI::App&, Action&) {}
 std::vector<std::string> left_out_commands() {
   return {"rehearse",  "inspect",       "pose",      "place",        "verify",      "register",
           "scenario",  "sweep",         "campaign",  "sample-poses", "sample-gaps", "render",
-          "workspace", "repeatability", "benchmark", "schema"};
+          "workspace", "repeatability", "benchmark", "schema",       "compensate",  "serve"};
 }
 
 LibraryVersions library_versions_of_rooms() { return control::library_versions(); }

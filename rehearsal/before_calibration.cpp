@@ -62,6 +62,19 @@ std::string file_name(const std::string& machine) {
 
 }  // namespace
 
+void require_same_machine(const MachineDescription& before, const MachineDescription& after,
+                          const std::string& before_said, const std::string& after_said) {
+  if (before.mechanism != after.mechanism)
+    throw InputError(fmt::format("{}: its mechanism is {}, that of {} is {}", before_said, before.mechanism,
+                                 after_said, after.mechanism));
+  if (const char* what = difference(before, after))
+    throw InputError(fmt::format("{}: {} than {}; it must be the same machine, before its calibration",
+                                 before_said, what, after_said));
+  if (before.sha256 == after.sha256)
+    throw InputError(
+        fmt::format("{}: the same file as --machine {}: nothing to compare", before_said, after_said));
+}
+
 BeforeCalibration before_calibration(const TwinSetup& setup, const std::string& before,
                                      const std::string& after) {
   BeforeCalibration result{setup, file_name(before), file_name(after), {}};
@@ -69,15 +82,7 @@ BeforeCalibration before_calibration(const TwinSetup& setup, const std::string& 
   machine = machine::load_machine(before, result.setup.calibrated);
   machine.tool.nozzle_diameter = setup.machine.tool.nozzle_diameter;  // the one that is mounted
   machine.tool.flat_diameter = setup.machine.tool.flat_diameter;
-  if (machine.mechanism != setup.machine.mechanism)
-    throw InputError(fmt::format("--before {}: its mechanism is {}, that of {} is {}", before,
-                                 machine.mechanism, after, setup.machine.mechanism));
-  if (const char* what = difference(machine, setup.machine))
-    throw InputError(fmt::format(
-        "--before {}: {} than {}; it must be the same machine, before its calibration", before, what, after));
-  if (machine.sha256 == setup.machine.sha256)
-    throw InputError(
-        fmt::format("--before {}: the same file as --machine {}: nothing to compare", before, after));
+  require_same_machine(machine, setup.machine, "--before " + before, after);
   for (const Finding& finding : findings_of(control::check_constraints(setup.program, machine)))
     if (finding.severity == Severity::error) {
       result.not_run = finding.message;

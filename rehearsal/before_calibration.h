@@ -21,6 +21,10 @@ struct BeforeCalibration {
 BeforeCalibration before_calibration(const TwinSetup& setup, const std::string& before,
                                      const std::string& after);
 
+/// Throws InputError that begins with `before_said` where the two do not describe the same machine.
+void require_same_machine(const machine::MachineDescription& before, const machine::MachineDescription& after,
+                          const std::string& before_said, const std::string& after_said);
+
 /// Figures of both open-loop runs; nothing while nothing was extruded. `before_run` is null where it did not
 /// run.
 std::optional<CalibrationFigures> compare_calibrations(const BeforeCalibration& before,

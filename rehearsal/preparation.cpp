@@ -15,6 +15,7 @@
 #include "rehearsal/findings/process_check.h"
 #include "rehearsal/fixture.h"
 #include "rehearsal/placement/home_posture.h"
+#include "rehearsal/program/asked_path.h"
 #include "rehearsal/program/program_reading.h"
 #include "rehearsal/program/reachable_program.h"
 #include "rehearsal/program/robot_reading.h"
@@ -87,6 +88,7 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   if (request.dialect.nozzle_mm && setup.machine.tool.prints())
     mount_nozzle(setup.machine.tool, from_mm(*request.dialect.nozzle_mm));
   if (!request.program.empty()) read_into(request, setup, mended);
+  setup.asked = asked_path(request, setup.machine);
   toolpath::check_duration(setup.program, (setup.machine.X_WB * setup.machine.X_BT_home).translation(),
                            request.max_time);
   toolpath::check_crowding(setup.program);

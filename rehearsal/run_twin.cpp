@@ -116,7 +116,7 @@ struct Watch {
         strands(setup.truth, setup.material),
         deposition(setup.truth, workpiece, options_of(setup)),
         curing(curing_of(setup)),
-        trace(deposition),
+        trace(deposition, TraceObserver::kCapacity, setup.asked),
         collision(setup.truth, setup.as_built, setup.workblank ? setup.workblank->stock : setup.built_part,
                   collision_options(setup)),
         removal(removal_of(setup)),

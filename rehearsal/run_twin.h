@@ -25,6 +25,7 @@
 #include "sim/faults/faults.h"
 #include "sim/removal/removal_summary.h"
 #include "sim/strand/air_strands.h"
+#include "toolpath/gcode/rewritten_path.h"
 #include "toolpath/program.h"
 
 namespace understudy::sim {
@@ -43,6 +44,8 @@ struct TwinSetup {
   machine::Material material;         ///< of a tool that prints
   machine::AcceptedErrors accepted;
   toolpath::Program program;
+  /// Where a program asked for the tool that `program` was compensated from; null: `program` itself asks.
+  std::shared_ptr<const toolpath::RewrittenPath> asked;
   std::shared_ptr<const ProgrammedLayers> layers;  ///< of the program; null: the machine's band is good
   std::shared_ptr<const geometry::Mesh> part;      ///< as drawn: what the controller holds; may be null
   std::shared_ptr<const geometry::Mesh>

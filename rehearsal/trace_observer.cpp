@@ -7,8 +7,9 @@
 
 namespace understudy::rehearsal {
 
-TraceObserver::TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity)
-    : deposition_(deposition), capacity_(std::max<std::size_t>(2, capacity)) {}
+TraceObserver::TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity,
+                             std::shared_ptr<const toolpath::RewrittenPath> asked)
+    : deposition_(deposition), asked_(std::move(asked)), capacity_(std::max<std::size_t>(2, capacity)) {}
 
 void TraceObserver::observe(const sim::Snapshot& s) {
   TracePoint point;
@@ -18,6 +19,7 @@ void TraceObserver::observe(const sim::Snapshot& s) {
   point.X_WT = s.X_WT;
   point.X_WT_programmed = s.X_WT_commanded;
   point.X_WT_programmed.translation() -= offset_at(s.time);
+  if (asked_) point.X_WT_programmed = asked_->asked(s.line, point.X_WT_programmed);
   point.tip_error = (point.X_WT.translation() - point.X_WT_programmed.translation()).norm();
   point.orientation_error = angle_between(point.X_WT.linear(), point.X_WT_programmed.linear());
   point.gap = deposition_.gap();

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "control/print.h"
 #include "rehearsal/record.h"
 #include "sim/deposition/deposition.h"
 #include "sim/observer.h"
+#include "toolpath/gcode/rewritten_path.h"
 
 namespace understudy::rehearsal {
 
@@ -20,10 +22,14 @@ struct ErrorPeak {
 
 class TraceObserver : public sim::Observer {
  public:
+  static constexpr std::size_t kCapacity = 100'000;
   /// Reads the gap from `deposition`, which must have seen each snapshot before. Of the snapshots, a trace of
   /// at most `capacity` is kept: when it is full, every other one of it goes and from then on twice as few
   /// are added. The figures are those of all snapshots.
-  explicit TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity = 100'000);
+  /// `asked`: where another program asked for the tool, which the one that runs was compensated from; null:
+  /// the one that runs asks itself.
+  explicit TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity = kCapacity,
+                         std::shared_ptr<const toolpath::RewrittenPath> asked = nullptr);
 
   void observe(const sim::Snapshot& snapshot) override;
   /// What the gap controller adds to the program from a time on; told in order of time.
@@ -41,6 +47,7 @@ class TraceObserver : public sim::Observer {
   Vec3 offset_at(double time);
 
   const sim::DepositionObserver& deposition_;
+  std::shared_ptr<const toolpath::RewrittenPath> asked_;
   std::size_t capacity_;
   int stride_ = 1;
   std::uint64_t count_ = 0;

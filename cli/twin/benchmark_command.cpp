@@ -1,4 +1,5 @@
 #include "cli/command.h"
+#include "cli/twin/compensation_commands.h"
 
 namespace understudy::cli {
 
@@ -9,6 +10,7 @@ void add_benchmark(CLI::App& app, Action& action) {
   add_benchmark_calibration(*benchmark, action);
   add_benchmark_gap(*benchmark, action);
   add_benchmark_faults(*benchmark, action);
+  add_benchmark_compensation(*benchmark, action);
 }
 
 }  // namespace understudy::cli

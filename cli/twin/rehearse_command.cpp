@@ -19,6 +19,7 @@
 #include "core/interrupt.h"
 #include "rehearsal/findings/finding_groups.h"
 #include "rehearsal/findings/verdict.h"
+#include "rehearsal/program/asked_path.h"
 #include "rehearsal/rehearse.h"
 #include "report/page/write_results.h"
 #include "toolpath/robot/robot_program.h"
@@ -98,7 +99,7 @@ void print_passed_over(const std::vector<std::pair<int, int>>& lines) {
              text.find_first_of(", ") == std::string::npos ? "line" : "lines", text);
 }
 
-void print_answer(const rehearsal::Record& record, const std::string& folder) {
+void print_answer(const rehearsal::Record& record, const std::string& original, const std::string& folder) {
   fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
   print_passed_over(record.passed_over);
   if (record.placement)
@@ -117,6 +118,9 @@ void print_answer(const rehearsal::Record& record, const std::string& folder) {
   if (record.accuracy)
     fmt::print("  tip error {:.0f} um RMS, {:.0f} um at most; {:g} um are accepted\n",
                record.accuracy->tip_rms_um, record.accuracy->tip_max_um, 1e3 * record.tip_tolerance_mm);
+  if (record.accuracy && !original.empty())
+    fmt::print("  tip error against {}, which it was compensated from: {:.0f} um RMS, {:.0f} um at most\n",
+               original, record.accuracy->tip_rms_um, record.accuracy->tip_max_um);
   if (record.calibration) print_calibration(*record.calibration);
   if (record.collision) print_clearance(*record.collision);
   if (record.sag && record.sag->strands > 0)
@@ -146,7 +150,7 @@ int rehearse(const RehearseOptions& asked) {
   stop_if_interrupted();
   out.commit();
   print_language(request.program);
-  print_answer(record, asked.folder);
+  print_answer(record, rehearsal::original_of(request.program), asked.folder);
   return record.go ? kGood : kNo;
 }
 

@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/doctor.h"
 #include "cli/twin/campaign_command.h"
+#include "cli/twin/compensation_commands.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
@@ -48,6 +49,8 @@ std::string try_renderer() {
 void add_twin_commands(CLI::App& app, Action& action) {
   add_rehearse(app, action);
   add_inspect(app, action);
+  add_compensate(app, action);
+  add_serve(app, action);
   add_pose(app, action);
   add_place(app, action);
   add_verify(app, action);

@@ -20,11 +20,13 @@ constexpr const char* kBuilt = "manufactured";
 constexpr double kHeights[] = {0.1e-3, 0.3e-3, 0.5e-3, 0.7e-3, 0.9e-3,
                                1.1e-3, 1.3e-3, 1.5e-3, 1.7e-3, 1.9e-3};  // [m]
 
-calibration::MachineCalibration calibrate_geometry(const MachineDescription& drawn, std::uint64_t seed) {
+calibration::MachineCalibration calibrate_geometry(const MachineDescription& drawn, std::uint64_t seed,
+                                                   const std::string& engine) {
   SamplePosesRequest request;
   request.machine = drawn.file.string();
   request.as_built = kBuilt;
   request.seed = seed;
+  request.engine = engine;
   const calibration::Measurements measured = sample_poses(request, drawn);
   calibration::MachineCalibration result;
   result.estimator = "maximum_likelihood";
@@ -73,11 +75,17 @@ void calibrate_gap_sensor(std::uint64_t seed, MachineDescription& machine) {
 
 }  // namespace
 
+CalibratedGeometry calibrate_lab_geometry(const MachineDescription& drawn, std::uint64_t seed,
+                                          const std::string& engine) {
+  calibration::MachineCalibration geometry = calibrate_geometry(drawn, seed, engine);
+  return {std::move(geometry.machine), std::move(geometry.stored)};
+}
+
 LabMachine make_lab_machine(const MachineDescription& drawn, std::uint64_t seed) {
-  calibration::MachineCalibration geometry = calibrate_geometry(drawn, seed);
+  CalibratedGeometry geometry = calibrate_lab_geometry(drawn, seed);
   LabMachine lab;
   lab.machine = std::move(geometry.machine);
-  lab.calibrated = std::move(geometry.stored);
+  lab.calibrated = std::move(geometry.calibrated);
   calibrate_gap_sensor(seed, lab.machine);
   lab.built = sim::make_as_built(drawn, kBuilt, seed);
   lab.truth = sim::true_description(lab.machine, lab.built);

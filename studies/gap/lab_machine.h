@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "machine/calibrated_parameters.h"
 #include "machine/description.h"
@@ -16,6 +17,17 @@ struct LabMachine {
   sim::AsBuilt built;                 ///< what stands there, with its clamped part
   machine::MachineDescription truth;  ///< sim::true_description() of both
 };
+
+/// Its geometry alone.
+struct CalibratedGeometry {
+  machine::MachineDescription machine;  ///< calibrated
+  machine::CalibratedParameters calibrated;
+};
+
+/// The drawn machine built with this seed, and calibrated with the defaults of `sample-poses` and
+/// `calibrate`. `engine`: the plant that it is driven on to be measured; empty: it is measured without play.
+CalibratedGeometry calibrate_lab_geometry(const machine::MachineDescription& drawn, std::uint64_t seed,
+                                          const std::string& engine = "");
 
 /// The drawn machine built with this seed and calibrated with the defaults of `sample-poses`, `calibrate`,
 /// `sample-gaps` and `calibrate gap-sensor` (bench/print/built_machines.py), with no file between them.

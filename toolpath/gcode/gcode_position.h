@@ -14,6 +14,12 @@
 
 namespace understudy::toolpath {
 
+/// What the words of a place read.
+struct PlaceReading {
+  Vec3 xyz{0, 0, 0};    ///< in units of the program
+  RotaryTurns turns{};  ///< likewise, of the rotary words
+};
+
 /// [m] of a word in units of `unit` [m]. Throws InputError with place for one that no machine can mean.
 double length_of(const Block& block, const Word& word, double unit);
 
@@ -24,6 +30,10 @@ class GcodePosition {
   const Pose& X_WT() const { return X_WT_; }
   /// How the turning axes stand; nothing where the machine has none or the program does not say.
   const std::optional<RotaryTurns>& turns() const { return turns_; }
+  /// What a line's words would have to read to bring the tool to X_WT, with the turning axes at `turns` where
+  /// the program states those. `unit` [m]; `in_machine`: under G53.
+  PlaceReading reading_at(const Pose& X_WT, const std::optional<RotaryTurns>& turns, double unit,
+                          bool relative, bool in_machine) const;
   /// "B C ", for messages; empty where the machine has none.
   std::string rotary_letters() const;
 

@@ -29,6 +29,17 @@ class GcodeState {
   void restore(const std::string& name, bool back, const std::optional<double>& speed, const Place& place,
                std::vector<Step>& steps);
 
+  // For lines that are written anew (gcode_rewrite.h).
+
+  const GcodePosition& position() const { return position_; }
+  /// As GcodePosition::reading_at, in the units and modes in force.
+  PlaceReading reading_at(const Pose& X_WT, const std::optional<RotaryTurns>& turns, bool in_machine) const {
+    return position_.reading_at(X_WT, turns, unit_, relative_, in_machine);
+  }
+  double extruder_reading() const { return extruder_ / unit_; }  ///< of E, in the units in force
+  bool inverse_time() const { return inverse_time_; }
+  bool on_curve() const { return is_curve(); }  ///< the motion in force is G2, G3 or G5
+
   // For lines that are passed over (gcode_passed_over.h).
 
   const Pose& X_WT() const { return position_.X_WT(); }

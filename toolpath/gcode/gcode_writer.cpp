@@ -6,21 +6,12 @@
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/gcode_limits.h"
+#include "toolpath/gcode/gcode_number.h"
 
 namespace understudy::toolpath {
 namespace {
 
-// Fixed point without trailing zeros; never an exponent, which G-code would read as an E word.
-std::string number(double value, int decimals) {
-  std::string text = fmt::format("{:.{}f}", value, decimals);
-  if (text.find('.') != std::string::npos) {
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-  }
-  return text == "-0" ? "0" : text;
-}
-
-std::string millimetres(double metres) { return number(to_mm(metres), 6); }
+std::string millimetres(double metres) { return plain_number(to_mm(metres), 6); }
 
 class Writer {
  public:
@@ -49,11 +40,12 @@ class Writer {
       case StepKind::home:
         return line("G28");
       case StepKind::dwell:
-        return line("G4 P" + number(checked(step.duration) * 1e3, 6));
+        return line("G4 P" + plain_number(checked(step.duration) * 1e3, 6));
       case StepKind::temperature:
-        return line((step.wait ? "M109 S" : "M104 S") + number(checked(step.temperature) - kCelsiusZero, 6));
+        return line((step.wait ? "M109 S" : "M104 S") +
+                    plain_number(checked(step.temperature) - kCelsiusZero, 6));
       case StepKind::fan:
-        return line(step.fan > 0 ? "M106 S" + number(checked(step.fan) * 255, 6) : "M107");
+        return line(step.fan > 0 ? "M106 S" + plain_number(checked(step.fan) * 255, 6) : "M107");
       case StepKind::end:
         return line("M30");
     }
@@ -62,7 +54,7 @@ class Writer {
   void linear(const Step& step) {
     const bool timed = step.duration > 0;
     const double per_minute = timed ? 60 / step.duration : step.feed / kMillimetrePerMinute;
-    const std::string feed = number(checked(per_minute), timed ? 12 : 6);
+    const std::string feed = plain_number(checked(per_minute), timed ? 12 : 6);
     if (feed == "0" || feed[0] == '-')
       throw InputError(
           fmt::format("step {}: a feed of {} cannot be written, it must be above 0", steps_ + 1, per_minute));
@@ -102,15 +94,15 @@ class Writer {
   static std::string orientation(const Mat3& R_WT) {
     Quat q(R_WT);
     if (q.w() < 0) q.coeffs() *= -1;
-    return fmt::format(" W{} I{} J{} K{}", number(q.w(), 9), number(q.x(), 9), number(q.y(), 9),
-                       number(q.z(), 9));
+    return fmt::format(" W{} I{} J{} K{}", plain_number(q.w(), 9), plain_number(q.x(), 9),
+                       plain_number(q.y(), 9), plain_number(q.z(), 9));
   }
 
   std::string turns(const RotaryTurns& turns) const {
     std::string text;
     for (std::size_t i = 0; i < style_.turn_letters.size(); ++i)
       text += fmt::format(" {}{}", style_.turn_letters[i],
-                          number(checked(i == 0 ? turns.b : turns.c) / style_.turn_units.at(i), 6));
+                          plain_number(checked(i == 0 ? turns.b : turns.c) / style_.turn_units.at(i), 6));
     return text;
   }
 

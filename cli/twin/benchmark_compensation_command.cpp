@@ -1,0 +1,70 @@
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "cli/jobs_option.h"
+#include "cli/machine_option.h"
+#include "cli/progress.h"
+#include "cli/seed_option.h"
+#include "cli/twin/compensation_commands.h"
+#include "core/file/output_file.h"
+#include "core/file/output_folder.h"
+#include "core/interrupt.h"
+#include "report/compensation_report.h"
+#include "studies/compensation/compensated_prints.h"
+
+namespace understudy::cli {
+namespace {
+
+struct CompensationCall {
+  studies::CompensationStudyRequest request;
+  std::string folder = "out/compensation";
+};
+
+int run_study(const CompensationCall& call) {
+  studies::CompensationStudyRequest request = call.request;
+  check_jobs(request.threads);
+  request.command = command_line();
+  OutputFolder out(call.folder);
+  studies::CompensationStudy study;
+  {
+    ProgressLine line;
+    study = studies::run_compensation_study(
+        request, [&](double share, const std::string& what) { line.show(share, what); });
+  }
+  write_file(out.path() / "compensation.json", report::compensation_json(study));
+  stop_if_interrupted();
+  out.commit();
+  fmt::print("{}{}\n", report::compensation_table(study),
+             (std::filesystem::path(call.folder) / "compensation.json").string());
+  return kGood;
+}
+
+}  // namespace
+
+void add_benchmark_compensation(CLI::App& benchmark, Action& action) {
+  auto call = std::make_shared<CompensationCall>();
+  auto& request = call->request;
+  auto* command = benchmark.add_subcommand(
+      "compensation", "Built machines that print a compensated program with a nominal controller");
+  add_machine_option(*command, request.machine);
+  command->add_option("--machines", request.machines, "built machines")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->add_option("--seed", request.first_seed, "of the first built machine; the next ones follow")
+      ->check(seed_check())
+      ->capture_default_str();
+  command->add_flag("--driven", request.driven,
+                    "calibrate from poses that were measured on the machine with its play in place");
+  add_jobs(*command, request.threads);
+  command->add_option("--out", call->folder, "folder of results")->capture_default_str();
+  command->footer(
+      "Writes compensation.json (docs/compensation.md).\n"
+      "Example: understudy benchmark compensation --machine arm --machines 50 -j 2");
+  command->callback([=, &action] { action = [=] { return run_study(*call); }; });
+}
+
+}  // namespace understudy::cli

@@ -1,0 +1,32 @@
+// A correction for the play that a motion planner can follow: the means of several predictions, without
+// steps.
+#pragma once
+
+#include <vector>
+
+#include "rehearsal/compensation/predicted_play.h"
+#include "toolpath/program.h"
+
+namespace understudy::rehearsal {
+
+class SmoothedPlay {
+ public:
+  /// `reach` [m] of path on both sides of a place, within its step, over which it is averaged with a raised
+  /// cosine. `original` starts at `X_WT_home`.
+  SmoothedPlay(const toolpath::Program& original, const Pose& X_WT_home, double reach);
+
+  /// Goes half of the way to another prediction, of a program with the correction so far; all of it to the
+  /// first.
+  void add(PlayAlongPath play);
+  /// The shift to be taken off, at a share of a step's way.
+  Twist at(std::size_t step, double fraction) const;
+
+ private:
+  Twist averaged(const PlayAlongPath& play, std::size_t step, double fraction) const;
+
+  double reach_;
+  std::vector<double> lengths_;  // [m], of the steps
+  std::vector<PlayAlongPath> plays_;
+};
+
+}  // namespace understudy::rehearsal

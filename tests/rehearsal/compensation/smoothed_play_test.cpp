@@ -1,0 +1,52 @@
+#include "rehearsal/compensation/smoothed_play.h"
+
+#include <gtest/gtest.h>
+
+namespace understudy::rehearsal {
+namespace {
+
+toolpath::Program one_line(double length) {
+  toolpath::Program program;
+  toolpath::Step step;
+  step.kind = toolpath::StepKind::print;
+  step.X_WT = make_pose(Mat3(Mat3::Identity()), Vec3(length, 0, 0));
+  program.steps.push_back(step);
+  return program;
+}
+
+/// A play that crosses in the middle of the line.
+PlayAlongPath crossing(double shift) {
+  PlayAlongPath play;
+  Twist none = Twist::Zero(), some = Twist::Zero();
+  some[2] = shift;
+  for (const double at : {0.0, 0.4999}) play.add({0, at}, none);
+  for (const double at : {0.5001, 1.0}) play.add({0, at}, some);
+  return play;
+}
+
+TEST(SmoothedPlay, AStepBecomesARampOfTwiceItsReach) {
+  SmoothedPlay smooth(one_line(0.1), Pose::Identity(), 4e-3);
+  smooth.add(crossing(80e-6));
+  EXPECT_NEAR(smooth.at(0, 0.5)[2], 40e-6, 1e-9) << "half of it in the middle, by symmetry";
+  EXPECT_NEAR(smooth.at(0, 0.45)[2], 0, 1e-12) << "5 mm before";
+  EXPECT_NEAR(smooth.at(0, 0.55)[2], 80e-6, 1e-12);
+  double last = 0;
+  for (double f = 0.46; f < 0.54; f += 0.0025) {
+    EXPECT_GE(smooth.at(0, f)[2], last);
+    // 21 taps of a raised cosine: the largest weight is 2 / 22.
+    EXPECT_LE(smooth.at(0, f)[2] - last, 80e-6 * 2 / 22 + 1e-9);
+    last = smooth.at(0, f)[2];
+  }
+}
+
+TEST(SmoothedPlay, EachFurtherPredictionCountsHalf) {
+  SmoothedPlay smooth(one_line(0.1), Pose::Identity(), 1e-3);
+  smooth.add(crossing(80e-6));
+  smooth.add(crossing(40e-6));
+  EXPECT_NEAR(smooth.at(0, 1)[2], 60e-6, 1e-12);
+  smooth.add(crossing(0));
+  EXPECT_NEAR(smooth.at(0, 1)[2], 30e-6, 1e-12);
+}
+
+}  // namespace
+}  // namespace understudy::rehearsal

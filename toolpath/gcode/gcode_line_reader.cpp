@@ -1,0 +1,328 @@
+#include "toolpath/gcode/gcode_line_reader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "toolpath/gcode/gcode_block.h"
+#include "toolpath/gcode/gcode_lexer.h"
+#include "toolpath/gcode/gcode_passed_over.h"
+
+namespace understudy::toolpath {
+namespace {
+
+constexpr std::size_t kLineMax = 65'536;  // [bytes]; docs/limits.md
+constexpr std::size_t kDeepestCall = 20;
+constexpr std::size_t kMostSaved = 20;    // names of SAVE_GCODE_STATE
+constexpr double kFastest = 1e5;          // [mm/s]
+constexpr int kMostMacroLines = 100'000;  // docs/limits.md
+
+int column_of(std::string_view line) { return static_cast<int>(line.find_first_not_of(" \t")) + 1; }
+
+/// The command that a line begins with: "G1", "START_PRINT".
+std::string first_command(std::string_view line) {
+  if (const std::string word = command_in_words(line); !word.empty()) return word;
+  const std::size_t start = std::min(line.find_first_not_of(" \t"), line.size());
+  const std::size_t end = std::min(line.find_first_not_of("0123456789.", start + 1), line.size());
+  std::string word(line.substr(start, end - start));
+  if (!word.empty()) word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
+bool is_passed_over(std::string_view line, const GcodeOptions& options) {
+  if (is_line_without_effect(line)) return true;
+  return !options.ignored.empty() && std::ranges::count(options.ignored, first_command(line)) > 0;
+}
+
+/// Told together, so that a user need not mend a program word by word.
+class UnknownWords {
+ public:
+  void add(const UnknownWord& error) {
+    if (!first_) first_.emplace(error);
+    const auto known = std::ranges::find(counts_, error.word(), &UnknownWordCount::word);
+    if (known != counts_.end())
+      ++known->lines;
+    else
+      counts_.push_back({error.word(), 1, error.place().line});
+  }
+  void fail_if_any() const {
+    if (!first_) return;
+    if (counts_.size() == 1 && counts_[0].lines == 1) throw UnknownWord(*first_);
+    std::string all;
+    for (std::size_t i = 0; i < counts_.size() && i < kShown; ++i)
+      all += fmt::format("{}'{}' ({} line{} from line {})", i ? ", " : "", counts_[i].word, counts_[i].lines,
+                         counts_[i].lines == 1 ? "" : "s", counts_[i].first_line);
+    if (counts_.size() > kShown) all += fmt::format(" and {} more", counts_.size() - kShown);
+    throw InputError(first_->place(),
+                     fmt::format("unknown words {}: mend these lines, or pass over them by --ignore", all));
+  }
+  const std::vector<UnknownWordCount>& counts() const { return counts_; }
+
+ private:
+  static constexpr std::size_t kShown = 20;
+  std::optional<UnknownWord> first_;
+  std::vector<UnknownWordCount> counts_;
+};
+
+/// Throws InputError for a switching command that means something else.
+Letters letters_of(const GcodeOptions& options) {
+  Letters letters;
+  letters.extruder = options.extruder_letter;
+  if (!options.rotary) return letters;
+  letters.rotary = options.rotary->letters;
+  letters.tip_commands = options.rotary->tip_commands;
+  letters.machine_commands = options.rotary->machine_commands;
+  for (const auto* commands : {&letters.tip_commands, &letters.machine_commands})
+    for (const std::string& command : *commands) {
+      double number = 0;
+      const char* end = command.data() + command.size();
+      const bool coded = (command[0] == 'G' || command[0] == 'M') &&
+                         std::from_chars(command.data() + 1, end, number).ptr == end;
+      const Meaning* meaning = coded ? meaning_of(command[0], number) : nullptr;
+      if ((meaning != nullptr && meaning->group != Group::coordinates) ||
+          (coded && without_effect(command[0], number) != nullptr) || is_line_without_effect(command))
+        throw InputError(
+            fmt::format("'{}' cannot switch tool-centre-point control: it has another meaning", command));
+    }
+  return letters;
+}
+
+/// The line of a firmware's command in words: it switches coordinates, or is not known.
+Block block_of(const std::string& command, std::string_view text, const Place& place, const std::string& file,
+               const Letters& letters) {
+  const auto switching = letters.switching(command);
+  if (!switching) throw UnknownWord(place, command);
+  return {*switching, Word{command[0], 0, text, place.column}, file, place.line, letters};
+}
+
+/// A command of this reader's keeps its meaning, whatever a macro makes of it.
+bool has_meaning(const std::string& command) {
+  if (command.size() < 2 || std::isdigit(static_cast<unsigned char>(command[1])) == 0) return false;
+  const double number = std::strtod(command.c_str() + 1, nullptr);
+  return meaning_of(command[0], number) != nullptr || without_effect(command[0], number) != nullptr;
+}
+
+/// Whether the line moves the tool to a place that its own words say.
+bool says_place(const Block& block) {
+  const bool other = block.without_effect() || block.find(Command::home) != nullptr ||
+                     block.find(Command::set_position) != nullptr || block.find(Command::dwell) != nullptr ||
+                     block.find(Command::retract) != nullptr || block.find(Command::flow) != nullptr;
+  return !other && block.find_any("XYZWIJKBC") != nullptr;
+}
+
+}  // namespace
+
+class GcodeLineReader::Lines {
+ public:
+  Lines(const std::string& file, const GcodeOptions& options, std::vector<Step>& steps)
+      : file_(file), options_(options), letters_(letters_of(options)), state_(options), steps_(steps) {
+    if (options.passed_over != nullptr) over_.emplace(file_, letters_);
+  }
+
+  void read(std::string_view words, int line) {
+    said_place_ = false;
+    if (over_) over_->before(state_, steps_.size());
+    try {
+      run(words, line);
+      if (over_) over_->after(line, state_, steps_);
+    } catch (const InputError& error) {
+      if (over_ && calls_.empty() && over_->pass_over(words, line, error, state_, steps_)) return;
+      if (!options_.unknown) unknown_.fail_if_any();  // this may come of a line that was not read
+      fail_with_passed_over(error);
+      throw;
+    }
+  }
+
+  void read_or_undo(std::string_view words, int line) {
+    undo_.emplace(state_, steps_.size());
+    try {
+      at_once_ = true;
+      read(words, line);
+    } catch (const InputError&) {
+      undo();
+      throw;
+    }
+  }
+
+  void undo() {
+    if (!undo_) return;
+    state_ = undo_->first;
+    steps_.resize(std::min(undo_->second, steps_.size()));
+    calls_.clear();
+    undo_.reset();
+  }
+
+  const GcodeState& state() const { return state_; }
+  bool said_place() const { return said_place_; }
+  const Letters& letters() const { return letters_; }
+
+  void finish() {
+    if (options_.unknown)
+      *options_.unknown = unknown_.counts();
+    else
+      unknown_.fail_if_any();
+    if (!over_) return;
+    over_->finish(state_);
+    *options_.passed_over = over_->found();
+  }
+
+ private:
+  /// What cannot be passed over may come of lines that were.
+  void fail_with_passed_over(const InputError& error) const {
+    if (!over_ || over_->found().empty()) return;
+    std::vector<PassedOver> lines = over_->found();
+    const std::string place = to_string(error.place()), text = error.what();
+    lines.push_back({error.place().line,
+                     error.place().column,
+                     0,
+                     text.substr(std::min(place.size() + 2, text.size())),
+                     {},
+                     0,
+                     true});
+    refuse_passed_over(file_, lines);
+  }
+
+  void run(std::string_view words, int line) {
+    if (words.size() > kLineMax)
+      throw InputError(Place{file_, line},
+                       fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
+    if (is_passed_over(words, options_)) return;
+    try {
+      if (keeps_state(words, line)) return;
+      if (options_.macros != nullptr && call_macro(words, line)) return;
+      const std::string word = command_in_words(words);
+      Block block = word.empty() ? Block(words_of(words, line), file_, line, letters_)
+                                 : block_of(word, words, {file_, line, column_of(words)}, file_, letters_);
+      if (over_) over_->check(block);
+      said_place_ = calls_.empty() && says_place(block);  // before its words are used up
+      state_.run(block, steps_);
+      if (over_) over_->note(block, state_);
+    } catch (const UnknownWord& error) {
+      if (at_once_) throw;
+      unknown_.add(error);
+    }
+  }
+
+  /// What an unknown command makes of the rest of its line is not known either.
+  std::vector<Word> words_of(std::string_view words, int line) const {
+    try {
+      return lex_line(words, file_, line);
+    } catch (const InputError&) {
+      const std::string command = first_command(words);
+      const bool coded = command.size() > 1 && (command[0] == 'G' || command[0] == 'M') &&
+                         std::isdigit(static_cast<unsigned char>(command[1])) != 0;
+      if (!coded || has_meaning(command) || letters_.switching(command)) throw;
+      throw UnknownWord({file_, line, column_of(words)}, command);
+    }
+  }
+
+  /// SAVE_GCODE_STATE [NAME=a], RESTORE_GCODE_STATE [NAME=a] [MOVE=1 [MOVE_SPEED=mm/s]].
+  bool keeps_state(std::string_view words, int line) {
+    const std::string command = command_in_words(words);
+    const bool save = command == "SAVE_GCODE_STATE";
+    if (!save && command != "RESTORE_GCODE_STATE") return false;
+    const Place place{file_, line};
+    auto parameters = call_parameters(command, words, place);
+    const std::string name = parameters.contains("NAME") ? parameters["NAME"] : "default";
+    if (over_) over_->require_place(place);
+    if (save) {
+      if (saved_names_.insert(name).second && saved_names_.size() > kMostSaved)
+        throw InputError(place, fmt::format("more than {} names of SAVE_GCODE_STATE", kMostSaved));
+      state_.save(name);
+      return true;
+    }
+    const auto number = [&](const char* key) -> std::optional<double> {
+      if (!parameters.contains(key)) return std::nullopt;
+      const std::string& text = parameters[key];
+      double value = 0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= kFastest))
+        throw InputError(place, fmt::format("{}: a number from 0 to {:g} is needed", key, kFastest));
+      return value;
+    };
+    const std::optional<double> speed = number("MOVE_SPEED");
+    if (speed && *speed <= 0) throw InputError(place, "MOVE_SPEED must be above 0 mm/s");
+    state_.restore(name, number("MOVE").value_or(0) != 0,
+                   speed ? std::optional(from_mm(*speed)) : std::nullopt, place, steps_);
+    return true;
+  }
+
+  /// Runs the lines of the macro that this line calls, as if they stood here. False: it calls none.
+  bool call_macro(std::string_view words, int line) {
+    const std::string command = first_command(words);
+    if (!options_.macros->has(command) || has_meaning(command) || letters_.switching(command)) return false;
+    if (std::ranges::count(calls_, command) > 0)
+      throw InputError(Place{file_, line},
+                       fmt::format("macro {} calls itself ({})", command, options_.macros->file()));
+    if (calls_.size() == kDeepestCall)
+      throw InputError(Place{file_, line}, fmt::format("macros are called {} deep", kDeepestCall + 1));
+    calls_.push_back(command);
+    std::string where = options_.macros->file();
+    try {
+      for (const MacroLine& macro_line : options_.macros->expand(command, words)) {
+        where = to_string(Place{options_.macros->files()[macro_line.file], macro_line.number});
+        if (++macro_lines_ > kMostMacroLines)
+          throw InputError(Place{file_, line},
+                           fmt::format("macros make more than {} lines", kMostMacroLines));
+        run(macro_line.text, line);
+      }
+    } catch (const InputError& error) {
+      const bool here = error.place().file == file_;
+      const std::string message = here ? std::string(error.what()).substr(to_string(error.place()).size() + 2)
+                                       : std::string(error.what());
+      throw InputError(Place{file_, line},
+                       here ? fmt::format("in {} ({}): {}", command, where, message) : message);
+    }
+    calls_.pop_back();
+    return true;
+  }
+
+  const std::string& file_;
+  const GcodeOptions& options_;
+  const Letters letters_;
+  GcodeState state_;
+  std::vector<Step>& steps_;
+  UnknownWords unknown_;
+  std::optional<LinesPassedOver> over_;  // nothing: such lines are errors
+  std::set<std::string> saved_names_;
+  std::vector<std::string> calls_;  // of macros, the outermost first
+  int macro_lines_ = 0;
+  bool said_place_ = false;
+  std::optional<std::pair<GcodeState, std::size_t>> undo_;  // before the last line; number of steps
+  bool at_once_ = false;  // unknown words are told by the line that has them
+};
+
+GcodeLineReader::GcodeLineReader(const std::string& file, const GcodeOptions& options,
+                                 std::vector<Step>& steps)
+    : lines_(std::make_unique<Lines>(file, options, steps)) {}
+GcodeLineReader::~GcodeLineReader() = default;
+
+void GcodeLineReader::read(std::string_view line, int number) { lines_->read(line, number); }
+void GcodeLineReader::read_or_undo(std::string_view line, int number) { lines_->read_or_undo(line, number); }
+void GcodeLineReader::undo() { lines_->undo(); }
+void GcodeLineReader::finish() { lines_->finish(); }
+const GcodeState& GcodeLineReader::state() const { return lines_->state(); }
+const Letters& GcodeLineReader::letters() const { return lines_->letters(); }
+bool GcodeLineReader::said_place() const { return lines_->said_place(); }
+
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(end);
+  if (rest.starts_with("\r\n"))
+    rest.remove_prefix(2);
+  else if (!rest.empty())
+    rest.remove_prefix(1);
+  return line;
+}
+
+}  // namespace understudy::toolpath
