@@ -143,7 +143,7 @@ Replay replay_of(const RehearsalRequest& request, const TwinSetup& setup,
   std::vector<Moment> moments;
   for (const TracePoint& point : trace) moments.push_back({point.time, {point.X_WT, point.axes}});
   Replay replay = make_replay(setup.machine, setup.as_built, moments);
-  replay.program = read_file(request.program);
+  if (!request.program.empty()) replay.program = read_file(request.program);
   replay.features = feature_changes(replay.program, features);
   return replay;
 }

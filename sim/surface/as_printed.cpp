@@ -23,7 +23,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "both formats are little endian");
 
-constexpr std::size_t kChunk = 8192;  // beads: some 30 MB of triangles
+constexpr std::size_t kChunk = 8192;  // sections: some 20 MB of triangles
+constexpr double kColoured = 1e-3;    // [m], between vertices that a deviation is written at
 
 std::string mm(double metres) { return std::to_string(to_mm(metres)) + " mm"; }
 
@@ -87,7 +88,13 @@ void fill(std::size_t count, int threads, const Work& work) {
               });
 }
 
-std::vector<std::size_t> chosen(const BeadIndex& beads, const AsPrintedSettings& settings) {
+/// What is written: beads that follow each other as one body.
+struct Chosen {
+  std::size_t beads = 0;
+  std::vector<BeadStretch> stretches;
+};
+
+Chosen chosen(const BeadIndex& beads, const AsPrintedSettings& settings) {
   std::vector<char> in(beads.size(), 1);
   if (settings.skin) {
     fill(beads.size(), settings.threads, [&](std::size_t i) {
@@ -95,21 +102,24 @@ std::vector<std::size_t> chosen(const BeadIndex& beads, const AsPrintedSettings&
       in[i] = settings.intended->signed_distance(core.middle) > -(*settings.skin + core.reach());
     });
   }
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < in.size(); ++i)
-    if (in[i]) result.push_back(i);
-  if (result.empty())
+  Chosen result;
+  result.beads = static_cast<std::size_t>(std::count(in.begin(), in.end(), 1));
+  if (result.beads == 0)
     throw InputError("no part as printed: all " + std::to_string(beads.size()) +
                      " beads are deeper than the skin of " + mm(*settings.skin));
+  SweepSettings sweep;
+  sweep.tolerance = settings.tolerance;
+  sweep.chosen = &in;
+  if (settings.intended) sweep.longest = kColoured;
+  result.stretches = sweep_beads(beads, sweep);
   return result;
 }
 
-AsPrintedSize size_of(const BeadIndex& beads, const std::vector<std::size_t>& which, int sides,
-                      std::size_t most, const std::string& format) {
+AsPrintedSize size_of(const Chosen& chosen, int sides, std::size_t most, const std::string& format) {
   AsPrintedSize size;
-  size.beads = which.size();
-  for (const std::size_t i : which) {
-    const ShellSize one = shell_size(beads.bead(i), sides);
+  size.beads = chosen.beads;
+  for (const BeadStretch& stretch : chosen.stretches) {
+    const ShellSize one = sweep_size(stretch, sides);
     size.vertices += one.vertices;
     size.triangles += one.triangles;
   }
@@ -121,15 +131,17 @@ AsPrintedSize size_of(const BeadIndex& beads, const std::vector<std::size_t>& wh
 }
 
 template <typename Write>
-void for_each_chunk(const BeadIndex& beads, const std::vector<std::size_t>& which, int sides,
-                    const Write& write) {
+void for_each_chunk(const Chosen& chosen, int sides, const Write& write) {
   BeadMesh mesh;
-  for (std::size_t first = 0; first < which.size(); first += kChunk) {
+  std::size_t sections = 0;
+  for (const BeadStretch& stretch : chosen.stretches) {
+    append_sweep(stretch, sides, mesh);
+    sections += stretch.size();
+    if (sections < kChunk && &stretch != &chosen.stretches.back()) continue;
+    write(mesh);
     mesh.vertices.clear();
     mesh.triangles.clear();
-    const std::size_t last = std::min(which.size(), first + kChunk);
-    for (std::size_t i = first; i < last; ++i) append_shell(beads.bead(which[i]), sides, mesh);
-    write(mesh);
+    sections = 0;
   }
 }
 
@@ -166,15 +178,14 @@ std::string ply_vertices(const BeadMesh& mesh, const AsPrintedSettings& settings
 AsPrintedSize write_as_printed_stl(const fs::path& path, const BeadIndex& beads,
                                    const AsPrintedSettings& settings) {
   check(beads, settings);
-  const auto which = chosen(beads, settings);
-  const AsPrintedSize size =
-      size_of(beads, which, settings.sides, std::numeric_limits<std::uint32_t>::max(), "STL");
+  const Chosen which = chosen(beads, settings);
+  const AsPrintedSize size = size_of(which, settings.sides, std::numeric_limits<std::uint32_t>::max(), "STL");
   StreamedFile file(path);
   std::string bytes = "part as printed, millimetres";
   bytes.resize(80, ' ');
   put(bytes, static_cast<std::uint32_t>(size.triangles));
   file.write(bytes);
-  for_each_chunk(beads, which, settings.sides, [&](const BeadMesh& mesh) {
+  for_each_chunk(which, settings.sides, [&](const BeadMesh& mesh) {
     bytes.clear();
     for (const auto& triangle : mesh.triangles) {
       std::array<Vec3, 3> p;
@@ -193,15 +204,14 @@ AsPrintedSize write_as_printed_stl(const fs::path& path, const BeadIndex& beads,
 AsPrintedSize write_as_printed_ply(const fs::path& path, const BeadIndex& beads,
                                    const AsPrintedSettings& settings) {
   check(beads, settings);
-  const auto which = chosen(beads, settings);
-  const AsPrintedSize size =
-      size_of(beads, which, settings.sides, std::numeric_limits<std::int32_t>::max(), "PLY");
+  const Chosen which = chosen(beads, settings);
+  const AsPrintedSize size = size_of(which, settings.sides, std::numeric_limits<std::int32_t>::max(), "PLY");
   StreamedFile file(path);
   file.write(ply_header(size, settings));
-  for_each_chunk(beads, which, settings.sides,
+  for_each_chunk(which, settings.sides,
                  [&](const BeadMesh& mesh) { file.write(ply_vertices(mesh, settings)); });
   std::int32_t first = 0;
-  for_each_chunk(beads, which, settings.sides, [&](const BeadMesh& mesh) {
+  for_each_chunk(which, settings.sides, [&](const BeadMesh& mesh) {
     std::string bytes;
     for (const auto& triangle : mesh.triangles) {
       put(bytes, std::uint8_t{3});

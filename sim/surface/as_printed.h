@@ -9,12 +9,13 @@
 
 #include "geometry/mesh.h"
 #include "sim/beads/bead_index.h"
-#include "sim/surface/bead_mesh.h"
+#include "sim/surface/bead_sweep.h"
 
 namespace understudy::sim {
 
 struct AsPrintedSettings {
   int sides = kBeadSides;                    ///< see bead_mesh.h
+  double tolerance = 5e-6;                   ///< [m], see bead_sweep.h
   const geometry::Mesh* intended = nullptr;  ///< in W, closed; null: no deviation is written
   double limit = 0.2e-3;                     ///< [m], at which the colour scale ends
   /// Beads that lie deeper than this below the intended surface are left out [m]; needs `intended`.
@@ -26,11 +27,11 @@ struct AsPrintedSize {
   std::size_t beads = 0, vertices = 0, triangles = 0;
 };
 
-/// Every bead is a closed shell. Where beads overlap, the shells run through each other and vertices inside
-/// other beads are kept: the outside is that of the union. Millimetres, in W; bounded memory for any number
-/// of beads. The file appears under `path` only when it is whole. Throws InputError: nothing printed, too
-/// many triangles for the format, a limit, skin or number of sides out of range; MachineError where it cannot
-/// be written.
+/// Beads that follow each other are one closed shell (bead_sweep.h). Where they overlap, the shells run
+/// through each other and vertices inside other beads are kept: the outside is that of the union.
+/// Millimetres, in W; bounded memory for any number of beads. The file appears under `path` only when it is
+/// whole. Throws InputError: nothing printed, too many triangles for the format, a limit, skin or number of
+/// sides out of range; MachineError where it cannot be written.
 ///
 /// PLY: little endian; with an intended part every vertex has `deviation_mm`, its signed distance from the
 /// intended surface (negative inside), and as colour the deviation from -limit (blue) over 0 (white) to limit

@@ -79,12 +79,15 @@ bool stands_for(const BeadStretch& sections, std::size_t first, std::size_t last
   return true;
 }
 
-BeadStretch simplified(const BeadStretch& sections, double tolerance) {
+BeadStretch simplified(const BeadStretch& sections, const SweepSettings& settings) {
   BeadStretch kept{sections.front()};
   for (std::size_t at = 0; at + 1 < sections.size();) {
     std::size_t next = at + 1;
     const std::size_t most = std::min(sections.size() - 1, at + kLookAhead);
-    while (next < most && stands_for(sections, at, next + 1, tolerance)) ++next;
+    const auto within = [&](std::size_t i) {
+      return (sections[i].middle_W - sections[at].middle_W).norm() <= settings.longest;
+    };
+    while (next < most && within(next + 1) && stands_for(sections, at, next + 1, settings.tolerance)) ++next;
     kept.push_back(sections[next]);
     at = next;
   }
@@ -94,7 +97,7 @@ BeadStretch simplified(const BeadStretch& sections, double tolerance) {
 /// Gathers beads while each goes on where the one before ended.
 class Sweeper {
  public:
-  explicit Sweeper(double tolerance) : tolerance_(tolerance) {}
+  explicit Sweeper(const SweepSettings& settings) : settings_(settings), tolerance_(settings.tolerance) {}
 
   void take(const Bead& bead) {
     if (is_blob(bead)) {
@@ -121,6 +124,13 @@ class Sweeper {
     last_at_ = static_cast<double>(bead.laid_at);
   }
 
+  /// What comes next begins anew.
+  void close() {
+    if (open_.size() > 2) begin_later();
+    if (!open_.empty()) stretches_.push_back(simplified(open_, settings_));
+    open_.clear();
+  }
+
   std::vector<BeadStretch> finish() {
     close();
     return std::move(stretches_);
@@ -129,12 +139,6 @@ class Sweeper {
  private:
   /// A bead states the time of its end only: it begins when the one before ended, but for travel between.
   double begun_at(const Bead& bead) const { return std::min(last_at_, static_cast<double>(bead.laid_at)); }
-
-  void close() {
-    if (open_.size() > 2) begin_later();
-    if (!open_.empty()) stretches_.push_back(simplified(open_, tolerance_));
-    open_.clear();
-  }
 
   /// The first bead was laid about as fast as the second; what is left of its time was travel.
   void begin_later() {
@@ -145,6 +149,7 @@ class Sweeper {
           std::max(open_[0].laid_at, one.laid_at - took * (one.middle_W - open_[0].middle_W).norm() / length);
   }
 
+  SweepSettings settings_;
   double tolerance_;
   std::vector<BeadStretch> stretches_;
   BeadStretch open_;
@@ -183,26 +188,38 @@ void append_ring(const BeadSection& section, const Frame& frame, double latitude
     }
 }
 
-Bead blob_of(const BeadSection& s) {
+/// A blob, or one bead from end to end: append_shell() closes its ends without a ring.
+bool is_one_bead(const BeadStretch& stretch) {
+  return stretch.size() == 1 ||
+         (stretch.size() == 2 && stretch[0].width == stretch[1].width &&
+          stretch[0].height == stretch[1].height && stretch[0].up_W == stretch[1].up_W);
+}
+
+Bead bead_of(const BeadStretch& stretch) {
+  const BeadSection &from = stretch.front(), &to = stretch.back();
   Bead bead;
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    bead.from_W[n] = bead.to_W[n] = static_cast<float>(s.middle_W[i]);
-    bead.up_W[n] = static_cast<float>(s.up_W[i]);
+    bead.from_W[n] = static_cast<float>(from.middle_W[i]);
+    bead.to_W[n] = static_cast<float>(to.middle_W[i]);
+    bead.up_W[n] = static_cast<float>(from.up_W[i]);
   }
-  bead.width = static_cast<float>(s.width);
-  bead.height = static_cast<float>(s.height);
+  bead.width = static_cast<float>(from.width);
+  bead.height = static_cast<float>(from.height);
   return bead;
 }
 
 }  // namespace
 
 std::vector<BeadStretch> sweep_beads(const BeadIndex& beads, const SweepSettings& settings) {
-  Sweeper sweeper(settings.tolerance);
+  Sweeper sweeper(settings);
   for (std::size_t i = 0; i < beads.size(); ++i) {
     const Bead bead = beads.bead(i);
     if (static_cast<double>(bead.laid_at) > settings.by) break;
-    sweeper.take(bead);
+    if (settings.chosen && !(*settings.chosen)[i])
+      sweeper.close();
+    else
+      sweeper.take(bead);
   }
   return sweeper.finish();
 }
@@ -214,8 +231,8 @@ std::size_t section_count(const std::vector<BeadStretch>& stretches) {
 }
 
 void append_sweep(const BeadStretch& stretch, int sides, BeadMesh& mesh) {
-  if (stretch.size() == 1) {
-    append_shell(blob_of(stretch.front()), sides, mesh);
+  if (is_one_bead(stretch)) {
+    append_shell(bead_of(stretch), sides, mesh);
     return;
   }
   const ShellSize size = sweep_size(stretch, sides);
@@ -251,7 +268,7 @@ void append_sweep(const BeadStretch& stretch, int sides, BeadMesh& mesh) {
 }
 
 ShellSize sweep_size(const BeadStretch& stretch, int sides) {
-  if (stretch.size() == 1) return shell_size(blob_of(stretch.front()), sides);
+  if (is_one_bead(stretch)) return shell_size(bead_of(stretch), sides);
   const auto around = static_cast<std::size_t>(sides) + 2;
   const std::size_t rings = stretch.size() + 2 * static_cast<std::size_t>(sides / 4);
   return {rings * around, 2 * (rings - 1) * around + 2 * (around - 2)};

@@ -31,6 +31,9 @@ struct SweepSettings {
   /// [m], by which the body's surface may be off that of the beads: their middle lines, half widths, half
   /// heights and mitred corners each by no more than this.
   double tolerance = 2e-6;
+  double longest = HUGE_VAL;  ///< [m], of a piece that stands for several beads
+  /// Which beads there are, one entry each; null: all. A stretch ends where one is missing.
+  const std::vector<char>* chosen = nullptr;
 };
 
 /// What was laid, in order. Beads whose sections differ by more than the tolerance, that turn too sharply for
