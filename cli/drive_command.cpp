@@ -23,7 +23,6 @@
 
 namespace understudy::cli {
 namespace {
-namespace fs = std::filesystem;
 
 struct DriveOptions {
   PrintRequest print;
@@ -137,6 +136,9 @@ int drive(const DriveOptions& options) {
   const PreparedPrint print = prepare_print(asked);
   if (run) require_rehearsal(options.rehearsal, *run, rehearsed, asked, print);
 
+  if (std::filesystem::is_regular_file(options.record))  // before the machine is woken up
+    throw InputError({options.record},
+                     "it is there already, and nothing is written over it: name another by --record");
   const CountedInterrupts interrupts;
   Driven driven(options, print);
   driven.note(run ? "rehearsal " + run->inputs_sha256 : "without a rehearsal");

@@ -149,6 +149,7 @@ void GcodeSession::accept() {
   const Entry& entry = entries_[accepted_];
   in_flight_ -= std::min(in_flight_, framed(entry).size());
   ++accepted_;
+  accepted_at_ = link_.now();
   resends_ = probes_ = idle_reports_ = 0;
   if (entry.role == Role::ask) settle_rest();
 }
@@ -205,6 +206,11 @@ void GcodeSession::take_status(const ControllerStatus& status) {
   if (status.planner_free) planner_size_ = std::max(planner_size_, *status.planner_free);
   const bool empty = !status.planner_free || *status.planner_free == planner_size_;
   idle_reports_ = status.state == "Idle" && empty ? idle_reports_ + 1 : 0;
+  if (idle_reports_ >= kIdleReports && accepted_ < sent_ &&
+      link_.now() - accepted_at_ > options_.reply_time + entries_[accepted_].duration)
+    return fail(Fault::drive,
+                fmt::format("the controller is idle and does not answer '{}': bytes of it are lost",
+                            entries_[accepted_].text));
   if (status.line && *status.line > 0) {
     const auto running =
         std::find_if(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(accepted_),
@@ -291,6 +297,7 @@ void GcodeSession::send_lines() {
     if (entry.number == 0) entry.number = ++numbers_;
     if (!may_send(entry)) return;
     if (entry.role == Role::ask) position_fresh_ = false;
+    if (accepted_ == sent_) accepted_at_ = link_.now();
     const std::string line = framed(entry);
     in_flight_ += line.size();
     outgoing_ += line;

@@ -104,6 +104,7 @@ class GcodeSession {
   int idle_reports_ = 0;          ///< in a row, since the last line was accepted
   std::string outgoing_, incoming_;
   double heard_ = 0, polled_ = 0;  ///< [s], link's clock
+  double accepted_at_ = 0;         ///< [s], the last line, or since when there is one to be accepted
   std::vector<double> work_offset_;
   int planner_size_ = 0;  ///< blocks, the most that were ever free
   std::uint64_t executed_ = 0;

@@ -1,13 +1,19 @@
+#include <fcntl.h>
 #include <libserialport.h>
+#include <termios.h>
 
+#include <cerrno>
 #include <chrono>
 #include <string>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "drivers/gcode/byte_link.h"
+#include "drivers/gcode/descriptor_link.h"
 
 namespace understudy::drivers {
 namespace {
@@ -23,9 +29,7 @@ std::string last_error() {
 
 class SerialLink : public ByteLink {
  public:
-  SerialLink(const PortUri& uri, int baud) : device_(uri.place) {
-    if (sp_get_port_by_name(device_.c_str(), &port_) != SP_OK)
-      throw InputError(fmt::format("{}: {} is no serial device", uri.text, device_));
+  SerialLink(sp_port* port, std::string device, int baud) : device_(std::move(device)), port_(port) {
     if (sp_open(port_, SP_MODE_READ_WRITE) != SP_OK) {
       const std::string why = last_error();
       sp_free_port(port_);
@@ -85,11 +89,28 @@ class SerialLink : public ByteLink {
   Clock::time_point begin_ = Clock::now();
 };
 
+/// A pseudo-terminal, behind which a program plays the controller: libserialport knows devices alone.
+std::unique_ptr<ByteLink> open_terminal(const PortUri& uri) {
+  Descriptor file(::open(uri.place.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.is_open())
+    throw InputError(fmt::format("{}: {}: {}", uri.text, uri.place, std::generic_category().message(errno)));
+  termios settings{};
+  if (::tcgetattr(file.get(), &settings) != 0)
+    throw InputError(fmt::format("{}: {} is no serial device", uri.text, uri.place));
+  ::cfmakeraw(&settings);
+  ::tcsetattr(file.get(), TCSANOW, &settings);
+  return std::make_unique<DescriptorLink>(std::move(file), DescriptorLink::Kind::terminal, uri.place);
+}
+
 }  // namespace
 
 std::unique_ptr<ByteLink> open_serial_link(const PortUri& uri) {
   if (uri.place.empty()) throw InputError(uri.text + ": name the device, such as serial:///dev/ttyACM0");
-  return std::make_unique<SerialLink>(uri, static_cast<int>(uri.number("baud", 115200, 300, 20e6)));
+  const int baud = static_cast<int>(uri.number("baud", 115200, 300, 20e6));
+  sp_port* port = nullptr;
+  if (sp_get_port_by_name(uri.place.c_str(), &port) == SP_OK)
+    return std::make_unique<SerialLink>(port, uri.place, baud);
+  return open_terminal(uri);
 }
 
 }  // namespace understudy::drivers

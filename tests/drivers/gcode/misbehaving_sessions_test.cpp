@@ -197,6 +197,13 @@ void expect_nothing_lost_in(std::uint64_t first, int count) {
   testing::Test::RecordProperty("faulted", tally.faulted);
 }
 
+TEST(MisbehavingSessions, ALineThatIsLostInTheBufferOfTheControllerIsAFault) {
+  // An `ok` too many, after which a second line did not fit into the 128 bytes: its end was lost.
+  Tally tally;
+  expect_nothing_lost(10053, tally);
+  EXPECT_EQ(tally.faulted, 1);
+}
+
 TEST(MisbehavingSessions, NoBlockIsLostRepeatedOrReordered) { expect_nothing_lost_in(1, 300); }
 
 TEST(SlowMisbehavingSessions, NoBlockIsLostRepeatedOrReorderedInTenThousand) {

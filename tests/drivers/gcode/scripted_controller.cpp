@@ -183,7 +183,7 @@ void ScriptedController::obey(const std::string& words) {
   }
   if (words == "M115")
     say(setup_.firmware == Firmware::marlin
-            ? "FIRMWARE_NAME:Marlin 2.1.2 (Feb 2023) PROTOCOL_VERSION:1.0"
+            ? "FIRMWARE_NAME:Marlin 2.1.2 PROTOCOL_VERSION:1.0"
             : "FIRMWARE_NAME: RepRapFirmware for Duet 3 FIRMWARE_VERSION: 3.5.1");
   if (words == "M114")
     say(coordinates(" ", setup_.firmware == Firmware::marlin ? 2 : 3, true) +
