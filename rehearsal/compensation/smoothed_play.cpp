@@ -7,19 +7,31 @@
 namespace understudy::rehearsal {
 namespace {
 
-constexpr int kTaps = 10;        // on each side: a reach of 4 mm is looked at every 0.4 mm
-constexpr double kGain = 0.5;    // towards the newest prediction
-constexpr double kNoWay = 1e-9;  // [m]
+constexpr int kTaps = 10;          // on each side: a reach of 4 mm is looked at every 0.4 mm
+constexpr double kGain = 0.5;      // towards the newest prediction
+constexpr double kSmooth = 0.866;  // cosine of the corner that ends a run
+constexpr double kNoWay = 1e-9;    // [m]
 
 }  // namespace
 
 SmoothedPlay::SmoothedPlay(const toolpath::Program& original, const Pose& X_WT_home, double reach)
     : reach_(reach) {
-  Vec3 at = X_WT_home.translation();
+  Vec3 at = X_WT_home.translation(), direction = Vec3::Zero();
+  double path = 0;
+  auto kind = toolpath::StepKind::end;
   for (const toolpath::Step& step : original.steps) {
-    const bool moves = toolpath::moves(step);
-    lengths_.push_back(moves ? (step.X_WT.translation() - at).norm() : 0);
-    if (moves) at = step.X_WT.translation();
+    const Vec3 way = toolpath::moves(step) ? Vec3(step.X_WT.translation() - at) : Vec3::Zero();
+    const double length = way.norm();
+    const bool goes_on = length < kNoWay || (step.kind == kind && way.dot(direction) > kSmooth * length);
+    if (runs_.empty() || !goes_on) runs_.push_back({path, path});
+    begins_.push_back(path);
+    lengths_.push_back(length);
+    run_.push_back(runs_.size() - 1);
+    runs_.back().end = path += length;
+    if (length < kNoWay) continue;
+    direction = way / length;
+    kind = step.kind;
+    at = step.X_WT.translation();
   }
 }
 
@@ -37,15 +49,23 @@ Twist SmoothedPlay::at(std::size_t step, double fraction) const {
 
 Twist SmoothedPlay::averaged(const PlayAlongPath& play, std::size_t step, double fraction) const {
   if (lengths_[step] < kNoWay) return play.at(step, fraction);
+  const Run& run = runs_[run_[step]];
+  const double path = begins_[step] + fraction * lengths_[step];
   Twist sum = Twist::Zero();
   double weights = 0;
   for (int i = -kTaps; i <= kTaps; ++i) {
     const double weight = 1 + std::cos(std::numbers::pi * i / (kTaps + 1));
-    const double beside = fraction + reach_ * i / kTaps / lengths_[step];
-    sum += weight * play.at(step, std::clamp(beside, 0.0, 1.0));
+    sum += weight * at_path(play, std::clamp(path + reach_ * i / kTaps, run.begin, run.end));
     weights += weight;
   }
   return sum / weights;
+}
+
+Twist SmoothedPlay::at_path(const PlayAlongPath& play, double path) const {
+  const auto next = std::ranges::upper_bound(begins_, path);
+  const auto step = static_cast<std::size_t>(next - begins_.begin()) - 1;
+  const double fraction = lengths_[step] < kNoWay ? 1 : (path - begins_[step]) / lengths_[step];
+  return play.at(step, std::min(fraction, 1.0));
 }
 
 }  // namespace understudy::rehearsal

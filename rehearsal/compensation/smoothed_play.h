@@ -11,8 +11,9 @@ namespace understudy::rehearsal {
 
 class SmoothedPlay {
  public:
-  /// `reach` [m] of path on both sides of a place, within its step, over which it is averaged with a raised
-  /// cosine. `original` starts at `X_WT_home`.
+  /// `reach` [m] of path on both sides of a place, up to the next sharp corner (30 degrees) or change between
+  /// printing and travelling, over which it is averaged with a raised cosine. `original` starts at
+  /// `X_WT_home`.
   SmoothedPlay(const toolpath::Program& original, const Pose& X_WT_home, double reach);
 
   /// Goes half of the way to another prediction, of a program with the correction so far; all of it to the
@@ -22,10 +23,17 @@ class SmoothedPlay {
   Twist at(std::size_t step, double fraction) const;
 
  private:
+  /// Steps that go on smoothly. [m], along the program's path
+  struct Run {
+    double begin = 0, end = 0;
+  };
   Twist averaged(const PlayAlongPath& play, std::size_t step, double fraction) const;
+  Twist at_path(const PlayAlongPath& play, double path) const;
 
   double reach_;
-  std::vector<double> lengths_;  // [m], of the steps
+  std::vector<double> begins_, lengths_;  // [m], of the steps
+  std::vector<std::size_t> run_;          // of each step
+  std::vector<Run> runs_;
   std::vector<PlayAlongPath> plays_;
 };
 

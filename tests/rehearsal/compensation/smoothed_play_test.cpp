@@ -39,6 +39,31 @@ TEST(SmoothedPlay, AStepBecomesARampOfTwiceItsReach) {
   }
 }
 
+TEST(SmoothedPlay, ShortStepsThatGoOnAreOneWayAndASharpCornerEndsIt) {
+  // Ten steps of 1 mm straight on, then one across; the play crosses between the fifth and the sixth.
+  toolpath::Program program;
+  toolpath::Step step;
+  step.kind = toolpath::StepKind::print;
+  for (int i = 1; i <= 10; ++i) {
+    step.X_WT.translation() = Vec3(1e-3 * i, 0, 0);
+    program.steps.push_back(step);
+  }
+  step.X_WT.translation() = Vec3(10e-3, 5e-3, 0);
+  program.steps.push_back(step);
+  SmoothedPlay smooth(program, Pose::Identity(), 4e-3);
+  PlayAlongPath play;
+  Twist none = Twist::Zero(), some = Twist::Zero(), other = Twist::Zero();
+  some[2] = 80e-6;
+  other[2] = -80e-6;
+  for (std::size_t i = 0; i < 10; ++i)
+    for (const double at : {0.001, 1.0}) play.add({i, at}, i < 5 ? none : some);
+  for (const double at : {0.001, 1.0}) play.add({10, at}, other);
+  smooth.add(play);
+  EXPECT_NEAR(smooth.at(4, 1)[2], 40e-6, 5e-6) << "half in the middle, but for the tap that falls on it";
+  EXPECT_GT(smooth.at(3, 0.5)[2], 1e-6) << "over the joints of steps";
+  EXPECT_NEAR(smooth.at(9, 0.5)[2], 80e-6, 1e-9) << "what comes behind the corner does not count";
+}
+
 TEST(SmoothedPlay, EachFurtherPredictionCountsHalf) {
   SmoothedPlay smooth(one_line(0.1), Pose::Identity(), 1e-3);
   smooth.add(crossing(80e-6));
