@@ -17,13 +17,13 @@ const { chromium } = createRequire(pathToFileURL(resolve(web, 'package.json')))(
 const browser = await chromium.launch({ executablePath: program, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
 const shown = await browser.newPage({ viewport: { width: Number(width), height: Number(height) }, colorScheme });
 shown.on('pageerror', (error) => console.error(String(error)));
-await shown.goto(pathToFileURL(resolve(page)).href);
+await shown.goto(pathToFileURL(resolve(page)).href, { timeout: 180000 });
 await shown.waitForSelector('#page[data-ready]');
-// Half-way through the print, at the tool: what the page is for.
+// Well into the print: what the page is for.
 await shown.evaluate(() => {
   const scrub = document.querySelector('.scrub');
   if (!scrub) return;
-  scrub.value = String(0.5 * Number(scrub.min) + 0.5 * Number(scrub.max));
+  scrub.value = String(0.2 * Number(scrub.min) + 0.8 * Number(scrub.max));
   scrub.dispatchEvent(new Event('input'));
 });
 await shown.waitForTimeout(1500);

@@ -103,25 +103,27 @@ class Sweeper {
     if (is_blob(bead)) {
       close();
       stretches_.push_back({end_of(bead)});
-      last_at_ = static_cast<double>(bead.laid_at);
+      note(bead, static_cast<double>(bead.laid_at));
       return;
     }
     const Vec3 along = wide(bead.to_W) - wide(bead.from_W);
-    const BeadSection start = start_of(bead, open_.empty() ? begun_at(bead) : open_.back().laid_at);
+    const BeadSection start = start_of(bead, begun_at(bead));
     // They meet half-way, where each is off by half of what parts them.
     const bool goes_on = !open_.empty() && difference(open_.back(), start) <= 2 * tolerance_ &&
                          mitre_error(along_, along, start.width) <= tolerance_;
     if (goes_on) {
-      const std::int32_t line = open_.back().line;
-      open_.back() = between(open_.back(), start, 0.5);
-      open_.back().line = line;
+      const BeadSection joint = open_.back();
+      open_.back() = between(joint, start, 0.5);
+      open_.back().laid_at = joint.laid_at;
+      open_.back().line = joint.line;
     } else {
       close();
       open_ = {start};
+      not_before_ = last_at_;
     }
     open_.push_back(end_of(bead));
     along_ = along;
-    last_at_ = static_cast<double>(bead.laid_at);
+    note(bead, start.laid_at);
   }
 
   /// What comes next begins anew.
@@ -137,8 +139,22 @@ class Sweeper {
   }
 
  private:
-  /// A bead states the time of its end only: it begins when the one before ended, but for travel between.
-  double begun_at(const Bead& bead) const { return std::min(last_at_, static_cast<double>(bead.laid_at)); }
+  /// A bead states the time of its end only: it was begun when the one before ended, or, behind a travel, as
+  /// long before as it takes at the speed of what was laid last.
+  double begun_at(const Bead& bead) const {
+    const double end = static_cast<double>(bead.laid_at);
+    const double length = (wide(bead.to_W) - wide(bead.from_W)).norm();
+    if ((wide(bead.from_W) - end_W_).norm() < static_cast<double>(bead.width)) return std::min(last_at_, end);
+    return speed_ > 0 ? std::max(std::min(last_at_, end), end - length / speed_) : end;
+  }
+
+  void note(const Bead& bead, double begun_at) {
+    const double end = static_cast<double>(bead.laid_at);
+    const double length = (wide(bead.to_W) - wide(bead.from_W)).norm();
+    if (end > begun_at && length > 0) speed_ = length / (end - begun_at);
+    last_at_ = end;
+    end_W_ = wide(bead.to_W);
+  }
 
   /// The first bead was laid about as fast as the second; what is left of its time was travel.
   void begin_later() {
@@ -146,15 +162,16 @@ class Sweeper {
     const double took = two.laid_at - one.laid_at, length = (two.middle_W - one.middle_W).norm();
     if (length > 0)
       open_[0].laid_at =
-          std::max(open_[0].laid_at, one.laid_at - took * (one.middle_W - open_[0].middle_W).norm() / length);
+          std::max(not_before_, one.laid_at - took * (one.middle_W - open_[0].middle_W).norm() / length);
   }
 
   SweepSettings settings_;
   double tolerance_;
   std::vector<BeadStretch> stretches_;
   BeadStretch open_;
-  Vec3 along_{0, 0, 0};
-  double last_at_ = 0;
+  Vec3 along_{0, 0, 0}, end_W_{HUGE_VAL, 0, 0};
+  double last_at_ = 0, speed_ = 0;  // of the last bead
+  double not_before_ = 0;           // of the open stretch
 };
 
 struct Frame {

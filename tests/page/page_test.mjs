@@ -20,6 +20,7 @@ async function open(name, options = {}) {
   const { init, allow, ...context } = options;
   const held = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...context });
   const page = await held.newPage();
+  page.setDefaultTimeout(120000);  // beside other work a browser takes long
   page.faults = [];
   page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text())) page.faults.push(message.text()); });
   page.on('pageerror', (error) => page.faults.push(String(error)));

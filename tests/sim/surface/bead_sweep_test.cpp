@@ -160,6 +160,18 @@ TEST(BeadSweep, AStepOfWidthACornerAndABlobBeginAnew) {
   EXPECT_EQ(sweep_beads(beads, half).size(), 2u);
 }
 
+// 10 mm/s, then 5 s of travel: what is laid behind it does not grow while the tool travels there.
+TEST(BeadSweep, ABeadBehindATravelBeginsWhenTheTravelEnds) {
+  BeadIndex beads;
+  beads.add(bead({0, 0, 0}, {10e-3, 0, 0}, 0.5e-3, 0.2e-3, 21));
+  beads.add(bead({10e-3, 0, 0}, {20e-3, 0, 0}, 0.5e-3, 0.2e-3, 22));
+  beads.add(bead({0, 50e-3, 0}, {10e-3, 50e-3, 0}, 0.5e-3, 0.2e-3, 28));
+  const auto stretches = sweep_beads(beads);
+  ASSERT_EQ(stretches.size(), 2u);
+  EXPECT_NEAR(stretches[0].front().laid_at, 20, 1e-6) << "the first is as fast as the second";
+  EXPECT_NEAR(stretches[1].front().laid_at, 27, 1e-6);
+}
+
 // Of the 60 mm of an arc, chords within 2 um of a radius of 10 mm span 0.40 mm: 150 of them, and one section
 // more.
 TEST(BeadSweep, AFineArcBecomesChordsWithinTheTolerance) {

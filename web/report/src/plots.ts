@@ -255,6 +255,8 @@ function plot(report: Report, trace: Trace, chart: Chart, host: HTMLElement, clo
     u.over.append(now);
     clock.onTime(place);
   }
+  // The edges of what is believed stand for one thing, which the note names.
+  if (chart.belief) for (const row of [...host.querySelectorAll<HTMLElement>('.u-legend .u-series')].slice(-2)) row.hidden = true;
   host.setAttribute('role', 'group');
   host.setAttribute('aria-label', chart.title);
   new ResizeObserver(() => { if (host.clientWidth && Math.abs(host.clientWidth - u.width) > 1) { u.setSize({ width: host.clientWidth, height: 240 }); place(); } }).observe(host);
