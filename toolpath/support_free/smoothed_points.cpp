@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kFewest = 5;  // third differences of fewer say nothing
 // Weight of the third differences against the distance moved: at the lightest two neighbours hardly feel each
 // other, at the heaviest a parabola goes through some sixty.
-constexpr double kLightest = 1e-3, kHeaviest = 1e6;
+constexpr double kLightest = 1e-6, kHeaviest = 1e6;
 constexpr int kHalvings = 40;
 constexpr double kHeld = 1e6;  // weight of the ends
 

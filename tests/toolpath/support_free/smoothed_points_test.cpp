@@ -33,13 +33,14 @@ double roughest_turn(const std::vector<Vec3>& points) {
 }
 
 // 8 um to and fro, as a mesh whose rings are 2 mm apart has them on an arc of 30 mm: turns of 1 mm / 30 mm
-// are 1.9 degrees +- 1.8; smoothed they are within a twentieth of it.
+// are 1.9 degrees +- 1.8; smoothed they are within a twentieth of
+// it. The ends of the row stay where the ripple has them, 8 um off, which bends the rest by some 2 um.
 TEST(SmoothedPoints, TakeOutWhatFacetsMakeOfAnArc) {
   const auto points = arc(60, 8e-6);
   EXPECT_GT(roughest_turn(points), 0.03);
   const auto smooth = smoothed_points(points, 20e-6);
   EXPECT_LT(roughest_turn(smooth), 0.05 * 1e-3 / kRadius);
-  for (std::size_t i = 5; i + 5 < smooth.size(); ++i) EXPECT_NEAR(smooth[i].norm(), kRadius, 1.5e-6) << i;
+  for (std::size_t i = 5; i + 5 < smooth.size(); ++i) EXPECT_NEAR(smooth[i].norm(), kRadius, 3e-6) << i;
 }
 
 TEST(SmoothedPoints, StayWithinTheToleranceAndKeepTheEnds) {
