@@ -146,14 +146,14 @@ TEST_F(HalFeedTest, KeepsTheLeadAndRestsWithoutTime) {
 }
 
 TEST_F(HalFeedTest, SendsARowForEachPeriodThatPasses) {
-  ASSERT_EQ(feed_.submit(there_and_back(5e-3, 300), kNever), Status::ok);
-  ASSERT_EQ(wait(0.4), Status::ok);
-  EXPECT_EQ(feed_.state().executed, 300U);
+  ASSERT_EQ(feed_.submit(there_and_back(5e-3, 1200), kNever), Status::ok);
+  ASSERT_EQ(wait(1.3), Status::ok);
+  EXPECT_EQ(feed_.state().executed, 1200U);
   EXPECT_FALSE(feed_.state().moving);
   std::size_t first = 0;
   while (hal_.received[first].position[0] == 10e-3) ++first;
-  const auto setpoints = there_and_back(5e-3, 300);
-  for (std::size_t i = 0; i < 300; ++i)
+  const auto setpoints = there_and_back(5e-3, 1200);
+  for (std::size_t i = 0; i < 1200; ++i)
     ASSERT_NEAR(hal_.received[first + i].position[0], setpoints[i].position[0], 1e-12) << i;
 }
 

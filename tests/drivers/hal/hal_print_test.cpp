@@ -17,19 +17,19 @@ using machine::Fault;
 
 constexpr int kMoves = 360;
 
-/// A helix of beads about the middle of the work space, the tool tilted by 5 degrees towards where it goes;
+/// A helix of beads about the middle of the work space, the tool tilted by 2 degrees towards where it goes;
 /// the fan changes every 40 moves, for which the machine comes to rest.
 toolpath::Program helix(const machine::MachineDescription& machine) {
   toolpath::Program program;
   program.file = "helix.gcode";
   const Pose X_WT_home = machine.X_WB * machine.X_BT_home;
   for (int i = 0; i <= kMoves; ++i) {
-    const double turn = 0.1 * i;
+    const double turn = 0.02 * i;
     toolpath::Step step;
     step.kind = i == 0 ? toolpath::StepKind::travel : toolpath::StepKind::print;
     step.X_WT = X_WT_home;
-    step.X_WT.translation() += Vec3(2e-3 * std::cos(turn), 2e-3 * std::sin(turn), -10e-6 * i);
-    step.X_WT.linear() = exp_rotation(0.087 * Vec3(-std::sin(turn), std::cos(turn), 0)) * X_WT_home.linear();
+    step.X_WT.translation() += Vec3(10e-3 * std::cos(turn), 10e-3 * std::sin(turn), -10e-6 * i);
+    step.X_WT.linear() = exp_rotation(0.035 * Vec3(-std::sin(turn), std::cos(turn), 0)) * X_WT_home.linear();
     step.feed = 15e-3;
     step.filament = i == 0 ? 0 : 20e-6;
     step.line = i + 1;

@@ -1,6 +1,7 @@
 // What was asked of a port, and whether HAL's sampler received it: every period once and in order.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <iomanip>
@@ -127,11 +128,13 @@ inline std::size_t expect_received(const std::vector<std::vector<double>>& sampl
       return matched;
     }
     if (matched > 1 && matched < rows.size()) {
-      // A pause: the axes must have rested, by what was asked for.
-      double motion = 0;
-      for (std::size_t i = 0; i < n; ++i)
-        motion = std::max(motion, std::abs(rows[matched - 1][i] - rows[matched - 2][i]));
-      EXPECT_LT(motion, 2e-9) << "setpoint " << matched << " was repeated in motion";
+      // A pause: by what was asked for, the axes rested before it or rest after it.
+      double before_it = 0, after_it = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        before_it = std::max(before_it, std::abs(rows[matched - 1][i] - rows[matched - 2][i]));
+        after_it = std::max(after_it, std::abs(rows[matched][i] - rows[matched - 1][i]));
+      }
+      EXPECT_LT(std::min(before_it, after_it), 2e-9) << "setpoint " << matched << " was repeated in motion";
     }
   }
   return matched;
