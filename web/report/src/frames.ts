@@ -4,7 +4,7 @@ import { format } from './format';
 import type { Clock } from './clock';
 import type { Frame, Report } from './record';
 
-const kWindow = 96;  // [px] of the sensor that a small picture shows about its dot
+const kWindow = 64;  // [px] of the sensor that a small picture shows about its dot
 
 export function drawFrames(report: Report): HTMLElement | null {
   if (report.frames.length === 0) return null;
