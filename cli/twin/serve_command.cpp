@@ -15,6 +15,7 @@
 #include "cli/twin/compensation_commands.h"
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
+#include "control/program/gcode_options.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
@@ -56,7 +57,7 @@ class StopBySignal {
 
 rehearsal::ServedProgram receive(const ServeCall& call) {
   const auto machine = machine::load_machine(call.request.machine);
-  const auto options = rehearsal::gcode_options(call.request.dialect, machine);
+  const auto options = control::gcode_options(call.request.dialect, machine);
   const auto line = rehearsal::open_serve_line(rehearsal::parse_serve_address(call.port, call.network));
   rehearsal::ServeOptions serving;
   serving.dialect = call.dialect;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "control/motion/constraint_check.h"
+#include "control/program/gcode_options.h"
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
@@ -35,7 +36,7 @@ class Compensator {
       : input_(input), request_(request), progress_(progress) {
     if (request.dialect.turn_deg != 0 || request.dialect.spin_deg != 0)
       throw InputError("--turn and --spin: a compensated program stays where its own words put it");
-    options_ = gcode_options(request.dialect, input.nominal);
+    options_ = control::gcode_options(request.dialect, input.nominal);
     original_ = toolpath::parse_gcode(input.text, input.file, options_);
     lines_ = toolpath::lines_that_place(input.text, input.file, options_);
     home_ = input.nominal.X_WB * input.nominal.X_BT_home;
