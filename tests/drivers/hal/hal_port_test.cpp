@@ -132,7 +132,6 @@ TEST_F(HalPortTest, HoldsResumesAndAStopLoseAndRepeatNoSetpoint) {
   const auto rows = remembering.rows(hal.settings().cycle);
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(expect_received(received.samples(), rows, hal.settings()), rows.size());
-  EXPECT_EQ(port->counts().underruns, 0U);
   std::printf("%d runs, %d holds, one stop: %zu setpoint rows, none lost, none repeated\n", kHoldRuns, holds,
               rows.size());
 }
