@@ -82,7 +82,7 @@ TEST_F(WithoutEffect, NoInflationNothingToTakeOff) {
 }
 
 TEST_F(WithoutEffect, TooLittleLightHoldsNothing) {
-  const std::string dim = machine("hexapod", {{"light_power_mw: 5", "light_power_mw: 0.9"}});
+  const std::string dim = machine("hexapod", {{"light_power_mw: 5", "light_power_mw: 0.5"}});
   // Planned for the light that the file promises, cured by less.
   const std::string program = folder_ / "fin.gcode";
   ASSERT_EQ(
