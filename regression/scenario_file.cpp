@@ -46,7 +46,10 @@ std::string name_or_path(YamlMap& map, const std::string& key, const fs::path& f
   if (!is_path(text, extension)) return text;
   const fs::path path = (folder / text).lexically_normal();
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) map.fail(key, key + " " + path.string() + " does not exist");
+  // A machine with another of its tools: hexapod.yaml+cutter.
+  const fs::path file = path.string().substr(0, path.string().rfind('+'));
+  if (!fs::exists(path, ignored) && !(key == "machine" && fs::exists(file, ignored)))
+    map.fail(key, key + " " + path.string() + " does not exist");
   return path.string();
 }
 
