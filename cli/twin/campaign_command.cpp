@@ -36,7 +36,7 @@ studies::CampaignTools tools() {
   studies::CampaignTools tools;
   tools.plan = write_planned;
   tools.planner_options = planner_options;
-  tools.plan_sha256 = plan_sha256;
+  tools.plan_sha256 = sources_sha256;
   tools.summary_json = report::summary_json;
   return tools;
 }

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
+#include "cli/dialect_options.h"
 #include "cli/machine_option.h"
 #include "cli/progress.h"
 #include "cli/twin/compensation_commands.h"

@@ -10,6 +10,7 @@
 
 #include "control/compensation/command_map.h"
 #include "control/print.h"
+#include "control/program/gcode_options.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -129,7 +130,7 @@ CompensatedPrint one_machine(const CompensationStudyRequest& request, const Mach
   asked.reference = request.driven ? rehearsal::PlayReference::rest : rehearsal::PlayReference::middle;
   const rehearsal::Compensation done =
       rehearsal::compensate({drawn, lab.machine, lab.calibrated, text, kFile}, asked);
-  const auto options = rehearsal::gcode_options({}, drawn);
+  const auto options = control::gcode_options({}, drawn);
   const toolpath::Program original = toolpath::parse_gcode(text, kFile, options);
   const Pose home = drawn.X_WB * drawn.X_BT_home;
   const toolpath::RewrittenPath itself(original, original, text, home);

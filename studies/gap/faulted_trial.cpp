@@ -25,7 +25,9 @@ constexpr double kToAnswer = 0.8;
 constexpr double kStepMin = 0.01e-3, kStepMax = 5e-3;  // [s]
 
 rehearsal::RunOptions options_of(FaultedTask task) {
-  return {task == FaultedTask::approach ? GapControl::start : GapControl::continuous, true, false};
+  rehearsal::RunOptions options;
+  options.gap_control = task == FaultedTask::approach ? GapControl::start : GapControl::continuous;
+  return options;
 }
 
 GapStop stop_of(const control::PrintResult& result) {
