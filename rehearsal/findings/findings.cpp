@@ -161,9 +161,15 @@ Finding high_start_finding(const sim::UnsupportedStretch& loose, double limit) {
   return f;
 }
 
+/// A line that is cured over something near, and does not reach it: it was to lie there, not to span.
+bool light_falls_short(const sim::UnsupportedStretch& loose, const TwinSetup& setup) {
+  return setup.cure && loose.adhesion == sim::Adhesion::unsupported &&
+         loose.worst_gap <= setup.machine.gap.accepted_max;
+}
+
 void add_strand_findings(const TwinRun& run, const TwinSetup& setup, std::vector<Finding>& findings) {
   for (const auto& loose : run.loose)
-    if (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose))
+    if (light_falls_short(loose, setup) || (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose)))
       findings.push_back(loose_finding(loose, setup));
     else if (begins_too_high(loose))
       findings.push_back(high_start_finding(loose, loose.highest_gap));

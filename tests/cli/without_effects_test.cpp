@@ -81,5 +81,21 @@ TEST_F(WithoutEffect, NoInflationNothingToTakeOff) {
               fails("removal.volume_mm3"));
 }
 
+TEST_F(WithoutEffect, TooLittleLightHoldsNothing) {
+  // 0.5 mW at 2 mm/s: Dp ln(E / Ec) = 0.185 mm, where the layers are 0.21 to 0.25 mm high.
+  const std::string dim = machine("hexapod", {{"light_power_mw: 5", "light_power_mw: 0.5"}});
+  // Planned for the light that the file promises, cured by less.
+  const std::string program = folder_ / "fin.gcode";
+  ASSERT_EQ(
+      understudy("plan surface bottle --tilt -20 20 --layers 8 --feed 2 --machine hexapod+light-guide -o " +
+                 program)
+          .status,
+      0);
+  EXPECT_THAT(
+      run("song-cnc-accumulation", {{"machine: hexapod\\+light-guide", "machine: " + dim + "+light-guide"},
+                                    {"plan: [^\n]*", "program: " + program}}),
+      fails("findings.adhesion.count"));
+}
+
 }  // namespace
 }  // namespace understudy::cli_test
