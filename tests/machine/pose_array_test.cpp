@@ -64,8 +64,8 @@ TEST_P(PoseArray, RowsAreSolvedAsSingleCallsSolveThem) {
   EXPECT_GT(solved, 200);
 }
 INSTANTIATE_TEST_SUITE_P(Machines, PoseArray, testing::Values("hexapod", "arm", "five-axis", "delta"),
-                         [](const auto& info) {
-                           return info.param == "five-axis" ? "fiveaxis" : info.param;
+                         [](const auto& made) {
+                           return made.param == "five-axis" ? "fiveaxis" : made.param;
                          });
 
 TEST(PoseArray, TheNumberOfThreadsChangesNoBit) {
