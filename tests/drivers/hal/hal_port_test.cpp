@@ -138,7 +138,7 @@ TEST_F(HalPortTest, HoldsResumesAndAStopLoseAndRepeatNoSetpoint) {
 
 TEST_F(HalPortTest, AControllerThatIsLaterThanTheLeadGetsAStickyUnderrunAndMayGoOn) {
   const HalMachine hal;
-  const auto port = hal.open();
+  const auto port = hal.open(0.3);
   ASSERT_EQ(port->state().fault, Fault::none) << port->fault_text();
   HalRecorder done(hal, 3);
   const auto start = port->state().position;
@@ -163,6 +163,15 @@ TEST_F(HalPortTest, AControllerThatIsLaterThanTheLeadGetsAStickyUnderrunAndMayGo
   // v^2 / 2a of its 2.2 m/s2, and the periods until HAL sees that no row comes.
   EXPECT_GT(beyond, 0.0);
   EXPECT_LT(beyond, 31.5 * 31.5 / (2 * 2200) + 31.5 * 3e-3);
+}
+
+/// Within 5 s: rows under way and braking come first.
+bool becomes(const char* signal, const std::string& value) {
+  for (int k = 0; k < 100; ++k) {
+    if (RunningHal::command({"gets", signal}) == value) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
 }
 
 TEST_F(HalPortTest, FaultsOfTheMachineAreNamedStickyAndCleared) {
@@ -190,7 +199,7 @@ TEST_F(HalPortTest, FaultsOfTheMachineAreNamedStickyAndCleared) {
     EXPECT_EQ(port->wait_until(port->now() + 5), Status::faulted) << c.signal;
     EXPECT_EQ(port->state().fault, c.fault) << c.signal;
     EXPECT_THAT(port->fault_text(), testing::HasSubstr(c.text));
-    EXPECT_EQ(RunningHal::command({"gets", "drives-on"}), "FALSE\n") << "it has braked and is off";
+    EXPECT_TRUE(becomes("drives-on", "FALSE\n")) << "it has braked and is off";
     EXPECT_EQ(RunningHal::command({"gets", "nozzle-setpoint"}), "0\n");
     EXPECT_EQ(port->urgent(UrgentCommand::clear_fault), Status::faulted) << c.signal << " still stands";
     RunningHal::command({"sets", c.signal, c.released});
