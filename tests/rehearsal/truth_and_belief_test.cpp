@@ -36,7 +36,10 @@ TwinSetup bottle() {
 TwinRun run(TwinSetup setup, control::GapControl gap_control = control::GapControl::start) {
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
-  return run_twin(setup, {gap_control, false}, {});
+  RunOptions options;
+  options.gap_control = gap_control;
+  options.watch_collisions = false;
+  return run_twin(setup, options, {});
 }
 
 /// `believe` changes what the controller holds of a machine whose truth stays as it was drawn.

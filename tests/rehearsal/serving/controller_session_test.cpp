@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rehearsal/program/program_reading.h"
+#include "control/program/gcode_options.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -18,7 +18,7 @@ using ::testing::StartsWith;
 struct Sender {
   explicit Sender(const std::string& dialect)
       : machine(machine::load_machine("hexapod")),
-        served(machine, gcode_options({}, machine), planner_blocks(dialect)),
+        served(machine, control::gcode_options({}, machine), planner_blocks(dialect)),
         session(make_session(dialect, served)) {}
 
   /// Sends, and hears what comes by `seconds` later.
