@@ -70,7 +70,9 @@ void run(std::size_t moves) {
   setup.engine = "quasistatic";
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  const auto result = rehearsal::run_twin(setup, {control::GapControl::off, true}, {});
+  rehearsal::RunOptions options;
+  options.gap_control = control::GapControl::off;
+  const auto result = rehearsal::run_twin(setup, options, {});
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double used = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   const auto& laid = result.deposition;
