@@ -70,9 +70,9 @@ void run(std::size_t moves) {
   setup.engine = "quasistatic";
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  rehearsal::RunOptions options;
-  options.gap_control = control::GapControl::off;
-  const auto result = rehearsal::run_twin(setup, options, {});
+  rehearsal::RunOptions run;
+  run.gap_control = control::GapControl::off;
+  const auto result = rehearsal::run_twin(setup, run, {});
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double used = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   const auto& laid = result.deposition;
