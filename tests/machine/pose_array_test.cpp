@@ -25,7 +25,9 @@ Rows rows_about_home(const MachineDescription& machine, std::size_t count) {
   Random random(1, "pose array");
   Rows rows;
   for (std::size_t n = 0; n < count; ++n) {
-    const Vec3 turn = uniform_vec3(random, 0.2), way = uniform_vec3(random, 0.04);
+    Vec3 turn = uniform_vec3(random, 0.2);
+    const Vec3 way = uniform_vec3(random, 0.04);
+    if (machine.mechanism == "delta") turn.setZero();  // its rods keep it upright
     const Pose X = machine.X_WB * machine.X_BT_home * make_pose(exp_rotation(turn), way);
     rows.numbers.resize(kPoseNumbers * (n + 1));
     kinematics::write_pose(X, &rows.numbers[kPoseNumbers * n]);

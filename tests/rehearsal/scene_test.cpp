@@ -10,6 +10,7 @@ namespace {
 toolpath::Step step(toolpath::StepKind kind, double x) {
   toolpath::Step s;
   s.kind = kind;
+  s.line = 1;
   s.X_WT.translation() = Vec3(x, 0, 0);
   return s;
 }

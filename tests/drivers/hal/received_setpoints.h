@@ -128,13 +128,16 @@ inline std::size_t expect_received(const std::vector<std::vector<double>>& sampl
       return matched;
     }
     if (matched > 1 && matched < rows.size()) {
-      // A pause: by what was asked for, the axes rested before it or rest after it.
+      // A pause: by what was asked for, the axes rested before it or rest after it. Where a hold ends as it
+      // comes to rest, the row beside it is a braking's first or last: 30 mm/s in 0.1 s, half a (1 ms)^2.
+      constexpr double kRowFromRest = 0.5 * (30e-3 * 1.1 / machine::kBrakingTime) * 1e-6;  // [m]
       double before_it = 0, after_it = 0;
       for (std::size_t i = 0; i < n; ++i) {
         before_it = std::max(before_it, std::abs(rows[matched - 1][i] - rows[matched - 2][i]));
         after_it = std::max(after_it, std::abs(rows[matched][i] - rows[matched - 1][i]));
       }
-      EXPECT_LT(std::min(before_it, after_it), 2e-9) << "setpoint " << matched << " was repeated in motion";
+      EXPECT_LT(std::min(before_it, after_it), kRowFromRest)
+          << "setpoint " << matched << " was repeated in motion";
     }
   }
   return matched;

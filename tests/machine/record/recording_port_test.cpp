@@ -70,7 +70,7 @@ TEST(RecordingPort, WritesEverythingThatGoesThroughToTheLastBit) {
   EXPECT_EQ(submit.answer, Status::ok);
   ASSERT_EQ(submit.setpoints.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
-    const Setpoint &read = submit.setpoints[i], &put = two_setpoints()[i];
+    const Setpoint &read = submit.setpoints[i], put = two_setpoints()[i];
     EXPECT_EQ(read.time, put.time);
     EXPECT_EQ(read.position, put.position);
     EXPECT_EQ(read.velocity, put.velocity);
@@ -134,7 +134,7 @@ TEST(RecordingPort, PythonReadsARecordWithoutUs) {
                               (folder / "a.record").string() + "' > '" + (folder / "out").string() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   const std::string said = read_file(folder / "out");
-  EXPECT_THAT(said, testing::HasSubstr("note program_sha256 abc\nsubmit 0.0 ok 2\n  setpoint 0.1 0 0.1 "));
+  EXPECT_THAT(said, testing::HasSubstr("note program_sha256 abc\nsubmit 0.0 ok 2\n  setpoint 0.10000000000000002 0 0.1 "));
   EXPECT_THAT(said,
               testing::HasSubstr("setpoint 0.3333333333333333 1187 0.1 -0.14285714285714285 1e-300 0.25"));
   EXPECT_THAT(said, testing::HasSubstr("executed 0 of 2"));
