@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <regex>
+#include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -236,10 +238,16 @@ TEST(Rehearse, TheRecordKeepsTheVersionsOfTheLibraries) {
   const auto& libraries = summary["provenance"]["libraries"];
   for (const auto& [library, version] : libraries.items())
     EXPECT_THAT(doctor, testing::ContainsRegex("lib  " + library + " +" + version.get<std::string>()));
-  // What reads the command line and what draws in a browser have no part in a result.
-  std::size_t printed = 0;
-  for (std::size_t at = 0; (at = doctor.find("\nlib  ", at)) != std::string::npos; ++at) ++printed;
-  EXPECT_EQ(libraries.size() + 2, printed);
+  // What reads the command line, packs a page and draws it in a browser has no part in a result.
+  const std::set<std::string> without_part{"CLI11", "zlib", "fflate", "three", "uplot"};
+  std::istringstream lines(doctor);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word, library;
+    if (words >> word >> library && word == "lib" && !without_part.contains(library)) {
+      EXPECT_TRUE(libraries.contains(library)) << library;
+    }
+  }
 }
 
 TEST(Rehearse, APartAsPrintedMayLieAmongTheResults) {

@@ -16,6 +16,7 @@ class RecordedOnTrial : public PortOnTrial {
         }) {
     range = options().ranges[0];
     capacity = 2000;
+    clock_step = 0.5e-3;  // while it brakes, as the loopback port; exact otherwise
   }
   MachinePort& port() override { return recorded_; }
   void lose_frames(bool lost) override { lost_ = lost; }
