@@ -57,13 +57,13 @@ def _words(key: str, value: Value) -> list[str]:
         return [option] if value else []
     if isinstance(value, (str, os.PathLike)):
         return [option, _path(value)]
-    if isinstance(value, Sequence) or hasattr(value, "__array__"):
-        several = [_path(one) if isinstance(one, (str, os.PathLike)) else repr(float(one)) for one in value]
-        # Words are options that may be given again; numbers are the coordinates of one.
-        if several and isinstance(value[0], (str, os.PathLike)):
-            return [word for one in several for word in (option, one)]
-        return [option, ",".join(several)] if key == "place" else [option, *several]
-    return [option, repr(value)]
+    if isinstance(value, (int, float)) or not hasattr(value, "__len__"):
+        return [option, repr(value)]
+    several = [_path(one) if isinstance(one, (str, os.PathLike)) else repr(float(one)) for one in value]
+    # Words are options that may be given again; numbers are the coordinates of one.
+    if several and isinstance(value[0], (str, os.PathLike)):
+        return [word for one in several for word in (option, one)]
+    return [option, ",".join(several)] if key == "place" else [option, *several]
 
 
 def _path(word: str | os.PathLike[str]) -> str:

@@ -89,7 +89,7 @@ TEST_F(Drive, RefusesWhatWasNotRehearsed) {
   refused(bottle + " --rehearsal " + own_.path().string(), "summary.json");
   refused(bottle + with + " --gap-control start", "another --gap-control");
   refused(bottle + with + " --place 0,0,1", "another --place");
-  refused(bottle + with + " --fixture box", "--fixture");
+  refused(bottle + with + " --fixture crown", "--fixture");
   refused(bottle + with + " --machine arm", "another machine file");
   const std::string changed =
       own_.write("changed.gcode", read_file(kSource + "/scenarios/song-bottle.gcode") + "; more\n");
