@@ -34,7 +34,7 @@ def faults_of(bill, libraries, files):
             yield f"{part['name']} has no licence"
         if not re.match(r"[0-9]", part.get("version", "")) or not re.match("pkg:(deb/debian|npm)/", part["purl"]):
             yield f"{part['name']} has no version or no package URL"
-    names = {part["name"] for part in parts if part["purl"].startswith("pkg:deb/")}
+    names = {part["name"] for part in parts if not part["purl"].startswith("pkg:npm/")}
     known = {file for name in names for file in files(name)}
     for library in libraries:
         if library not in known:
