@@ -144,7 +144,7 @@ struct Provenance {
   std::string machine_before_sha256 = {};
   std::string inputs_sha256 = {};   ///< of all inputs (input_digest.h)
   std::string fixture_sha256 = {};  ///< of the part's file; empty: without one
-  LibraryVersions libraries = {};  ///< that may have a part in the result
+  LibraryVersions libraries = {};   ///< that may have a part in the result
 };
 
 /// A strand in air as the report lists it.

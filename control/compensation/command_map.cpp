@@ -23,8 +23,7 @@ constexpr double kDifference = 1e-6;   // [m] or [rad], for a slope
 }  // namespace
 
 CommandMap::CommandMap(const machine::MachineDescription& nominal, const machine::MachineDescription& known)
-    : machine_(nominal),
-      nominal_(nominal.make_mechanism()),
+    : nominal_(nominal.make_mechanism()),
       known_(known.make_mechanism()),
       X_WB_(nominal.X_WB),
       X_BW_(nominal.X_WB.inverse()),

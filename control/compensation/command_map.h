@@ -38,7 +38,6 @@ class CommandMap {
   kinematics::SolveStatus put_tip_right(const Pose& X_BT, kinematics::AxisVector& axes) const;
   kinematics::AxisVector shifted(const kinematics::AxisVector& axes, double sign) const;
 
-  const machine::MachineDescription& machine_;
   std::unique_ptr<kinematics::Mechanism> nominal_, known_;
   Pose X_WB_, X_BW_;
   kinematics::AxisVector zero_;  ///< known less nominal

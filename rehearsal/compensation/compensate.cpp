@@ -28,7 +28,7 @@ namespace {
 // which the planner brakes; and braking pushes plays about.
 constexpr double kSmoothing[] = {4e-3, 2e-3};
 constexpr double kNoGain = 0.02;  // of the error; less is not worth another path
-constexpr int kRounds = 3;  // for each; more of them move the error by its own scatter only
+constexpr int kRounds = 3;        // for each; more of them move the error by its own scatter only
 
 class Compensator {
  public:
@@ -66,7 +66,9 @@ class Compensator {
       Compensation now;
       SmoothedPlay correction(original_, home_, reach);
       for (int k = 0; k < kRounds; ++k) {
-        if (progress_) progress_(0.1 + 0.9 * round / (static_cast<double>(kRounds * std::size(kSmoothing))), "predicting play");
+        if (progress_)
+          progress_(0.1 + 0.9 * round / (static_cast<double>(kRounds * std::size(kSmoothing))),
+                    "predicting play");
         correction.add(predicted(from->program, from->text, built).play);
         now =
             written([&](std::size_t step, double fraction) { return Twist(-correction.at(step, fraction)); });

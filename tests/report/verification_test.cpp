@@ -1,5 +1,5 @@
-#include "report/recorded_run.h"
 #include "report/verification.h"
+#include "report/recorded_run.h"
 
 #include <filesystem>
 

@@ -86,7 +86,8 @@ TEST(ChangedFile, ValuesAreReadAsChanged) {
 TEST(ChangedFile, AnUnknownKeyIsRefusedWithTheNearestOne) {
   EXPECT_THAT(read("{gap.aim_m: 0.15}").error, HasSubstr("unknown key 'gap.aim_m', did you mean 'aim_mm'?"));
   EXPECT_THAT(read("{gapp.aim_mm: 0.15}").error, HasSubstr("unknown key 'gapp', did you mean 'gap'?"));
-  EXPECT_THAT(read("{axes.c.play_um: 1}").error, HasSubstr("no item of the list is named 'c'; its items are 1..2 or a, b"));
+  EXPECT_THAT(read("{axes.c.play_um: 1}").error,
+              HasSubstr("no item of the list is named 'c'; its items are 1..2 or a, b"));
   EXPECT_THAT(read("{axes.3.play_um: 1}").error, HasSubstr("item 3 is outside 1..2"));
   EXPECT_THAT(read("{gap.aim_mm.x: 1}").error, HasSubstr("'x' is below a value, where no key is"));
 }

@@ -134,7 +134,8 @@ TEST(RecordingPort, PythonReadsARecordWithoutUs) {
                               (folder / "a.record").string() + "' > '" + (folder / "out").string() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   const std::string said = read_file(folder / "out");
-  EXPECT_THAT(said, testing::HasSubstr("note program_sha256 abc\nsubmit 0.0 ok 2\n  setpoint 0.10000000000000002 0 0.1 "));
+  EXPECT_THAT(said, testing::HasSubstr(
+                        "note program_sha256 abc\nsubmit 0.0 ok 2\n  setpoint 0.10000000000000002 0 0.1 "));
   EXPECT_THAT(said,
               testing::HasSubstr("setpoint 0.3333333333333333 1187 0.1 -0.14285714285714285 1e-300 0.25"));
   EXPECT_THAT(said, testing::HasSubstr("executed 0 of 2"));
