@@ -9,8 +9,9 @@
 
 namespace understudy::drivers {
 
-/// By scheme: loopback://, serial://, tcp://. The description must outlive the port. Throws InputError for a URI that no driver
-/// understands, naming what is wrong in it, and MachineError for a machine that does not answer.
+/// By scheme: loopback://, serial://, tcp://, hal://. The description must outlive the port. Throws
+/// InputError for a URI that no driver understands, naming what is wrong in it, and MachineError for a
+/// machine that does not answer.
 std::unique_ptr<machine::MachinePort> open_port(const std::string& uri,
                                                 const machine::MachineDescription& machine);
 
