@@ -26,8 +26,9 @@ TEST(GcodeLineReader, ReadsLineByLineWhatTheWholeTextGives) {
 
 TEST(GcodeLineReader, ALineThatFailsLeavesNothingBehindWhereThatIsAskedFor) {
   const std::string file = "p.gcode";
+  const GcodeOptions options;
   std::vector<Step> steps;
-  GcodeLineReader reader(file, {}, steps);
+  GcodeLineReader reader(file, options, steps);
   reader.read("G1 X1 F600", 1);
   EXPECT_THROW(reader.read_or_undo("G91 G1 X5 R1", 2), InputError) << "R belongs to no command here";
   EXPECT_THROW(reader.read_or_undo("M428", 3), InputError) << "an unknown word, told at once";
