@@ -27,7 +27,7 @@ struct Samples {
     Vec2 p;    ///< in T
     double z;  ///< in T
   };
-  std::array<Sample, (2 * kHalfGrid + 1) * (2 * kHalfGrid + 1)> at;
+  std::array<Sample, std::size_t{2 * kHalfGrid + 1} * (2 * kHalfGrid + 1)> at;
   std::size_t count = 0, rays = 0;
 
   std::span<const Sample> hits() const { return std::span(at).first(count); }

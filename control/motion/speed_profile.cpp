@@ -18,7 +18,7 @@ struct Bound {
 };
 
 struct Bounds {
-  std::array<Bound, 2 * kChannelsMax> rows;
+  std::array<Bound, std::size_t{2} * kChannelsMax> rows;
   int count = 0;
 
   void add(double A, double B, double C) {

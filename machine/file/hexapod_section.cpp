@@ -62,7 +62,8 @@ void read_geometry(YamlMap& map, MachineDescription& machine) {
       map.quantity("strut_body_radius_mm", {0.1, 100}, "of a strut in collision checks and pictures");
 
   for (int strut = 0; strut < kinematics::kStruts; ++strut) {
-    const double centre = from_deg(120.0 * (strut / 2));
+    const int pair = strut / 2;
+    const double centre = from_deg(120.0 * pair);
     const double side = strut % 2 == 0 ? -1 : 1;
     machine.hexapod().geometry.base_joint[strut] = on_circle(base_radius, centre + side * base_half_angle, 0);
     machine.hexapod().geometry.platform_joint[strut] =

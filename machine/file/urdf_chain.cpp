@@ -17,7 +17,6 @@
 namespace understudy::machine {
 namespace {
 
-using kinematics::Chain;
 using kinematics::ChainAxis;
 using kinematics::kMaxAxes;
 

@@ -32,10 +32,14 @@ class Payload {
     rest_.remove_prefix(sizeof(T));
     return value;
   }
+  /// One of the words up to `last`.
   template <typename Enum>
-  Enum take_word() {
-    return static_cast<Enum>(take<std::uint8_t>());
+  Enum take_word(Enum last) {
+    const auto number = take<std::uint8_t>();
+    if (number > static_cast<std::uint8_t>(last)) spoil();
+    return good_ ? static_cast<Enum>(number) : Enum{};
   }
+  Status take_answer() { return take_word(Status::no_frame); }
   void take_axes(AxisVector& values) {
     for (std::size_t i = 0; i < axes_; ++i) values[i] = take<double>();
   }
@@ -61,7 +65,7 @@ RecordedSubmit read_submit(Payload& payload) {
   RecordedSubmit submit;
   submit.now = payload.take<double>();
   submit.deadline = payload.take<double>();
-  submit.answer = payload.take_word<Status>();
+  submit.answer = payload.take_answer();
   const auto count = payload.take<std::uint32_t>();
   if (!payload.holds(count, (2 + 2 * payload.axes()) * sizeof(double) + sizeof(std::int32_t))) {
     payload.spoil();
@@ -87,7 +91,7 @@ AxisState read_state(Payload& payload) {
   s.executed = payload.take<std::uint64_t>();
   s.free_slots = static_cast<std::size_t>(payload.take<std::uint64_t>());
   s.moving = payload.take<std::uint8_t>() != 0;
-  s.fault = payload.take_word<Fault>();
+  s.fault = payload.take_word(Fault::engine);
   return s;
 }
 
@@ -96,13 +100,17 @@ RecordedFrame read_frame(Payload& payload) {
   read.now = payload.take<double>();
   read.deadline = payload.take<double>();
   read.asked = payload.take_region();
-  read.answer = payload.take_word<Status>();
+  read.answer = payload.take_answer();
   if (read.answer != Status::ok) return read;
   read.frame.exposed_at = payload.take<double>();
   read.frame.received_at = payload.take<double>();
   read.frame.number = payload.take<std::uint64_t>();
   read.frame.image.region = payload.take_region();
   const std::string_view pixels = payload.take_rest();
+  const Region& region = read.frame.image.region;
+  if (region.width < 0 || region.height < 0 ||
+      pixels.size() != static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height))
+    payload.spoil();
   read.frame.image.pixels.assign(pixels.begin(), pixels.end());
   return read;
 }
@@ -122,19 +130,19 @@ std::optional<RecordedEntry> read_entry(RecordKind kind, Payload payload) {
       break;
     case RecordKind::wait: {
       const auto now = payload.take<double>(), until = payload.take<double>(), ended = payload.take<double>();
-      entry = RecordedWait{now, until, ended, payload.take_word<Status>()};
+      entry = RecordedWait{now, until, ended, payload.take_answer()};
       break;
     }
     case RecordKind::urgent: {
       const auto now = payload.take<double>();
-      const auto command = payload.take_word<UrgentCommand>();
-      entry = RecordedUrgent{now, command, payload.take_word<Status>()};
+      const auto command = payload.take_word(UrgentCommand::clear_fault);
+      entry = RecordedUrgent{now, command, payload.take_answer()};
       break;
     }
     case RecordKind::outputs: {
       const auto now = payload.take<double>(), deadline = payload.take<double>();
       const auto temperature = payload.take<double>(), fan = payload.take<double>();
-      entry = RecordedOutputs{now, deadline, {temperature, fan}, payload.take_word<Status>()};
+      entry = RecordedOutputs{now, deadline, {temperature, fan}, payload.take_answer()};
       break;
     }
     case RecordKind::frame:

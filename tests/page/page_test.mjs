@@ -66,6 +66,7 @@ const tests = {
     assert.equal(await page.locator('.causes > ol .severity.error').count(), 2);
     assert.equal(await page.locator('.causes > ol .severity.warning').count(), 1);
     await page.click('summary:has-text("Each of the 30 findings")');
+    await page.locator('.findings tbody tr').first().waitFor();  // rows are made when the part unfolds
     assert.equal(await page.locator('.findings tbody tr').count(), 30);
     await page.click('.findings tbody tr:nth-child(5) button');
     const record = await page.$eval('#record', (node) => JSON.parse(node.textContent));
