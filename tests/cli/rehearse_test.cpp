@@ -59,7 +59,7 @@ TEST(Rehearse, TheSameCommandAndSeedGiveTheSameBytes) {
   EXPECT_NE(read_file(folder / "a/trace.csv"), read_file(folder / "c/trace.csv"));
 }
 
-TEST(Rehearse, ThreadsOfTheRendererDoNotChangeTheBytes) {
+TEST(SlowRehearse, ThreadsOfTheRendererDoNotChangeTheBytes) {
   const Folder folder;
   ::setenv("LP_NUM_THREADS", "1", 1);
   ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "a")).status, 1);

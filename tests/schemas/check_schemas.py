@@ -9,6 +9,7 @@ refused  what a schema refuses the reader refuses too, for slips made on purpose
 """
 
 import argparse
+import collections
 import copy
 import functools
 import json
@@ -24,6 +25,7 @@ import yaml
 KINDS = ("machine", "material", "scenario", "campaign", "golden", "as-built", "fixture", "part-pose", "rig", "columns")
 HEADER = re.compile(r"^# yaml-language-server: \$schema=(\S+)$")
 SLIPS_IN_A_FILE = 5
+FILES_OF_A_KIND = 20
 
 
 class Loader(yaml.SafeLoader):
@@ -113,9 +115,13 @@ def slips(value):
 
 def check_refused(understudy, source):
     tried = 0
+    files = collections.Counter()
     with tempfile.TemporaryDirectory() as folder:
         for path in shipped(source):
             schema = schema_of(path, source)
+            files[schema] += 1
+            if files[schema] > FILES_OF_A_KIND:
+                continue
             value = yaml.load(path.read_text(), Loader)
             for name, slip in slips(value):
                 if validator(schema).is_valid(slip):

@@ -38,7 +38,7 @@ void expect_promise(const CompensationStudy& study) {
 TEST(CompensatedPrints, AHexapodsNominalControllerPrintsAsTheCalibratedOne) {
   expect_promise(study_of("hexapod", 4));
 }
-TEST(CompensatedPrints, AnArmsNominalControllerPrintsAsTheCalibratedOne) {
+TEST(SlowCompensatedPrints, AnArmsNominalControllerPrintsAsTheCalibratedOne) {
   expect_promise(study_of("arm", 4));
 }
 TEST(SlowCompensatedPrints, FiftyHexapods) { expect_promise(study_of("hexapod", 50)); }

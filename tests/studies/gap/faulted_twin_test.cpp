@@ -78,7 +78,7 @@ TEST(FaultedTwin, PrintsDoNotTouchAndTheirStopsNameTheFault) {
   expect_right_answers(request, {1, 2});
 }
 
-TEST(FaultedTwin, ResultsDoNotDependOnThreads) {
+TEST(SlowFaultedTwin, ResultsDoNotDependOnThreads) {
   FaultedTwinRequest request = request_for(FaultedTask::approach, 3, 1);
   request.threads = 1;
   const FaultedTwin one = run_faulted_twin(request);
