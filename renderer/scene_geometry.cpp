@@ -145,7 +145,8 @@ PictureGeometry picture_geometry(const PictureScene& scene) {
   const double metres_per_pixel_at_1m = 2 * std::tan(scene.field_of_view / 2) / scene.height;
   std::vector<std::size_t> shape_ends;
   for (const ColouredShape& coloured : scene.shapes) {
-    const Surface surface = tessellate(coloured.shape, kSegments);
+    const Surface surface =
+        tessellate(coloured.shape, kSegments, coloured.outlined ? Creases::found : Creases::left_out);
     put_surface(g.solids, surface, coloured.colour);
     shape_ends.push_back(g.solids.size());
     if (!coloured.outlined) continue;

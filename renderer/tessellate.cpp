@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <type_traits>
 
 #include "core/units.h"
 
@@ -120,8 +121,6 @@ Surface surface_of(const geometry::Box& box, int) {
   return s;
 }
 
-Surface surface_of(const geometry::MeshShape& shape, int) { return tessellate(*shape.mesh); }
-
 /// A mesh keeps a vertex of a crease once for each side; the first copy stands for all of them here.
 std::vector<int> joined_vertices(const std::vector<Vec3>& vertices) {
   std::map<std::array<double, 3>, int> first;
@@ -159,7 +158,7 @@ void add_creases(Surface& s) {
 
 }  // namespace
 
-Surface tessellate(const geometry::Mesh& mesh) {
+Surface tessellate(const geometry::Mesh& mesh, Creases creases) {
   Surface s;
   s.vertices = mesh.vertices();
   s.triangles = mesh.triangles();
@@ -167,12 +166,19 @@ Surface tessellate(const geometry::Mesh& mesh) {
     const auto normal = [&](int v) { return mesh.vertex_normals()[static_cast<std::size_t>(v)]; };
     s.corner_normals.push_back({normal(a), normal(b), normal(c)});
   }
-  add_creases(s);
+  if (creases == Creases::found) add_creases(s);
   return s;
 }
 
-Surface tessellate(const geometry::Shape& shape, int segments) {
-  Surface s = std::visit([&](const auto& form) { return surface_of(form, segments); }, shape.form);
+Surface tessellate(const geometry::Shape& shape, int segments, Creases creases) {
+  Surface s = std::visit(
+      [&](const auto& form) {
+        if constexpr (std::is_same_v<decltype(form), const geometry::MeshShape&>)
+          return tessellate(*form.mesh, creases);
+        else
+          return surface_of(form, segments);
+      },
+      shape.form);
   transform(s, shape.X_FS);
   return s;
 }

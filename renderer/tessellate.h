@@ -19,10 +19,13 @@ struct Surface {
   std::vector<std::pair<Vec3, Vec3>> creases;       ///< edges worth a line in a picture
 };
 
+/// Looking for the creases of a mesh takes longer than all else.
+enum class Creases { found, left_out };
+
 /// In the frame F of the shape's owner. Round shapes get `segments` sides; a multiple of 4.
-Surface tessellate(const geometry::Shape& shape, int segments);
+Surface tessellate(const geometry::Shape& shape, int segments, Creases creases = Creases::found);
 /// With the mesh's own smooth normals; faces that meet at more than 30 degrees have a crease between them.
-Surface tessellate(const geometry::Mesh& mesh);
+Surface tessellate(const geometry::Mesh& mesh, Creases creases = Creases::found);
 
 void transform(Surface& surface, const Pose& X_AB);
 

@@ -26,36 +26,74 @@ Colour colour_of(const std::string& body) {
 
 /// What a picture of beads can hold; a larger print is drawn coarser.
 constexpr std::size_t kTrianglesMost = 1'500'000;
-constexpr std::array kTolerances{2e-6, 10e-6, 30e-6, 100e-6, 300e-6};  // [m], the first is that of a close-up
+/// Middle lines, sections, corners and chords together are off by no more than so many tolerances.
+constexpr double kOffMost = 3.3;
 
 struct Printed {
   renderer::ColouredShape shape;
-  double within = 0;       ///< [m], by which it may be off in all: middle lines, sections, corners, chords
+  double within = 0;       ///< [m], by which it may be off in all
   std::size_t one_of = 1;  ///< stretch is drawn
 };
 
-/// What was laid by a time.
-std::optional<Printed> printed_shape(const sim::BeadIndex& beads, double by = HUGE_VAL) {
+/// How finely beads are drawn: to `within` [m] close to a point, else to what a pixel shows.
+struct Detail {
+  double pixel = 0;  ///< [m], what one shows where the beads are
+  std::optional<Vec3> close_to_W;
+  double closer_than = 12e-3, within = 6e-6;  ///< [m]
+};
+
+/// Stretches, and the tolerance that they and their sides keep.
+struct Sweep {
   std::vector<sim::BeadStretch> stretches;
   double tolerance = 0;
-  std::size_t triangles = 0;
-  const auto sides = [&](const sim::BeadStretch& stretch) {
-    return sim::sides_within(stretch, 1.3 * tolerance);
-  };
-  for (const double t : kTolerances) {
-    tolerance = t;
-    stretches = sim::sweep_beads(beads, {by, t});
-    triangles = 0;
-    for (const auto& stretch : stretches) triangles += sim::sweep_size(stretch, sides(stretch)).triangles;
-    if (triangles <= kTrianglesMost) break;
+
+  int sides(const sim::BeadStretch& stretch) const { return sim::sides_within(stretch, 1.3 * tolerance); }
+  std::size_t triangles() const {
+    std::size_t count = 0;
+    for (const auto& stretch : stretches) count += sim::sweep_size(stretch, sides(stretch)).triangles;
+    return count;
   }
+};
+
+/// Of the beads chosen; coarser by a factor of three each time, until they are no more triangles than that.
+Sweep sweep_within(const sim::BeadIndex& beads, double by, double error, std::size_t triangles_most,
+                   const std::vector<char>* chosen) {
+  constexpr double kCoarsest = 300e-6;
+  for (double tolerance = error / kOffMost;; tolerance *= 3) {
+    Sweep sweep{sim::sweep_beads(beads, {by, tolerance, HUGE_VAL, chosen}), tolerance};
+    if (tolerance >= kCoarsest || sweep.triangles() <= triangles_most) return sweep;
+  }
+}
+
+Vec3 end_of(const sim::Bead& bead) {
+  return Eigen::Map<const Eigen::Vector3f>(bead.to_W.data()).cast<double>();
+}
+
+/// What was laid by a time, in W.
+std::optional<Printed> printed_shape(const sim::BeadIndex& beads, const Detail& detail,
+                                     double by = HUGE_VAL) {
+  std::vector<Sweep> sweeps;
+  std::vector<char> close(beads.size(), 0), far(beads.size(), 1);
+  if (detail.close_to_W) {
+    for (std::size_t i = 0; i < beads.size(); ++i) {
+      close[i] = (end_of(beads.bead(i)) - *detail.close_to_W).norm() < detail.closer_than;
+      far[i] = !close[i];
+    }
+    sweeps.push_back(sweep_within(beads, by, detail.within, kTrianglesMost / 2, &close));
+  }
+  sweeps.push_back(sweep_within(beads, by, detail.pixel, kTrianglesMost / 2, &far));
+  std::size_t triangles = 0;
+  for (const Sweep& sweep : sweeps) triangles += sweep.triangles();
   const std::size_t stride = triangles / kTrianglesMost + 1;
   sim::BeadMesh shells;
-  for (std::size_t i = 0; i < stretches.size(); i += stride)
-    sim::append_sweep(stretches[i], sides(stretches[i]), shells);
+  for (const Sweep& sweep : sweeps)
+    for (std::size_t i = 0; i < sweep.stretches.size(); i += stride)
+      sim::append_sweep(sweep.stretches[i], sweep.sides(sweep.stretches[i]), shells);
   if (shells.triangles.empty()) return std::nullopt;
   const auto mesh = std::make_shared<geometry::Mesh>(std::move(shells.vertices), std::move(shells.triangles));
-  return Printed{{{"printed", geometry::MeshShape{mesh}}, kFilament, false}, 3.3 * tolerance, stride};
+  return Printed{{{"printed", geometry::MeshShape{mesh}}, kFilament, false},
+                 kOffMost * sweeps.front().tolerance,
+                 stride};
 }
 
 constexpr std::size_t kPathPointsMost = 3000;
@@ -68,14 +106,12 @@ void stand_level(const Pose& X_WO, renderer::PictureScene& drawn) {
     for (Vec3& point : line.points) point = X_OW * point;
 }
 
-renderer::PictureScene build_scene(const rehearsal::Scene& scene) {
+/// Without what was laid.
+renderer::PictureScene machine_and_path(const rehearsal::Scene& scene) {
   renderer::PictureScene drawn;
   for (const auto& shape : scene.bodies) drawn.shapes.push_back({shape, colour_of(shape.name)});
   drawn.shapes.push_back({scene.table, kTable});
   if (scene.part) drawn.shapes.push_back({{"part", geometry::MeshShape{scene.part}}, kPart});
-  if (scene.printed)
-    if (auto printed = printed_shape(scene.printed->beads(), scene.time))
-      drawn.shapes.push_back(printed->shape);
   // What is still to come, as a thin line; of a very long program its next stretches.
   std::size_t points = 0;
   for (const auto& line : scene.path) {
@@ -84,6 +120,15 @@ renderer::PictureScene build_scene(const rehearsal::Scene& scene) {
   }
   if (scene.X_WO) stand_level(*scene.X_WO, drawn);
   return drawn;
+}
+
+void add_printed(const rehearsal::Scene& scene, const Detail& detail, renderer::PictureScene& drawn) {
+  if (!scene.printed) return;
+  auto printed = printed_shape(scene.printed->beads(), detail, scene.time);
+  if (!printed) return;
+  if (scene.X_WO)
+    printed->shape.shape.X_FS = scene.X_WO->inverse(Eigen::Isometry) * printed->shape.shape.X_FS;
+  drawn.shapes.push_back(printed->shape);
 }
 
 struct Ball {
@@ -99,48 +144,71 @@ Ball enclose(const renderer::PictureScene& scene) {
   return {box.center(), 0.5 * box.diagonal().norm()};
 }
 
+constexpr double kView = 30, kCloseView = 26;  // [deg], vertical
+
+/// [m] that a pixel shows at that distance.
+double pixel_at(double distance, double view_deg) {
+  return 2 * std::tan(from_deg(view_deg) / 2) * distance / renderer::PictureScene{}.height;
+}
+
+/// Around the ends of what was laid.
+Eigen::AlignedBox3d box_of(const sim::BeadIndex& beads) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < beads.size(); ++i) box.extend(end_of(beads.bead(i)));
+  return box;
+}
+
 /// What was laid, without the machine.
 std::optional<Illustration> draw_printed_part(const rehearsal::Scene& scene) {
   const sim::BeadIndex& beads = scene.printed->beads();
-  const auto printed = printed_shape(beads);
+  const Eigen::AlignedBox3d box = box_of(beads);
+  const double radius = std::max(3e-3, 0.5 * box.diagonal().norm()), distance = 4.6 * radius;
+  const auto printed = printed_shape(beads, {pixel_at(distance, kCloseView), {}});
   if (!printed) return std::nullopt;
-  const auto& mesh = *std::get<geometry::MeshShape>(printed->shape.shape.form).mesh;
   renderer::PictureScene drawn;
   drawn.shapes.push_back(printed->shape);
   if (scene.part) drawn.shapes.push_back({{"part", geometry::MeshShape{scene.part}}, kPart});
-  drawn.target_W = 0.5 * (mesh.lower() + mesh.upper());
-  const double radius = std::max(3e-3, 0.5 * (mesh.upper() - mesh.lower()).norm());
-  drawn.field_of_view = from_deg(26);
-  drawn.eye_W = drawn.target_W + 4.6 * radius * Vec3(0.55, -0.70, 0.45).normalized();
+  drawn.target_W = box.center();
+  drawn.field_of_view = from_deg(kCloseView);
+  drawn.eye_W = drawn.target_W + distance * Vec3(0.55, -0.70, 0.45).normalized();
   std::string caption =
       fmt::format("As printed: {} beads, drawn to within {:.0f} µm", beads.size(), to_um(printed->within));
   if (printed->one_of > 1) caption += fmt::format(", one stretch of {}", printed->one_of);
   return Illustration{renderer::render_picture(drawn), caption};
 }
 
-renderer::Picture from_afar(renderer::PictureScene drawn) {
+renderer::Picture from_afar(const rehearsal::Scene& scene) {
+  renderer::PictureScene drawn = machine_and_path(scene);
   const Ball around = enclose(drawn);
+  const double distance = 3.5 * around.radius;
+  add_printed(scene, {pixel_at(distance, kView), {}}, drawn);
   drawn.target_W = around.centre;
-  drawn.eye_W = around.centre + 3.5 * around.radius * Vec3(0.62, -0.74, 0.24).normalized();
-  drawn.field_of_view = from_deg(30);
+  drawn.eye_W = around.centre + distance * Vec3(0.62, -0.74, 0.24).normalized();
+  drawn.field_of_view = from_deg(kView);
+  return renderer::render_picture(drawn);
+}
+
+renderer::Picture close_up(const rehearsal::Scene& scene) {
+  const Vec3 seen_from(0.055, -0.075, 0.028);
+  const Vec3 tip_W = scene.X_WT.translation();
+  renderer::PictureScene drawn = machine_and_path(scene);
+  add_printed(scene, {pixel_at(seen_from.norm(), kCloseView), tip_W}, drawn);
+  const Vec3 tip = scene.X_WO ? Vec3(scene.X_WO->inverse(Eigen::Isometry) * tip_W) : tip_W;
+  drawn.target_W = tip + Vec3(0, 0, 2e-3);
+  drawn.eye_W = drawn.target_W + seen_from;
+  drawn.field_of_view = from_deg(kCloseView);
   return renderer::render_picture(drawn);
 }
 
 }  // namespace
 
-renderer::Picture draw_overview(const rehearsal::Scene& scene) { return from_afar(build_scene(scene)); }
+renderer::Picture draw_overview(const rehearsal::Scene& scene) { return from_afar(scene); }
 
 std::vector<Illustration> draw_scene(const rehearsal::Scene& scene) {
   std::vector<Illustration> pictures;
-  renderer::PictureScene near = build_scene(scene);
-  pictures.push_back({from_afar(near), scene.simulated ? "Machine and part at the middle of the print"
-                                                       : "Machine at home; nothing was simulated"});
-  const Vec3 tip = scene.X_WO ? Vec3(scene.X_WO->inverse(Eigen::Isometry) * scene.X_WT.translation())
-                              : Vec3(scene.X_WT.translation());
-  near.target_W = tip + Vec3(0, 0, 2e-3);
-  near.eye_W = near.target_W + Vec3(0.055, -0.075, 0.028);
-  near.field_of_view = from_deg(26);
-  pictures.push_back({renderer::render_picture(near), "The tool on the path"});
+  pictures.push_back({from_afar(scene), scene.simulated ? "Machine and part at the middle of the print"
+                                                        : "Machine at home; nothing was simulated"});
+  pictures.push_back({close_up(scene), "The tool on the path"});
   if (scene.printed && scene.printed->beads().size() > 0)
     if (auto printed = draw_printed_part(scene)) pictures.push_back(std::move(*printed));
   return pictures;
