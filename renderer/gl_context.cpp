@@ -219,6 +219,7 @@ GlVertices::GlVertices(const GlFunctions& gl, const std::vector<int>& layout) : 
     const auto index = static_cast<GLuint>(i);
     gl.VertexAttribPointer(index, layout[i], GL_FLOAT, GL_FALSE,
                            stride_ * static_cast<GLsizei>(sizeof(float)),
+                           // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes an offset there
                            reinterpret_cast<const void*>(offset * sizeof(float)));
     gl.EnableVertexAttribArray(index);
     offset += static_cast<std::size_t>(layout[i]);

@@ -29,6 +29,7 @@ namespace understudy::renderer {
 // clang-format on
 
 struct GlFunctions {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a member's name takes none
 #define UNDERSTUDY_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
   UNDERSTUDY_GL_FUNCTIONS(UNDERSTUDY_GL_MEMBER)
 #undef UNDERSTUDY_GL_MEMBER
