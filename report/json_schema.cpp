@@ -22,6 +22,7 @@ struct Choice {
 };
 
 /// Something that holds when all choices are answered so.
+// NOLINTNEXTLINE(bugprone-exception-escape): of Json, which says that it does not throw where it moves
 struct Rule {
   std::vector<Choice> when;
   Json value;

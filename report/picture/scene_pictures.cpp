@@ -76,8 +76,9 @@ std::optional<Printed> printed_shape(const sim::BeadIndex& beads, const Detail& 
   std::vector<char> close(beads.size(), 0), far(beads.size(), 1);
   if (detail.close_to_W) {
     for (std::size_t i = 0; i < beads.size(); ++i) {
-      close[i] = (end_of(beads.bead(i)) - *detail.close_to_W).norm() < detail.closer_than;
-      far[i] = !close[i];
+      const bool is_close = (end_of(beads.bead(i)) - *detail.close_to_W).norm() < detail.closer_than;
+      close[i] = is_close ? 1 : 0;
+      far[i] = is_close ? 0 : 1;
     }
     sweeps.push_back(sweep_within(beads, by, detail.within, kTrianglesMost / 2, &close));
   }

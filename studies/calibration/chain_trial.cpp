@@ -125,7 +125,7 @@ class ChainTrials : public TrialRunner {
     // Metres and radians are told apart by their own sizes.
     const Eigen::VectorXd scale = H.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(scale.asDiagonal() * H * scale.asDiagonal());
-    const Eigen::VectorXd values = parts.eigenvalues();
+    const Eigen::VectorXd& values = parts.eigenvalues();
     Eigen::VectorXd inverse = Eigen::VectorXd::Zero(values.size());
     for (Eigen::Index k = 0; k < values.size(); ++k)
       if (values[k] > 1e-10 * values[values.size() - 1]) inverse[k] = 1 / values[k];

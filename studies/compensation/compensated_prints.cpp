@@ -27,7 +27,6 @@ namespace understudy::studies {
 namespace {
 
 using kinematics::AxisVector;
-using kinematics::elements;
 using machine::MachineDescription;
 
 constexpr double kSide = 30;  // [mm], of the raster
