@@ -85,7 +85,56 @@ void change(YAML::Node root, const ChangedValue& value, const std::string& file)
   }
 }
 
+/// Where the value of `key` stands in `root`; a node that is not defined where its whole section is missing.
+YAML::Node standing(const YAML::Node& root, const std::string& key, const std::string& file) {
+  const Way way(key, file);
+  YAML::Node at = root;
+  bool first = true;
+  for (const std::string& part : parts_of(key)) {
+    const YAML::Node& looked = at;
+    if (at.IsSequence()) {
+      at.reset(at[way.index_in(at, part)]);
+    } else if (!at.IsMap()) {
+      way.fail(fmt::format("'{}' is below a value, where no key is", part));
+    } else if (looked[part].IsDefined()) {
+      at.reset(at[part]);
+    } else if (first) {
+      return YAML::Node(YAML::NodeType::Undefined);
+    } else {
+      way.fail("does not stand in the file, so it cannot be written there: add it to a copy of the file");
+    }
+    first = false;
+  }
+  return at;
+}
+
+/// Lines of a section that was not there.
+std::string section_of(const ChangedValue& value) {
+  std::string lines, indent;
+  for (const std::string& part : parts_of(value.first)) {
+    lines += (lines.empty() ? "" : "\n") + indent + part + ":";
+    indent += "  ";
+  }
+  return lines + " " + value.second + "\n";
+}
+
+std::string with_value(std::string text, const ChangedValue& value, const std::string& file) {
+  const YAML::Node at = standing(YAML::Load(text), value.first, file);
+  if (!at.IsDefined()) return text + (text.ends_with('\n') ? "" : "\n") + section_of(value);
+  const auto begin = static_cast<std::size_t>(at.Mark().pos);
+  const std::string before = at.IsScalar() ? at.Scalar() : "";
+  if (before.empty() || text.compare(begin, before.size(), before) != 0)
+    Way(value.first, file).fail("is no plain word or number in the file, so it cannot be changed there");
+  return text.replace(begin, before.size(), value.second);
+}
+
 }  // namespace
+
+std::string changed_text(const std::string& text, const ChangedFile& changed, const std::string& file) {
+  std::string now = text;
+  for (const ChangedValue& value : changed.changes) now = with_value(now, value, file);
+  return now;
+}
 
 void change_values(YAML::Node& root, const ChangedFile& changed, const std::string& file) {
   for (const ChangedValue& value : changed.changes) change(root, value, file);

@@ -27,4 +27,9 @@ ChangedFile changed_file(const std::string& word);
 /// The word with further changes; a key that it changes already is changed to the new value.
 std::string with_change(const std::string& word, const std::string& key, const std::string& value);
 
+/// The text of the file with its changes in place; all else, comments too, stays as it is. Throws InputError,
+/// which begins with `file`, where change_values() would, for a key that is not there within a section that
+/// is, and for a value that is no plain word.
+std::string changed_text(const std::string& text, const ChangedFile& changed, const std::string& file);
+
 }  // namespace understudy

@@ -5,11 +5,19 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
+#include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
 #include "machine/file/urdf_section.h"
 
 namespace understudy::machine {
 namespace fs = std::filesystem;
+
+std::string machine_file_text(const fs::path& file) {
+  const ChangedFile changed = changed_file(file.string());
+  std::error_code ignored;
+  if (changed.changes.empty() || fs::is_regular_file(file, ignored)) return read_file(file);
+  return changed_text(read_file(changed.file), changed, changed.file);
+}
 
 std::string urdf_named_in(const std::string& text, const fs::path& file) {
   struct Seen {};  // the other keys are not of interest here
@@ -41,7 +49,7 @@ bool is_there(const fs::path& from, const fs::path& to, const fs::path& original
 }  // namespace
 
 std::optional<StagedFile> staged_urdf(const fs::path& original, const fs::path& path) {
-  const std::string urdf = urdf_named_in(read_file(original), original);
+  const std::string urdf = urdf_named_in(machine_file_text(original), original);
   if (urdf.empty() || fs::path(urdf).is_absolute()) return std::nullopt;
   const fs::path from = fs::absolute(original).parent_path() / urdf,
                  to = fs::absolute(path).parent_path() / urdf;
@@ -57,7 +65,7 @@ std::vector<std::unique_ptr<StagedFile>> staged_companions(const fs::path& origi
   const fs::path folder = fs::absolute(original).parent_path(), place = fs::absolute(path).parent_path();
   std::error_code error;
   if (fs::equivalent(folder, place, error)) return staged;
-  const std::vector<fs::path> files = files_named_in(read_file(original), original);
+  const std::vector<fs::path> files = files_named_in(machine_file_text(original), original);
   for (std::size_t i = 1; i < files.size(); ++i) {  // the first is the URDF
     const fs::path name = files[i].lexically_relative(folder);
     if (name.empty() || *name.begin() == "..") continue;

@@ -11,6 +11,10 @@
 
 namespace understudy::machine {
 
+/// The bytes of a machine file, with the changes of `FILE{key: value}` in place. Throws InputError as
+/// changed_text() does.
+std::string machine_file_text(const std::filesystem::path& file);
+
 /// `geometry.urdf` of the machine file's text; empty where it names none.
 std::string urdf_named_in(const std::string& text, const std::filesystem::path& file);
 

@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "core/file/output_file.h"
-#include "core/file/read_file.h"
 #include "machine/file/beside_machine.h"
 #include "machine/model_files.h"
 
@@ -55,7 +54,7 @@ void check_machine_output(const std::filesystem::path& path) {
 StagedFile staged_with_section(const std::filesystem::path& original, const std::string& section,
                                const std::filesystem::path& path) {
   check_machine_output(path);
-  const std::string text = with_section(read_file(original), section);
+  const std::string text = with_section(machine_file_text(original), section);
   try {
     // A URDF is read where it lies: beside `path` it may be still to come (beside_machine.h).
     const bool urdf = !urdf_named_in(text, original).empty();

@@ -59,6 +59,15 @@ TEST(Calibrate, TheSampleIsWhatItsFirstLineSays) {
   EXPECT_EQ(rows(read_file(folder / "s.csv")), rows(read_file(kSample)));
 }
 
+TEST(Calibrate, ChangedValuesOfTheMachineAreInTheFileThatItWrites) {
+  const Folder folder;
+  const Outcome outcome = understudy("calibrate " + kSample + " --machine 'hexapod{gap.aim_mm: 0.1437}' -o " +
+                                     (folder / "m.yaml"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(read_file(folder / "m.yaml"), HasSubstr("\n  aim_mm: 0.1437\n"));
+  EXPECT_EQ(understudy("schema machine --check " + (folder / "m.yaml")).status, 0);
+}
+
 TEST(Calibrate, AnArmHasTheRobustEstimatorToo) {
   const Folder folder;
   const std::string poses = folder / "poses.csv",

@@ -51,6 +51,33 @@ TEST(ChangedFile, RefusesWhatIsNoValue) {
               HasSubstr("changed values are told as FILE{key: value, ...}"));
 }
 
+constexpr const char* kText =
+    "# a machine\naxes:\n  - {name: j1, play_um: 10}  # turns\n  - {name: j2, play_um: 20}\ngap:\n  aim_mm: "
+    "0.13\n";
+
+std::string text_with(const std::string& changes) {
+  return changed_text(kText, changed_file("m.yaml{" + changes + "}"), "m.yaml");
+}
+
+TEST(ChangedText, HoldsTheValuesAndEverythingElseAsItWas) {
+  EXPECT_EQ(text_with("axes.j1.play_um: 15, gap.aim_mm: 0.1456, axes.2.play_um: 7"),
+            "# a machine\naxes:\n  - {name: j1, play_um: 15}  # turns\n  - {name: j2, play_um: 7}\ngap:\n  "
+            "aim_mm: 0.1456\n");
+}
+
+TEST(ChangedText, GainsASectionThatWasNotThere) {
+  EXPECT_EQ(text_with("gap_control.approach.step_fraction: 0.4"),
+            std::string(kText) + "gap_control:\n  approach:\n    step_fraction: 0.4\n");
+}
+
+TEST(ChangedText, RefusesWhatItCouldOnlyGuessAt) {
+  EXPECT_THAT(error_of([] { text_with("gap.floor_mm: 0.1"); }),
+              HasSubstr("m.yaml: gap.floor_mm: does not stand in the file, so it cannot be written there"));
+  EXPECT_THAT(error_of([] { text_with("gap: 0.1"); }),
+              HasSubstr("gap: is no plain word or number in the file"));
+  EXPECT_THAT(error_of([] { text_with("axes.3.play_um: 1"); }), HasSubstr("item 3 is outside 1..2"));
+}
+
 /// What a reader finds of a file whose word changes values.
 struct Found {
   double aim = 0, second = 0, play = 0;
