@@ -36,6 +36,7 @@ void add_errors(py::module_& module) {
                           "where, None where there is no such place. The command ends with status 2.");
   machine_error = add_error(module, "MachineError", PyExc_RuntimeError,
                             "The machine or the engine failed. The command ends with status 3.");
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 gives its translators a copy
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -17,7 +17,6 @@
 namespace understudy::python {
 namespace {
 
-using kinematics::Mechanism;
 using kinematics::SolveStatus;
 
 constexpr SolveStatus kStatuses[] = {SolveStatus::ok, SolveStatus::unreachable, SolveStatus::singular,

@@ -170,8 +170,10 @@ Words take_faults(const Option& option, const py::handle& value, RehearsalReques
   return words;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a lambda
 #define FIELD(path) \
   [](RehearsalRequest & r) -> auto& { return r.path; }
+// NOLINTEND(bugprone-macro-parentheses)
 
 const std::vector<Option>& options_known() {
   static const std::vector<Option> known{

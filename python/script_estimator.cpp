@@ -139,6 +139,7 @@ Answer answer_of(const py::object& returned, Eigen::Index count) {
 class ScriptEstimator final : public Estimator {
  public:
   explicit ScriptEstimator(py::object script) : script_(std::move(script)) {}
+  // NOLINTNEXTLINE(bugprone-exception-escape): letting go of an object throws nothing
   ~ScriptEstimator() override {
     const py::gil_scoped_acquire with_lock;
     script_ = py::object();
