@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -12,7 +13,9 @@
 #include "cli/print_request.h"
 #include "cli/progress.h"
 #include "control/preflight.h"
+#include "control/resume/resumed_program.h"
 #include "core/counted_interrupts.h"
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "core/version.h"
@@ -26,7 +29,7 @@ namespace {
 
 struct DriveOptions {
   PrintRequest print;
-  std::string port, rehearsal, record = "drive.record";
+  std::string port, rehearsal, record = "drive.record", resume;
   bool without_rehearsal = false;
 };
 
@@ -90,6 +93,18 @@ class DriveProgress : public control::PrintObserver {
   ProgressLine line_;
 };
 
+/// A digest of the poses and feeds that are printed: what options of the path make of the program.
+std::string path_digest(const PreparedPrint& print) {
+  std::string bytes;
+  for (const toolpath::Step& step : print.program.steps) {
+    const Eigen::Matrix4d X = step.X_WT.matrix();
+    bytes.append(reinterpret_cast<const char*>(X.data()), sizeof(double) * 16);
+    for (const double value : {step.feed, step.duration, step.filament})
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  return sha256_hex(bytes);
+}
+
 void check_before(const PreparedPrint& print, Driven& driven) {
   const auto checks = control::preflight(print.program, print.machine, driven.port(), print.gap_control);
   std::string refused;
@@ -110,8 +125,43 @@ void check_before(const PreparedPrint& print, Driven& driven) {
   throw MachineError(said + "; heater and fan are off");
 }
 
-control::PrintResult print_on(const PreparedPrint& print, Driven& driven) {
+/// Where the print goes on that a record tells of; nothing of another print is resumed.
+control::Restart restart_of(const std::string& file, const PreparedPrint& print,
+                            const std::optional<report::RecordedRun>& run) {
+  const control::CutRecord cut = control::read_cut_record(file, print.program);
+  const auto same = [&](const char* key, const std::string& now, const char* what) {
+    if (cut.note(key) != now)
+      throw InputError({file},
+                       fmt::format("it is the record of another {} than now: it is not resumed", what));
+  };
+  same("program_sha256", print.program.sha256, "program");
+  same("machine_sha256", print.machine.sha256, "machine file or calibration");
+  same("fixture_sha256", print.fixture_sha256, "--fixture");
+  same("rehearsal", run ? run->inputs_sha256 : "", "--rehearsal");
+  same("path_sha256", path_digest(print), "--place, --turn, or other option of the path");
+  if (std::ranges::find(cut.notes, "completed") != cut.notes.end())
+    throw InputError({file}, "its print is complete: nothing is left to print");
+  std::optional<control::Restart> begun;
+  if (const std::string words = cut.note("resumed"); !words.empty()) {
+    begun = control::restart_of_words(words, print.program);
+    if (!begun) throw InputError({file}, "its note 'resumed " + words + "' is no step of the program");
+  }
+  control::Restart restart =
+      control::restart_after(cut, file, print.program, print.machine, print.part.get(), begun);
+  if (print.gap_control == control::GapControl::off) restart.offset_W.setZero();
+  fmt::print("resumes {}:{} with {:.1f} % of its step laid\n", print.program.file,
+             print.program.steps[restart.step].line, 100 * restart.done);
+  if (cut.laid.queued > 0)
+    fmt::print(
+        "  the record ends without a stop: the machine may have gone on for {:.2f} s; look at the part\n",
+        cut.laid.queued);
+  return restart;
+}
+
+control::PrintResult print_on(const PreparedPrint& print, const std::optional<control::Restart>& restart,
+                              Driven& driven) {
   control::PrintOptions options;
+  if (restart) options.offset_W = restart->offset_W;
   options.gap_control = print.gap_control;
   options.part = print.part.get();
   DriveProgress progress;
@@ -133,17 +183,29 @@ int drive(const DriveOptions& options) {
     rehearsed = rehearsed_request(run->command);
     asked = given_over(rehearsed, command_line());
   }
-  const PreparedPrint print = prepare_print(asked);
+  PreparedPrint print = prepare_print(asked);
   if (run) require_rehearsal(options.rehearsal, *run, rehearsed, asked, print);
 
   if (std::filesystem::is_regular_file(options.record))  // before the machine is woken up
     throw InputError({options.record},
                      "it is there already, and nothing is written over it: name another by --record");
+  std::optional<control::Restart> restart;
+  const std::string path = path_digest(print);
+  if (!options.resume.empty()) {
+    restart = restart_of(options.resume, print, run);
+    print.program =
+        control::resumed_program(print.program, print.machine, print.part.get(), *restart).program;
+  }
   const CountedInterrupts interrupts;
   Driven driven(options, print);
+  driven.note("path_sha256 " + path);
+  if (restart) {
+    driven.note("resumed " + control::restart_words(*restart));
+    driven.note("resumed_from " + options.resume);
+  }
   driven.note(run ? "rehearsal " + run->inputs_sha256 : "without a rehearsal");
   check_before(print, driven);
-  const control::PrintResult result = print_on(print, driven);
+  const control::PrintResult result = print_on(print, restart, driven);
   if (!result.completed) {
     const int line = result.stop.line;
     stopped(driven, line > 0 ? fmt::format("stopped at {}:{}: {}", asked.program, line, result.stop.why)
@@ -178,6 +240,10 @@ void add_drive(CLI::App& app, Action& action) {
       ->add_option("--record", options->record,
                    "file to write with all that goes through the machine's port (docs/port-record.md)")
       ->capture_default_str();
+  command
+      ->add_option("--resume", options->resume,
+                   "record of this print that was cut short: goes on behind the last bead laid, from home")
+      ->check(CLI::ExistingFile);
   command->footer(
       "understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out\n"
       "understudy drive scenarios/song-bottle.gcode --port serial:///dev/ttyACM0?family=grblhal --rehearsal "
