@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/camera_option.h"
 #include "cli/command.h"
 #include "cli/print_request.h"
 #include "cli/progress.h"
@@ -19,6 +20,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "drivers/camera/camera_port.h"
 #include "drivers/driver_port.h"
 #include "drivers/emergency_port.h"
 #include "drivers/open_port.h"
@@ -29,7 +31,7 @@ namespace {
 
 struct DriveOptions {
   PrintRequest print;
-  std::string port, rehearsal, record = "drive.record", resume;
+  std::string port, rehearsal, record = "drive.record", resume, camera;
   bool without_rehearsal = false;
 };
 
@@ -40,11 +42,13 @@ constexpr double kObedience = 5.0;  // [s], for heater and fan
 /// Everything between the print loop and the machine, outermost last.
 class Driven {
  public:
-  Driven(const DriveOptions& options, const PreparedPrint& print)
+  Driven(const DriveOptions& options, const PreparedPrint& print,
+         std::unique_ptr<drivers::FrameSource> camera)
       : port_(drivers::open_port(options.port, print.machine)),
         emergency_(*port_, [] { return CountedInterrupts::count() > 1; }),
+        camera_(camera ? std::make_unique<drivers::CameraPort>(emergency_, std::move(camera)) : nullptr),
         writer_(options.record, port_->axis_count()),
-        recorded_(emergency_, writer_) {
+        recorded_(camera_ ? static_cast<machine::MachinePort&>(*camera_) : emergency_, writer_) {
     note(fmt::format("version {}", kVersion));
     note("program " + options.print.program);
     note("program_sha256 " + print.program.sha256);
@@ -64,6 +68,7 @@ class Driven {
     const auto* driver = dynamic_cast<const drivers::DriverPort*>(port_.get());
     return driver ? driver->fault_text() : "";
   }
+  const drivers::CameraUse* camera() const { return camera_ ? &camera_->use() : nullptr; }
   bool emergency() const { return emergency_.stopped(); }
 
   /// The axes rest or a fault stands, and heater and fan are off.
@@ -79,6 +84,7 @@ class Driven {
  private:
   std::unique_ptr<machine::MachinePort> port_;
   drivers::EmergencyPort emergency_;
+  std::unique_ptr<drivers::CameraPort> camera_;  // null: the port's own
   machine::RecordWriter writer_;
   machine::RecordingPort recorded_;
 };
@@ -196,8 +202,10 @@ int drive(const DriveOptions& options) {
     print.program =
         control::resumed_program(print.program, print.machine, print.part.get(), *restart).program;
   }
+  std::unique_ptr<drivers::FrameSource> camera;
+  if (!options.camera.empty()) camera = open_camera(options.camera);
   const CountedInterrupts interrupts;
-  Driven driven(options, print);
+  Driven driven(options, print, std::move(camera));
   driven.note("path_sha256 " + path);
   if (restart) {
     driven.note("resumed " + control::restart_words(*restart));
@@ -215,6 +223,9 @@ int drive(const DriveOptions& options) {
   driven.note("completed");
   fmt::print("printed {} on {}: {} moves, {:.1f} mm of filament, {:.1f} s\n  record {}\n", asked.program,
              options.port, result.moves, to_mm(result.extruded), result.duration, options.record);
+  if (const drivers::CameraUse* use = driven.camera())
+    fmt::print("  camera: {} frames used, {} missing by their stamps, {:.0f} ms old at most\n", use->used,
+               use->dropped, 1e3 * use->oldest);
   return kGood;
 }
 
@@ -240,6 +251,10 @@ void add_drive(CLI::App& app, Action& action) {
       ->add_option("--record", options->record,
                    "file to write with all that goes through the machine's port (docs/port-record.md)")
       ->capture_default_str();
+  command->add_option(
+      "--camera", options->camera,
+      "camera of gap control, in place of the port's own: folder:DIR (pictures that are being "
+      "written), v4l2:/dev/videoN, http://... (MJPEG)");
   command
       ->add_option("--resume", options->resume,
                    "record of this print that was cut short: goes on behind the last bead laid, from home")
