@@ -11,6 +11,7 @@
 
 #include "cli/camera_option.h"
 #include "cli/command.h"
+#include "cli/gap_latency.h"
 #include "cli/print_request.h"
 #include "cli/progress.h"
 #include "control/preflight.h"
@@ -223,6 +224,8 @@ int drive(const DriveOptions& options) {
   driven.note("completed");
   fmt::print("printed {} on {}: {} moves, {:.1f} mm of filament, {:.1f} s\n  record {}\n", asked.program,
              options.port, result.moves, to_mm(result.extruded), result.duration, options.record);
+  if (const std::string latency = gap_latency_line(options.record); !latency.empty())
+    fmt::print("  {}\n", latency);
   if (const drivers::CameraUse* use = driven.camera())
     fmt::print("  camera: {} frames used, {} missing by their stamps, {:.0f} ms old at most\n", use->used,
                use->dropped, 1e3 * use->oldest);

@@ -127,6 +127,7 @@ class DriveCamera : public ::testing::Test {
   void expect_seen(const Outcome& outcome) const {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("frames used"));
+    EXPECT_THAT(outcome.out, HasSubstr("gap loop, exposure to setpoints queued: median"));
     EXPECT_THAT(outcome.out, HasSubstr("camera    good")) << outcome.err;
     const std::vector<machine::Frame> frames = frames_of(own_ / "d.record");
     ASSERT_GE(frames.size(), 2U) << outcome.err;
