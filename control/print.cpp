@@ -37,7 +37,8 @@ class PrintLoop {
                                                                    : DepositedBeadMap(program, machine)},
         gap_(make_gap_controller()),
         cycle_(machine, port, standing_pose(machine, port), {gap_.get(), options.poses}),
-        started_at_(port.now()) {}
+        started_at_(port.now()),
+        offset_(options.offset_W) {}
 
   PrintResult run() {
     try {
@@ -241,7 +242,7 @@ class PrintLoop {
   const double started_at_;
   machine::Outputs outputs_;
   PrintResult result_;
-  Vec3 offset_{0, 0, 0};
+  Vec3 offset_;
   double fed_ = 0, most_fed_ = 0;  // [m]
   int last_line_ = 0;
 };

@@ -28,6 +28,7 @@ struct PrintOptions {
   /// The nominal part in the program's frame, for the dot's geometry; without it the surface is taken as
   /// flat and perpendicular to the tool at S.
   const geometry::Mesh* part = nullptr;
+  Vec3 offset_W{0, 0, 0};  ///< [m], of the program until the first approach: a print that was interrupted
 };
 
 struct GapApproach {

@@ -69,7 +69,7 @@ class SetpointQueue {
   std::size_t head_ = 0, size_ = 0;
   Setpoint last_;  ///< executed last; where the axes rest when the queue is empty
   Target target_;
-  double lag_ = 0;    ///< [s]; grows while held
+  double lag_ = 0;    ///< [s]; grows while held, and ends with what was queued then
   double rate_ = 1;   ///< of the queue's clock: 1 running, 0 held
   double slope_ = 0;  ///< [1/s], of the rate
   bool stopping_ = false;

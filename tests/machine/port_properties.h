@@ -115,6 +115,7 @@ struct Submit : PortCommand {
   }
   void apply(PortModel& model) const override {
     if (expected(model) != Status::ok) return;
+    if (model.queue.empty() && !model.held) model.lag = model.blur = 0;
     for (const Setpoint& s : setpoints(model, {})) {
       model.queue.push_back({s.time, s.velocity[0] != 0});
       model.last_time = s.time;

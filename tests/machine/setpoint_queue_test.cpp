@@ -79,6 +79,31 @@ TEST(SetpointQueue, SlowsDownLinearlyAndLagsBehindWhatItMissed) {
   EXPECT_FALSE(queue.moving());
 }
 
+TEST(SetpointQueue, WhatIsQueuedAfterItHasRunEmptyBehindAHoldIsNotLate) {
+  auto queue = one_axis(16);
+  ASSERT_EQ(queue.submit(std::array{at(1, 1, 0)}, 0), Status::ok);
+  queue.hold();
+  const double dt = 1e-3;
+  double now = 0;
+  const auto run_to = [&](double end) {
+    for (; now < end; now += dt) {
+      queue.pass(dt, now + dt);
+      queue.advance_to(now + dt);
+    }
+  };
+  run_to(0.5);
+  queue.resume();
+  run_to(3);
+  ASSERT_EQ(queue.executed(), 1U);
+  ASSERT_NEAR(queue.lag(), 0.5, 2 * kBrakingTime);
+  ASSERT_EQ(queue.submit(std::array{at(now - 0.1, 2)}, now), Status::rejected);  // it is not after now
+  ASSERT_EQ(queue.submit(std::array{at(now + 1, 2, 0)}, now), Status::ok);
+  EXPECT_EQ(queue.lag(), 0);
+  EXPECT_NEAR(queue.advance_to(now + 0.5).position[0], 1.5, 1e-9);  // halfway, by symmetry
+  queue.advance_to(now + 1);
+  EXPECT_EQ(queue.executed(), 2U);
+}
+
 TEST(SetpointQueue, AFaultLeavesTheAxesAtTheTarget) {
   auto queue = one_axis(16);
   ASSERT_EQ(queue.submit(std::array{at(1, 1, 1), at(2, 2, 0)}, 0), Status::ok);
