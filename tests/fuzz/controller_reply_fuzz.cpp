@@ -98,7 +98,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace understudy;
   using drivers::GcodeFamily;
   if (size < 2) return 0;
-  constexpr std::array families{GcodeFamily::grblhal, GcodeFamily::marlin, GcodeFamily::reprapfirmware};
-  fuzz::talk(fuzz::text_of(data + 2, size - 2), families[data[0] % families.size()], 1 + data[1] % 64u);
+  constexpr std::array kFamilies{GcodeFamily::grblhal, GcodeFamily::marlin, GcodeFamily::reprapfirmware};
+  fuzz::talk(fuzz::text_of(data + 2, size - 2), kFamilies[data[0] % kFamilies.size()], 1 + data[1] % 64u);
   return 0;
 }
