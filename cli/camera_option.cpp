@@ -1,6 +1,6 @@
 #include "cli/camera_option.h"
 
-#include <array>
+#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <chrono>
@@ -9,13 +9,15 @@
 #include <mutex>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "core/error.h"
+#include "vision/picture/picture_file.h"
 
 namespace understudy::cli {
 namespace {
@@ -47,22 +49,20 @@ class FolderSource : public drivers::FrameSource {
   }
 
   std::optional<TimedImage> newest() override {
-    fs::path file;
-    double stamp = 0;
-    for (const fs::path& picture : pictures()) {
-      if (seen_.contains(picture.filename().string())) continue;
-      const double exposed = stamp_of(picture);
-      if (file.empty() || exposed > stamp) {
-        file = picture;
-        stamp = exposed;
-      }
-    }
-    if (file.empty()) return std::nullopt;
-    const cv::Mat read = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
-    if (read.empty()) return std::nullopt;  // half written: it is looked at again
+    std::vector<std::pair<double, fs::path>> unseen;
     for (const fs::path& picture : pictures())
-      if (stamp_of(picture) <= stamp) seen_.insert(picture.filename().string());
-    return TimedImage{grey(read), stamp, seen_.size()};
+      if (!seen_.contains(picture.filename().string())) unseen.emplace_back(stamp_of(picture), picture);
+    const auto last = std::ranges::max_element(unseen);
+    if (last == unseen.end()) return std::nullopt;
+    TimedImage newest{{}, last->first, 0};
+    try {
+      newest.image = vision::read_picture(last->second.string());
+    } catch (const InputError&) {
+      return std::nullopt;  // half written: it is looked at again
+    }
+    for (const auto& [stamp, picture] : unseen) seen_.insert(picture.filename().string());
+    newest.number = seen_.size();
+    return newest;
   }
   std::string ended() const override {
     return fs::is_directory(folder_) ? "" : folder_.string() + ": the folder is gone";

@@ -11,6 +11,7 @@
 #include "cli/measure_command.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
+#include "core/cut_image.h"
 #include "core/interrupt.h"
 #include "core/units.h"
 #include "vision/boards/rig_pictures.h"
@@ -44,7 +45,7 @@ calibration::CameraPose measure_pair(const vision::RigDescription& rig, const vi
     const auto k = static_cast<std::size_t>(camera);
     const Image image = vision::read_rig_picture(rig, camera, pair[k].file);
     seen[k] = vision::find_targets(rig.rig, camera, X_WT_commanded,
-                                   [&](const Region& region) { return vision::cut(image, region); });
+                                   [&](const Region& region) { return cut(image, region); });
   }
   const vision::PoseMeasurement measured = vision::measure_pose(model, rig.rig.targets, seen);
   const calibration::CameraPose pose = calibration::camera_pose(measured);

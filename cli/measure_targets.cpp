@@ -7,6 +7,7 @@
 
 #include "cli/measure_command.h"
 #include "cli/progress.h"
+#include "core/cut_image.h"
 #include "core/interrupt.h"
 #include "vision/boards/rig_pictures.h"
 #include "vision/picture/picture_file.h"
@@ -27,9 +28,9 @@ int run_targets(const MeasureCall& call) {
     for (const vision::PosePicture& picture : pictures) {
       stop_if_interrupted();
       const Image image = vision::read_rig_picture(rig, picture.camera, picture.file);
-      const auto seen = vision::find_targets(
-          rig.rig, picture.camera, row_of_pose(commanded, picture.pose, picture.file).X_WT,
-          [&](const Region& region) { return vision::cut(image, region); });
+      const auto seen = vision::find_targets(rig.rig, picture.camera,
+                                             row_of_pose(commanded, picture.pose, picture.file).X_WT,
+                                             [&](const Region& region) { return cut(image, region); });
       for (std::size_t k = 0; k < seen.targets.size(); ++k) {
         const vision::TargetMeasurement& target = seen.targets[k];
         if (target.status != vision::TargetStatus::ok) {

@@ -39,7 +39,7 @@ bool SetpointQueue::acceptable(const Setpoint& s) const {
 Status SetpointQueue::submit(std::span<const Setpoint> setpoints, double now) {
   if (setpoints.size() > ring_.size()) return Status::rejected;
   if (setpoints.size() > free_slots()) return Status::queue_full;
-  // What the queue lost behind a hold is made good once it has run empty: nothing is left that is late.
+  // The lag of a hold ends where the queue has run empty: nothing is left that is late.
   const double lag = size_ == 0 && rate_ == 1 && slope_ == 0 ? 0 : lag_;
   double time = size_ > 0 ? back().time : std::max(last_.time, now - lag);
   for (const Setpoint& s : setpoints) {

@@ -106,11 +106,11 @@ std::string CutRecord::note(const std::string& key) const {
 
 CutRecord read_cut_record(const std::filesystem::path& path, const toolpath::Program& program) {
   CutRecord cut;
-  machine::read_record(path, [&](const machine::RecordedEntry& entry) {
-    if (const auto* note = std::get_if<machine::RecordedNote>(&entry)) cut.notes.push_back(note->text);
-  });
+  cut.axes = machine::read_record(path, [&](const machine::RecordedEntry& entry) {
+               if (const auto* note = std::get_if<machine::RecordedNote>(&entry))
+                 cut.notes.push_back(note->text);
+             }).axes;
   Follower follower(program, cut);
-  cut.axes = machine::read_record(path, [](const machine::RecordedEntry&) {}).axes;
   machine::read_record(path, [&](const machine::RecordedEntry& entry) {
     if (const auto* submit = std::get_if<machine::RecordedSubmit>(&entry)) follower.submit(*submit);
     if (const auto* state = std::get_if<AxisState>(&entry)) follower.state(*state);

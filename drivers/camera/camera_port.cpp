@@ -5,6 +5,8 @@
 #include <cmath>
 #include <thread>
 
+#include "core/cut_image.h"
+
 namespace understudy::drivers {
 
 using machine::Status;
@@ -12,22 +14,6 @@ using machine::Status;
 namespace {
 
 constexpr double kBetween = 2e-3;  // [s], two looks for a frame
-
-/// Clipped to the sensor.
-Image part_of(const Image& whole, const Region& asked) {
-  Image part;
-  Region& r = part.region;
-  r.x = std::clamp(asked.x, 0, whole.width());
-  r.y = std::clamp(asked.y, 0, whole.height());
-  r.width = std::clamp(asked.x + asked.width, r.x, whole.width()) - r.x;
-  r.height = std::clamp(asked.y + asked.height, r.y, whole.height()) - r.y;
-  part.pixels.reserve(static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height));
-  for (int y = r.y; y < r.y + r.height; ++y) {
-    const auto row = whole.pixels.begin() + static_cast<std::ptrdiff_t>(y) * whole.width() + r.x;
-    part.pixels.insert(part.pixels.end(), row, row + r.width);
-  }
-  return part;
-}
 
 }  // namespace
 
@@ -58,7 +44,7 @@ Status CameraPort::capture(const Region& region, machine::Frame& frame, double d
       watch_stamps(*image);
       if (image->exposed_at >= asked_at) {
         const double age = std::max(0.0, wall_clock() - image->exposed_at);
-        frame.image = part_of(image->image, region);
+        frame.image = cut(image->image, region);
         frame.received_at = port_.now();
         frame.exposed_at = frame.received_at - age;
         frame.number = image->number;

@@ -8,6 +8,8 @@
 namespace understudy::drivers {
 namespace {
 
+constexpr double kBlocksMost = 1e6;  // that a planner has room for; more is no report
+
 template <typename T>
 std::optional<T> whole_number(std::string_view text) {
   T value{};
@@ -60,7 +62,7 @@ std::optional<ControllerStatus> read_status(std::string_view text) {
       status.line = whole_number<int>(field);
       if (!status.line) return std::nullopt;
     } else if (key == "Bf") {
-      if (!read_values(field, values)) return std::nullopt;
+      if (!read_values(field, values) || !(values[0] >= 0 && values[0] <= kBlocksMost)) return std::nullopt;
       status.planner_free = static_cast<int>(values[0]);
     }
   }

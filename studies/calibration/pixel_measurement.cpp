@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "calibration/pose_choice.h"
+#include "core/cut_image.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "vision/boards/chessboard.h"
@@ -119,7 +120,7 @@ std::array<vision::TargetsMeasurement, 2> MeasuringStand::see(renderer::Calibrat
     if (options_.keep) {
       const Image picture = view.render(scene, whole(scene.camera));
       options_.keep(description_.pose_pictures.name({static_cast<int>(number), camera}), picture);
-      read_out = [picture](const Region& region) { return vision::cut(picture, region); };
+      read_out = [picture](const Region& region) { return cut(picture, region); };
     }
     seen[k] = vision::find_targets(designed(), camera, X_WT_expected, read_out);
   }

@@ -12,7 +12,4 @@ namespace understudy::vision {
 /// the file: it cannot be read, holds no picture, or one of more than 100 million pixels.
 Image read_picture(const std::string& file);
 
-/// What of the picture lies in `region`, in pixels of the sensor; the region is clipped to the picture.
-Image cut(const Image& image, const Region& region);
-
 }  // namespace understudy::vision

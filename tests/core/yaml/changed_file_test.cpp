@@ -52,7 +52,8 @@ TEST(ChangedFile, RefusesWhatIsNoValue) {
 }
 
 constexpr const char* kText =
-    "# a machine\naxes:\n  - {name: j1, play_um: 10}  # turns\n  - {name: j2, play_um: 20}\ngap:\n  aim_mm: "
+    "# a machine, play in \u00b5m\naxes:\n  - {name: j1, play_um: 10}  # turns\n  - {name: j2, play_um: "
+    "20}\ngap:\n  aim_mm: "
     "0.13\n";
 
 std::string text_with(const std::string& changes) {
@@ -61,7 +62,8 @@ std::string text_with(const std::string& changes) {
 
 TEST(ChangedText, HoldsTheValuesAndEverythingElseAsItWas) {
   EXPECT_EQ(text_with("axes.j1.play_um: 15, gap.aim_mm: 0.1456, axes.2.play_um: 7"),
-            "# a machine\naxes:\n  - {name: j1, play_um: 15}  # turns\n  - {name: j2, play_um: 7}\ngap:\n  "
+            "# a machine, play in \u00b5m\naxes:\n  - {name: j1, play_um: 15}  # turns\n  - {name: j2, "
+            "play_um: 7}\ngap:\n  "
             "aim_mm: 0.1456\n");
 }
 

@@ -42,6 +42,12 @@ TEST(GcodeReply, StatusHasStatePositionsAndLine) {
   EXPECT_EQ(reply.status.planner_free, 15);
 }
 
+TEST(GcodeReply, APlannerHasRoomForACountOfBlocks) {
+  for (const char* free : {"1e30", "-1", "nan"})
+    EXPECT_EQ(parse_reply(std::string("<Idle|Bf:") + free + ",128>").kind, Kind::other) << free;
+  EXPECT_EQ(parse_reply("<Idle|Bf:1023,128>").status.planner_free, 1023);
+}
+
 TEST(GcodeReply, PositionEndsAtCount) {
   const Reply reply = parse_reply("X:10.25 Y:0.00 U:-3.10 E:0.00 Count X:800 Y:0 Z:0");
   ASSERT_EQ(reply.kind, Kind::position);
