@@ -18,8 +18,6 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kFurther = 3;  // number of the inherited descriptor in the child
-
 struct Pipe {
   Descriptor read, write;
 };
@@ -31,7 +29,7 @@ Pipe make_pipe() {
   return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-/// Between fork and exec: nothing that allocates.
+/// Between fork and exec: nothing that allocates. `streams[i]` becomes descriptor i; -1 leaves it closed.
 [[noreturn]] void become(char* const* words, const char* folder, const std::array<int, 4>& streams,
                          bool dies_with_us) {
   ::setpgid(0, 0);
