@@ -30,6 +30,7 @@ void add_export(CLI::App& app, Action& action) {
   command->require_subcommand(1);
   auto request = std::make_shared<UrdfRequest>();
   add_export_mjcf(*command, action);
+  add_export_trace(*command, action);
   add_export_hal(*command, action);
   auto* urdf =
       command->add_subcommand("urdf", "URDF of an open chain: links \"work\" and \"tool\" at its ends");

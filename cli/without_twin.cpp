@@ -10,6 +10,7 @@ namespace understudy::cli {
 
 void add_twin_commands(CLI::App&, Action&) {}
 void add_export_mjcf(CLI::App&, Action&) {}
+void add_export_trace(CLI::App&, Action&) {}
 
 std::vector<std::string> left_out_commands() {
   return {"rehearse",  "inspect",       "pose",      "place",        "verify",      "register",

@@ -92,7 +92,7 @@ struct Runs {
 Runs run_all(const TwinSetup& setup, const RunOptions& options, bool compare, const TwinSetup* before,
              const Progress& progress) {
   Runs runs;
-  const RunOptions open_loop{control::GapControl::off, false, options.beyond_limits, {}};
+  const RunOptions open_loop{control::GapControl::off, false, options.beyond_limits, {}, nullptr};
   std::vector<std::function<void()>> jobs{[&] { runs.main = run_twin(setup, options, progress); }};
   if (compare && options.gap_control != control::GapControl::off)
     jobs.emplace_back([&] { runs.open_loop = run_twin(setup, open_loop, {}); });
@@ -231,7 +231,7 @@ Finding no_place(const PlacementFigures& placement) {
 
 }  // namespace
 
-Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
+Record rehearse(const RehearsalRequest& asked, const Progress& progress, RunListener* listener) {
   const Progress report = [&](double share, const std::string& what) {
     if (progress) progress(share, what);
   };
@@ -252,10 +252,11 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress) {
   record.findings = check_limits(request, setup, mended);
   for (const Finding& finding : machine_findings(machine::load_machine_notes(request.machine)))
     record.findings.push_back(finding);
-  const RunOptions options{mode, true, any_error(record.findings), request.record};
+  const RunOptions options{mode, true, any_error(record.findings), request.record, listener};
   if (options.beyond_limits) tell_how_simulated(record.findings);
   record.findings.insert(record.findings.begin(), mended.findings.begin(), mended.findings.end());
   record.passed_over = mended.passed_over;
+  if (listener) listener->begins(record);
   std::shared_ptr<const sim::Workpiece> printed;
   if (const auto runs = run_or_find(request, setup, before, options, report, record)) {
     fill(setup, before, options, *runs, record);

@@ -4,6 +4,7 @@
 #include "core/progress.h"
 #include "rehearsal/record.h"
 #include "rehearsal/request/request.h"
+#include "rehearsal/run_listener.h"
 
 namespace understudy::rehearsal {
 
@@ -12,6 +13,8 @@ namespace understudy::rehearsal {
 /// all the same, so that one run tells all: axes stay at the ends of their ranges, joints go beyond theirs,
 /// and moves that no axes make are passed over or, where the tool cannot go on behind them, end the print.
 /// Lines that cannot be read and filament that cannot be fed are no-goes, too, unless the request is strict.
-Record rehearse(const RehearsalRequest& request, const Progress& progress = {});
+/// `listener`: sees the main run; may be null.
+Record rehearse(const RehearsalRequest& request, const Progress& progress = {},
+                RunListener* listener = nullptr);
 
 }  // namespace understudy::rehearsal

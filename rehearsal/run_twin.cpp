@@ -228,6 +228,8 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   const auto started = std::chrono::steady_clock::now();
   const auto plant = make_plant(setup);
   Watch watch(setup, options);
+  if (RunListener* listener = options.listener)
+    watch.trace.on_point([listener](const TracePoint& newest) { listener->moved(newest); });
   std::optional<sim::Microscope> microscope;
   if (setup.truth.has_microscope) {
     sim::MicroscopeOptions view;

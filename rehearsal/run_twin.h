@@ -17,6 +17,7 @@
 #include "rehearsal/program/programmed_layers.h"
 #include "rehearsal/record.h"
 #include "rehearsal/registration.h"
+#include "rehearsal/run_listener.h"
 #include "rehearsal/trace_observer.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
@@ -90,6 +91,7 @@ struct RunOptions {
   /// The program breaks limits of axes or joints: an axis stays at the end of its range, a joint goes on.
   bool beyond_limits = false;
   std::string record;  ///< file of what goes through the port (docs/port-record.md); empty: none
+  RunListener* listener = nullptr;
 };
 
 /// Words of `--engine` and of scenarios.

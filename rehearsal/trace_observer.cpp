@@ -35,6 +35,7 @@ void TraceObserver::observe(const sim::Snapshot& s) {
   point.path = path_;
   filament_ = std::max(filament_, s.filament);
   keep(point);
+  if (told_) told_(point);
 }
 
 void TraceObserver::add_offset(const control::OffsetChange& change) { offsets_.push_back(change); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -35,6 +36,9 @@ class TraceObserver : public sim::Observer {
   /// What the gap controller adds to the program from a time on; told in order of time.
   void add_offset(const control::OffsetChange& change);
 
+  /// Each point as it comes, before any is thinned out; on the thread that observes.
+  void on_point(std::function<void(const TracePoint&)> told) { told_ = std::move(told); }
+
   /// Nothing while nothing was extruded.
   std::optional<AccuracyFigures> accuracy() const;
   ErrorPeak tip_peak() const { return tip_peak_; }
@@ -53,6 +57,7 @@ class TraceObserver : public sim::Observer {
   std::uint64_t count_ = 0;
   std::vector<TracePoint> trace_;
   TracePoint newest_;
+  std::function<void(const TracePoint&)> told_;
   std::deque<control::OffsetChange> offsets_;  ///< the one in force, and those to come
   double filament_ = 0;
   double path_ = 0;

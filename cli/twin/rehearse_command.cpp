@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "cli/twin/registration_options.h"
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
+#include "cli/watch/live_server.h"
 #include "core/file/output_folder.h"
 #include "core/file/read_file.h"
 #include "core/interrupt.h"
@@ -21,6 +23,7 @@
 #include "rehearsal/findings/verdict.h"
 #include "rehearsal/program/asked_path.h"
 #include "rehearsal/rehearse.h"
+#include "report/page/live_record.h"
 #include "report/page/write_results.h"
 #include "toolpath/robot/robot_program.h"
 
@@ -141,14 +144,31 @@ void print_language(const std::string& program) {
     fmt::print("{} is read as {}, as its content tells\n", program, to_string(*language));
 }
 
+/// A run that browsers look at while it goes.
+struct Watched {
+  explicit Watched(int port)
+      : server({[this] { return record.page(); }, [this] { return record.json(); },
+                [this] { return record.progress_json(); }},
+               port) {
+    fmt::print(stderr, "watch: {}\n", server.url());
+  }
+
+  report::LiveRecord record;
+  LiveServer server;
+};
+
 int rehearse(const RehearseOptions& asked) {
   rehearsal::RehearsalRequest request = asked.with_faults();
   request.command = command_line();
   OutputFolder out(asked.folder);
   request.surface.as_printed = among_results(request.surface.as_printed, asked.folder, out.path());
-  const rehearsal::Record record = rehearse_into(request, out.path());
+  std::optional<Watched> watched;
+  if (asked.watch) watched.emplace(asked.watch_port);
+  const rehearsal::Record record = rehearse_into(request, out.path(), watched ? &watched->record : nullptr);
   stop_if_interrupted();
   out.commit();
+  if (watched)
+    watched->server.finish(read_file((std::filesystem::path(asked.folder) / "report.html").string()));
   print_language(request.program);
   print_answer(record, rehearsal::original_of(request.program), asked.folder);
   return record.go ? kGood : kNo;
@@ -157,14 +177,17 @@ int rehearse(const RehearseOptions& asked) {
 }  // namespace
 
 rehearsal::Record rehearse_into(const rehearsal::RehearsalRequest& request,
-                                const std::filesystem::path& folder) {
+                                const std::filesystem::path& folder, report::LiveRecord* live) {
   rehearsal::Record record;
   std::vector<report::Illustration> pictures;
   {
     ProgressLine line;
-    record =
-        rehearsal::rehearse(request, [&](double share, const std::string& what) { line.show(share, what); });
-    line.show(1, "drawing");
+    const auto show = [&](double share, const std::string& what) {
+      line.show(share, what);
+      if (live) live->progress(share, what);
+    };
+    record = rehearsal::rehearse(request, show, live);
+    show(1, "drawing");
     if (record.scene) pictures = report::draw_scene(*record.scene);
   }
   report::write_results(record, pictures, folder);

@@ -139,6 +139,12 @@ void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
                   "for_s: 0.4}'; may be given several times (docs/faults.md)")
       ->allow_extra_args(false);
   command.add_option("--out", options.folder, "folder of results")->capture_default_str();
+  auto* watch = command.add_flag("--watch", options.watch,
+                                 "serve the growing report to a browser of this computer (docs/watch.md)");
+  command.add_option("--watch-port", options.watch_port, "port of --watch; 0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->needs(watch)
+      ->capture_default_str();
 }
 
 rehearsal::RehearsalRequest RehearseOptions::with_faults() const {

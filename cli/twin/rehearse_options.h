@@ -14,6 +14,8 @@ struct RehearseOptions {
   rehearsal::RehearsalRequest request;
   std::vector<std::string> faults;   ///< in the words of scenarios
   std::string folder = "rehearsal";  ///< of results
+  bool watch = false;                ///< show the growing report in a browser
+  int watch_port = 0;                ///< of HTTP; 0: any free one
 
   /// The request with its faults; throws InputError for words that tell none.
   rehearsal::RehearsalRequest with_faults() const;

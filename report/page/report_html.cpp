@@ -48,19 +48,33 @@ std::string fill(std::string_view page, const std::vector<std::pair<std::string_
   return filled;
 }
 
-}  // namespace
+struct Words {
+  std::string title, verdict, reason;
+  std::string connect;  ///< of the Content-Security-Policy
+};
 
-std::string report_html(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
-  const nlohmann::ordered_json report = report_data(record, pictures);
-  const std::string verdict = rehearsal::headline(rehearsal::grade_of(record));
-  return fill(kPageTemplate, {{"title", html_text(verdict + ": " + record.title)},
-                              {"verdict", verdict},
-                              {"reason", html_text(rehearsal::verdict_sentence(record))},
+std::string page_of(const Words& words, const std::string& json) {
+  return fill(kPageTemplate, {{"connect", words.connect},
+                              {"title", html_text(words.title)},
+                              {"verdict", words.verdict},
+                              {"reason", html_text(words.reason)},
                               {"notices", std::string(kPageNotices)},
                               {"plots-style", std::string(kPlotsStyle)},
                               {"style", std::string(kPageStyle)},
-                              {"record", escape_json_for_script(to_text(report, -1))},
+                              {"record", escape_json_for_script(json)},
                               {"script", std::string(kPageScript)}});
+}
+
+}  // namespace
+
+std::string report_html(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
+  const std::string verdict = rehearsal::headline(rehearsal::grade_of(record));
+  return page_of({verdict + ": " + record.title, verdict, rehearsal::verdict_sentence(record), ""},
+                 to_text(report_data(record, pictures), -1));
+}
+
+std::string live_html(const std::string& title, const std::string& json) {
+  return page_of({"running: " + title, "running", "The rehearsal still runs.", "; connect-src 'self'"}, json);
 }
 
 }  // namespace understudy::report

@@ -5,14 +5,11 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <string>
-#include <thread>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -21,7 +18,7 @@
 
 #include "core/file/descriptor.h"
 #include "core/file/read_file.h"
-#include "tests/cli/program_run.h"
+#include "tests/cli/background_run.h"
 
 namespace understudy::cli_test {
 namespace {
@@ -34,47 +31,6 @@ constexpr std::chrono::seconds kPatience{60};  // for a busy machine
 /// A cube's edge of 10 mm: few lines, all of them moves of every kind.
 const char* const kLines[] = {"G21",        "G90", "M83", "M104 S210", "G0 X-5 Y0 Z50", "G1 X5 E0.4 F1200",
                               "G1 Y5 E0.2", "M400"};
-
-/// `understudy serve` in the background, its output in files of the folder.
-class Server {
- public:
-  Server(const Folder& folder, const std::string& words) : out_(folder / "out") {
-    pid_ = ::fork();
-    if (pid_ != 0) return;
-    const std::string command =
-        fmt::format("exec {} serve {} >{} 2>{}", UNDERSTUDY_PROGRAM, words, out_, folder / "err");
-    ::execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
-    ::_exit(127);
-  }
-  ~Server() {
-    if (pid_ > 0) {
-      ::kill(pid_, SIGKILL);
-      ::waitpid(pid_, nullptr, 0);
-    }
-  }
-  /// Its first line of output.
-  std::string listening() const {
-    for (const auto end = Clock::now() + kPatience; Clock::now() < end; pause())
-      if (fs::exists(out_))
-        if (const std::string text = read_file(out_); text.find('\n') != std::string::npos) return text;
-    return "";
-  }
-  void interrupt() const { ::kill(pid_, SIGINT); }
-  int wait() {
-    int status = 0;
-    for (const auto end = Clock::now() + 2 * kPatience; Clock::now() < end; pause())
-      if (::waitpid(pid_, &status, WNOHANG) == pid_) {
-        pid_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-      }
-    return -1;
-  }
-  static void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }
-
- private:
-  std::string out_;
-  pid_t pid_ = -1;
-};
 
 /// Reads until `what` has come.
 std::string hear(int file, const std::string& what) {
@@ -99,9 +55,10 @@ void say(int file, const std::string& text) {
 TEST(ServeCommand, AScriptedSenderPrintsOnAPseudoTerminal) {
   const Folder folder;
   const std::string pty = folder / "twin", results = folder / "served";
-  Server server(folder, fmt::format("--machine hexapod --port pty:{} --speed 20 --gap-control off --out {}",
-                                    pty, results));
-  ASSERT_THAT(server.listening(), HasSubstr("hexapod listens as grbl on " + pty));
+  BackgroundRun server(
+      folder, fmt::format("serve --machine hexapod --port pty:{} --speed 20 --gap-control off --out {}", pty,
+                          results));
+  ASSERT_THAT(server.first_output(), HasSubstr("hexapod listens as grbl on " + pty));
   {
     const Descriptor line(::open(pty.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
     ASSERT_GE(line.get(), 0);
@@ -124,12 +81,10 @@ TEST(ServeCommand, AScriptedSenderPrintsOnAPseudoTerminal) {
 
 TEST(ServeCommand, CtrlCEndsWithTheReportOfWhatHasCome) {
   const Folder folder;
-  Server server(
-      folder,
-      fmt::format(
-          "--machine hexapod --dialect marlin --port tcp:127.0.0.1:0 --speed 20 --gap-control off --out {}",
-          folder / "served"));
-  const std::string said = server.listening();
+  BackgroundRun server(folder, fmt::format("serve --machine hexapod --dialect marlin --port tcp:127.0.0.1:0 "
+                                           "--speed 20 --gap-control off --out {}",
+                                           folder / "served"));
+  const std::string said = server.first_output();
   const auto colon = said.rfind(':');
   ASSERT_NE(colon, std::string::npos) << said;
   sockaddr_in address{};
@@ -159,11 +114,11 @@ TEST(ServeCommand, PronsolePrintsOnTheTwin) {
   for (const char* text : kLines) program += std::string(text) + "\n";
   program += "M30\n";
   const std::string file = folder.write("part.gcode", program);
-  Server server(
+  BackgroundRun server(
       folder,
       fmt::format("--machine hexapod --dialect marlin --port pty:{} --speed 20 --gap-control off --out {}",
                   pty, results));
-  ASSERT_THAT(server.listening(), HasSubstr("marlin"));
+  ASSERT_THAT(server.first_output(), HasSubstr("marlin"));
   const std::string sender = fmt::format(
       "(echo connect {} 115200; sleep 3; echo load {}; sleep 1; echo print; sleep 20) | HOME={} timeout 40 "
       "pronsole >{} 2>&1 &",

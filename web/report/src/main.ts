@@ -7,6 +7,7 @@ import { drawPlots } from './plots';
 import { findingsInTime, drawReplay } from './replay';
 import { calibrationTable, drawCalibrationNotRun, drawDeviation, drawFigures, drawPictures, drawProvenance, drawStrands } from './tables';
 import { drawVerdict } from './verdict';
+import { follow } from './live';
 import { readRecord, type Report } from './record';
 import { Run } from './run';
 import type { Stage } from './stage';
@@ -86,7 +87,9 @@ function draw(report: Report, page: HTMLElement) {
 
 const page = document.getElementById('page')!;
 try {
-  draw(readRecord(), page);
+  const report = readRecord();
+  if (report.live) follow(report, page, themeSwitch());
+  else draw(report, page);
 } catch (error) {
   page.replaceChildren(element('h1', {}, document.title), element('p', { class: 'warn-note' },
     (error instanceof Error ? error.message : String(error)) + ' The same figures stand in summary.json and trace.csv beside this page.'));

@@ -22,8 +22,8 @@ export function drawPlots(report: Report, clock: Clock | null, calibrationTable:
     return element('section', {}, element('h2', {}, 'The run'), element('p', {}, 'The program was not run: there are no curves, and no figures of print, accuracy or gap.'));
   }
   const node = element('section', { class: 'plots', 'aria-label': 'Curves' });
-  const trace = report.trace;
   const build = () => {
+    const trace = report.trace!;
     node.replaceChildren(element('h2', {}, 'Curves'), element('p', { class: 'note' }, (clock ? 'The upright line is the instant of the replay: press a curve to move it. ' : '')
       + 'Drag to enlarge, press twice to see all.'));
     const grid = element('div', { class: 'plot-grid' });

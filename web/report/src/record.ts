@@ -45,12 +45,14 @@ export interface Report {
   axes: { name: string; min?: number; max?: number }[];
   trace?: Trace; trace_without_gap_control?: Trace; trace_before_calibration?: Trace; gap_belief_note?: string;
   strands?: any[]; profile?: { position_mm: number[]; height_um: number[]; note: string }; deviation_note?: string;
+  live?: { share: number; what: string };  // of a run that goes on
   replay?: ReplayData; frames: Frame[]; pictures: { caption?: string; width: number; height: number; image: string }[];
 }
 
-/** Throws an Error with one sentence for people. */
-export function readRecord(): Report {
-  const text = document.getElementById('record')!.textContent || '';
+/** Of the page itself. Throws an Error with one sentence for people. */
+export function readRecord(): Report { return parseRecord(document.getElementById('record')!.textContent || ''); }
+
+export function parseRecord(text: string): Report {
   let report: Report;
   try {
     report = JSON.parse(text);

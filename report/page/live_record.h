@@ -1,0 +1,39 @@
+// The report's data of a rehearsal that still runs: what is known by now, in the form of the finished report.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "rehearsal/run_listener.h"
+
+namespace understudy::report {
+
+/// May be read while the run adds to it.
+class LiveRecord : public rehearsal::RunListener {
+ public:
+  static constexpr std::size_t kCapacity = 4000;
+  /// Keeps at most `capacity` points: when they are full, every other one goes.
+  explicit LiveRecord(std::size_t capacity = kCapacity);
+
+  void begins(const rehearsal::Record& described) override;
+  void moved(const rehearsal::TracePoint& newest) override;
+  void progress(double share, const std::string& what);
+
+  /// "understudy.report/1" with the key `live` (docs/report-data.md); one line.
+  std::string json() const;
+  /// The key `live` alone.
+  std::string progress_json() const;
+  /// The page of a finished report, drawn from json(); it asks its server for what comes.
+  std::string page() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::size_t capacity_;
+  std::size_t stride_ = 1, count_ = 0;
+  rehearsal::Record record_;
+  double share_ = 0;
+  std::string what_ = "reading";
+};
+
+}  // namespace understudy::report
