@@ -35,6 +35,7 @@ void add_workspace(CLI::App& app, Action& action);
 void add_repeatability(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_export_mjcf(CLI::App& command, Action& action);
+void add_export_glb(CLI::App& command, Action& action);
 void add_export_hal(CLI::App& command, Action& action);
 void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap, faults
 void add_benchmark_calibration(CLI::App& benchmark, Action& action);

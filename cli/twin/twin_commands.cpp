@@ -12,6 +12,7 @@
 #include "machine/description.h"
 #include "rehearsal/library_versions.h"
 #include "renderer/scene_view.h"
+#include "report/gltf/replay_glb.h"
 #include "report/page/pack.h"
 #include "report/page/page_parts.h"
 #include "sim/as_built/as_built.h"
@@ -71,6 +72,7 @@ std::vector<std::string> left_out_commands() { return {}; }
 
 LibraryVersions library_versions_of_rooms() {
   LibraryVersions all = rehearsal::library_versions();
+  all["tinygltf"] = report::loaded_tinygltf();
   all["zlib"] = report::loaded_zlib();
   all.merge(report::page_packages());
   return all;
