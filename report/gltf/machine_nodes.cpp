@@ -17,6 +17,11 @@ using rehearsal::ReplayBody;
 
 constexpr int kSegments = 24;  // of round bodies
 
+/// Viewers light a scene brighter than the pictures of a report.
+LinearColour dimmed(const LinearColour& colour) {
+  return {0.55f * colour[0], 0.55f * colour[1], 0.55f * colour[2]};
+}
+
 /// Corners that share place and normal are one vertex.
 GltfTriangles triangles_of(const renderer::Surface& surface) {
   GltfTriangles result;
@@ -76,11 +81,11 @@ class MachineNodes {
     add_tool();
     if (replay_.table)
       scene_.node("table", frames_.work, replay_.table->X_FS,
-                  mesh("table", triangles_of(unposed(*replay_.table)), "table", kTable));
+                  mesh("table", triangles_of(unposed(*replay_.table)), "table", dimmed(kTable)));
     if (replay_.part)
       scene_.node("part", frames_.work, Pose::Identity(),
                   mesh("part", triangles_of(renderer::tessellate(*replay_.part, renderer::Creases::left_out)),
-                       "part", kPart));
+                       "part", dimmed(kPart)));
   }
 
  private:

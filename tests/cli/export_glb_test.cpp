@@ -59,7 +59,8 @@ TEST_F(ExportGlb, WithoutBeadsItShowsTheMachineAndSaysSo) {
 }
 
 TEST_F(ExportGlb, WhatIsNoRecordIsRefused) {
-  refused(out() + " -o " + glb(), 2, "out/report.html: it is not there: name a folder that understudy rehearse");
+  refused(out() + " -o " + glb(), 2,
+          "out/report.html: it is not there: name a folder that understudy rehearse");
   ASSERT_LE(rehearse(kLine, "--no-pictures").status, 1);
   refused(out() + " -o " + glb(), 2, "out/report.html: it has no replay: rehearse a program that runs, and");
 }

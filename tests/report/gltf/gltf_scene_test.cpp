@@ -63,7 +63,8 @@ TEST(GltfScene, TheFileIsAHeaderAndTwoChunks) {
 TEST(GltfScene, NodesMeshesAndColoursComeBack) {
   GltfScene scene;
   const int top = scene.node("top", -1, make_pose(Quat(0, 1, 0, 0), Vec3(1, 2, 3)));
-  scene.node("below", top, Pose::Identity(), scene.mesh("m", one_triangle(), scene.material("red", {1, 0, 0})));
+  scene.node("below", top, Pose::Identity(),
+             scene.mesh("m", one_triangle(), scene.material("red", {1, 0, 0})));
   EXPECT_EQ(scene.material("red", {0, 0, 0}), 0) << "the same name is the same material";
   const tinygltf::Model model = read(scene.glb("title", {{"speed", "1"}}));
   EXPECT_THAT(model.scenes[0].nodes, ElementsAre(0));
@@ -86,7 +87,8 @@ TEST(GltfScene, ChannelsKeepInstantsThatTheirNumbersTellApart) {
   // Beyond 16384 s a 32-bit number counts in steps of 2 ms.
   const std::vector<double> times{0, 20000, 20000.0004, 20001};
   scene.animate_translation(node, times, std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
-  scene.animate_rotation(node, std::vector<double>{0, 1}, std::vector<Quat>{{1, 0, 0, 0}, {-0.6, -0.8, 0, 0}});
+  scene.animate_rotation(node, std::vector<double>{0, 1},
+                         std::vector<Quat>{{1, 0, 0, 0}, {-0.6, -0.8, 0, 0}});
   scene.animate_scale(node, std::vector<double>{5}, std::vector<Vec3>{{1, 1, 1}});
   const tinygltf::Model model = read(scene.glb("title", {}));
   ASSERT_EQ(model.animations[0].channels.size(), 2u) << "one instant is no animation";

@@ -111,7 +111,8 @@ TEST_F(RecordedReplayTest, WhatIsMissingIsTold) {
   write_results(record_, {}, folder_);
   const RecordedReplay replay = read_recorded_replay(folder_);
   ASSERT_EQ(replay.shortfalls.size(), 1u);
-  EXPECT_THAT(replay.shortfalls[0], HasSubstr("of a part of the print: the print stopped: the nozzle is clogged"));
+  EXPECT_THAT(replay.shortfalls[0],
+              HasSubstr("of a part of the print: the print stopped: the nozzle is clogged"));
 }
 
 TEST_F(RecordedReplayTest, WhatIsNoRecordIsRefusedInOneLine) {
@@ -123,21 +124,25 @@ TEST_F(RecordedReplayTest, WhatIsNoRecordIsRefusedInOneLine) {
   EXPECT_THAT(refusal(), EndsWith("report.html: its data block is damaged: key 'path' not found"));
   change("\"pfad\":", "\"path\":");
   change("\"replay\":", "\"replays\":");
-  EXPECT_THAT(refusal(), HasSubstr("it has no replay: rehearse a program that runs, and without --no-pictures"));
+  EXPECT_THAT(refusal(),
+              HasSubstr("it has no replay: rehearse a program that runs, and without --no-pictures"));
   const std::string whole = page();
   write_file(folder_ / "report.html", whole.substr(0, whole.find("id=\"record\"") + 2000));
   EXPECT_THAT(refusal(), HasSubstr("it is cut short: its data block does not end"));
   write_file(folder_ / "report.html", "<html></html>");
-  EXPECT_THAT(refusal(), HasSubstr("it has no data of a rehearsal: name a folder that understudy rehearse wrote"));
+  EXPECT_THAT(refusal(),
+              HasSubstr("it has no data of a rehearsal: name a folder that understudy rehearse wrote"));
   std::filesystem::remove(folder_ / "report.html");
-  EXPECT_THAT(refusal(), EndsWith("report.html: it is not there: name a folder that understudy rehearse wrote"));
+  EXPECT_THAT(refusal(),
+              EndsWith("report.html: it is not there: name a folder that understudy rehearse wrote"));
 }
 
 // A column that lost its end, or a letter, is not read as a shorter one.
 TEST_F(RecordedReplayTest, DamagedColumnsAreRefused) {
   const std::string whole = page();
   std::size_t refused = 0, tried = 0;
-  for (std::size_t at = whole.find("\"data\":\""); at != std::string::npos; at = whole.find("\"data\":\"", at + 1)) {
+  for (std::size_t at = whole.find("\"data\":\""); at != std::string::npos;
+       at = whole.find("\"data\":\"", at + 1)) {
     if (++tried % 7 != 0) continue;
     std::string cut = whole;
     cut.erase(at + 12, 9);
