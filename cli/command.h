@@ -20,6 +20,7 @@ void add_inspect(CLI::App& app, Action& action);
 void add_pose(CLI::App& app, Action& action);
 void add_place(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_register(CLI::App& app, Action& action);
 void add_scenario(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);

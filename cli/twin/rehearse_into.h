@@ -7,8 +7,9 @@
 
 namespace understudy::cli {
 
-/// Rehearses with progress on standard error, and writes the results into an existing folder.
+/// Rehearses with progress on standard error unless it is to be quiet, and writes the results into an
+/// existing folder.
 rehearsal::Record rehearse_into(const rehearsal::RehearsalRequest& request,
-                                const std::filesystem::path& folder);
+                                const std::filesystem::path& folder, bool quiet = false);
 
 }  // namespace understudy::cli

@@ -55,6 +55,7 @@ void add_twin_commands(CLI::App& app, Action& action) {
   add_pose(app, action);
   add_place(app, action);
   add_verify(app, action);
+  add_compare(app, action);
   add_register(app, action);
   add_scenario(app, action);
   add_sweep(app, action);
