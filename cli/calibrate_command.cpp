@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/noise_option.h"
+#include "cli/output_options.h"
 #include "cli/plugin_box.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
@@ -24,6 +25,7 @@ struct CalibrateCall {
   std::vector<double> noise;
   std::vector<std::string> measurements, compared;
   std::string columns, output, report, urdf;
+  OutputOptions told;
 };
 
 /// Tables with a map of their columns, or with positions or orientations alone; nothing for whole poses.
@@ -58,13 +60,14 @@ std::optional<calibration::RowsRequest> rows_request(CalibrateCall& call) {
 
 int run_calibrate(CalibrateCall call) {
   CalibrationOutput output(call.output, call.report, call.urdf);
-  if (const auto rows = rows_request(call)) return output.write(calibration::calibrate_measured_rows(*rows));
+  if (const auto rows = rows_request(call))
+    return output.write(calibration::calibrate_measured_rows(*rows), call.told);
   calibration::CalibrationRequest request = call.request;
   request.measurements = call.measurements.front();
   request.noise = noise_of(call.noise);
   request.command = command_line();
   warn_of_box(!request.plugin.empty());
-  return output.write(calibration::calibrate_machine(request));
+  return output.write(calibration::calibrate_machine(request), call.told);
 }
 
 }  // namespace
@@ -99,6 +102,8 @@ void add_calibrate(CLI::App& app, Action& action) {
   output->required();
   command->add_option("--urdf-out", call->urdf, "also write the calibrated machine as a URDF (open chains)");
   command->add_option("--report", call->report, "folder for report.html and summary.json");
+  add_quiet_option(*command, call->told, "the name of the calibrated machine file alone");
+  add_json_option(*command, call->told, "the summary");
   auto* gap_sensor = add_calibrate_gap_sensor(*command, action);
   auto* bundle = add_calibrate_bundle(*command, action);
   for (CLI::App* own : {gap_sensor, bundle})  // they have their own

@@ -25,7 +25,7 @@ CalibrationOutput::CalibrationOutput(std::string machine_file, std::string repor
   if (!report_folder_.empty()) report_.emplace(report_folder_);
 }
 
-int CalibrationOutput::write(const calibration::MachineCalibration& result) {
+int CalibrationOutput::write(const calibration::MachineCalibration& result, const OutputOptions& told) {
   if (report_) {
     write_file(report_->path() / "summary.json", report::calibration_json(result));
     write_file(report_->path() / "report.html", report::calibration_html(result));
@@ -41,7 +41,10 @@ int CalibrationOutput::write(const calibration::MachineCalibration& result) {
   for (const auto& file : companions) file->commit();
   if (corrected) corrected->commit();
   machine.commit();
-  fmt::print("{}machine: {}\n", report::calibration_text(result), machine_file_);
+  if (told.json) fmt::print("{}", report::calibration_json(result));
+  if (told.json) return kGood;
+  fmt::print("{}machine: {}\n", told.quiet ? "" : report::calibration_text(result), machine_file_);
+  if (told.quiet) return kGood;
   if (!urdf_file_.empty()) fmt::print("urdf: {}\n", urdf_file_);
   if (report_) fmt::print("report: {}\n", (std::filesystem::path(report_folder_) / "report.html").string());
   return kGood;

@@ -20,6 +20,7 @@ void add_inspect(CLI::App& app, Action& action);
 void add_pose(CLI::App& app, Action& action);
 void add_place(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_register(CLI::App& app, Action& action);
 void add_scenario(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);
@@ -36,6 +37,7 @@ void add_repeatability(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_export_mjcf(CLI::App& command, Action& action);
 void add_export_trace(CLI::App& command, Action& action);
+void add_export_glb(CLI::App& command, Action& action);
 void add_export_hal(CLI::App& command, Action& action);
 void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap, faults
 void add_benchmark_calibration(CLI::App& benchmark, Action& action);

@@ -26,11 +26,12 @@ int export_urdf(const UrdfRequest& r) {
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("export", "Write a machine's model for other programs");
+  auto* command = app.add_subcommand("export", "Write a machine's model, or a rehearsal, for other programs");
   command->require_subcommand(1);
   auto request = std::make_shared<UrdfRequest>();
   add_export_mjcf(*command, action);
   add_export_trace(*command, action);
+  add_export_glb(*command, action);
   add_export_hal(*command, action);
   auto* urdf =
       command->add_subcommand("urdf", "URDF of an open chain: links \"work\" and \"tool\" at its ends");

@@ -7,7 +7,8 @@ namespace understudy::cli {
 
 class ProgressLine {
  public:
-  ProgressLine();
+  /// Shows nothing anywhere unless `wanted`.
+  explicit ProgressLine(bool wanted = true);
   ~ProgressLine();
   void show(double share, const std::string& what);
 

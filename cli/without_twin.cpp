@@ -1,4 +1,4 @@
-// Stands for twin_commands.cpp and export_mjcf.cpp in the build without the twin.
+// Stands for twin_commands.cpp, export_mjcf.cpp and export_glb.cpp in the build without the twin.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +11,7 @@ namespace understudy::cli {
 void add_twin_commands(CLI::App&, Action&) {}
 void add_export_mjcf(CLI::App&, Action&) {}
 void add_export_trace(CLI::App&, Action&) {}
+void add_export_glb(CLI::App&, Action&) {}
 
 std::vector<std::string> left_out_commands() {
   return {"rehearse",  "inspect",       "pose",      "place",        "verify",      "register",
@@ -22,7 +23,7 @@ LibraryVersions library_versions_of_rooms() { return control::library_versions()
 
 std::vector<HealthCheck> twin_self_test() {
   return {{"twin", true,
-           fmt::format("left out of this build, and with it {}, export mjcf",
+           fmt::format("left out of this build, and with it {}, export mjcf, export glb",
                        fmt::join(left_out_commands(), ", "))}};
 }
 

@@ -15,6 +15,9 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr const char* kSchemaName = "understudy.rehearsal/";
+constexpr const char* kSchema = "understudy.rehearsal/1";
+
 /// Nothing where `object` is none or has no such text.
 std::optional<std::string> text_at(const Json& object, const char* key) {
   if (!object.is_object()) return std::nullopt;
@@ -31,7 +34,11 @@ RecordedRun read_recorded_run(const fs::path& folder) {
   const std::string text = read_file(file);
   if (nests_deeper(text)) throw refuse(fmt::format("it is nested more than {} deep", kJsonDepthMax));
   const Json summary = Json::parse(text, nullptr, false);
-  if (text_at(summary, "schema") != "understudy.rehearsal/1")
+  const std::string schema = text_at(summary, "schema").value_or("");
+  if (schema.starts_with(kSchemaName) && schema != kSchema)
+    throw refuse(
+        fmt::format("it is '{}', where this program reads {}: run the rehearsal again", schema, kSchema));
+  if (schema != kSchema)
     throw refuse("it is no summary of a rehearsal: name a folder that understudy rehearse wrote");
   const auto provenance = summary.find("provenance");
   const auto word = [&](const char* key) {

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@
 #include "rehearsal/rehearse.h"
 #include "report/page/live_record.h"
 #include "report/page/write_results.h"
+#include "report/summary_json.h"
 #include "toolpath/robot/robot_program.h"
 
 namespace understudy::cli {
@@ -102,8 +104,12 @@ void print_passed_over(const std::vector<std::pair<int, int>>& lines) {
              text.find_first_of(", ") == std::string::npos ? "line" : "lines", text);
 }
 
-void print_answer(const rehearsal::Record& record, const std::string& original, const std::string& folder) {
+void print_verdict(const rehearsal::Record& record) {
   fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
+}
+
+void print_answer(const rehearsal::Record& record, const std::string& original, const std::string& folder) {
+  print_verdict(record);
   print_passed_over(record.passed_over);
   if (record.placement)
     fmt::print("  placed by {}: margin {:.3f} ({})\n", record.placement->words, record.placement->margin,
@@ -137,11 +143,21 @@ void print_answer(const rehearsal::Record& record, const std::string& original, 
 }
 
 /// Where its name does not tell that the program is a robot's.
-void print_language(const std::string& program) {
+void print_language(std::FILE* to, const std::string& program) {
   std::error_code none;
   if (toolpath::has_robot_ending(program) || !std::filesystem::is_regular_file(program, none)) return;
   if (const auto language = toolpath::robot_language(program, read_file(program)))
-    fmt::print("{} is read as {}, as its content tells\n", program, to_string(*language));
+    fmt::print(to, "{} is read as {}, as its content tells\n", program, to_string(*language));
+}
+
+void tell(const rehearsal::Record& record, const RehearseOptions& asked, const std::string& program) {
+  if (!asked.output.quiet) print_language(asked.output.json ? stderr : stdout, program);
+  if (asked.output.json)
+    fmt::print("{}", report::summary_json(record));
+  else if (asked.output.quiet)
+    print_verdict(record);
+  else
+    print_answer(record, rehearsal::original_of(program), asked.folder);
 }
 
 /// A run that browsers look at while it goes.
@@ -164,24 +180,24 @@ int rehearse(const RehearseOptions& asked) {
   request.surface.as_printed = among_results(request.surface.as_printed, asked.folder, out.path());
   std::optional<Watched> watched;
   if (asked.watch) watched.emplace(asked.watch_port);
-  const rehearsal::Record record = rehearse_into(request, out.path(), watched ? &watched->record : nullptr);
+  const rehearsal::Record record =
+      rehearse_into(request, out.path(), asked.output.quiet, watched ? &watched->record : nullptr);
   stop_if_interrupted();
   out.commit();
   if (watched)
     watched->server.finish(read_file((std::filesystem::path(asked.folder) / "report.html").string()));
-  print_language(request.program);
-  print_answer(record, rehearsal::original_of(request.program), asked.folder);
+  tell(record, asked, request.program);
   return record.go ? kGood : kNo;
 }
 
 }  // namespace
 
 rehearsal::Record rehearse_into(const rehearsal::RehearsalRequest& request,
-                                const std::filesystem::path& folder, report::LiveRecord* live) {
+                                const std::filesystem::path& folder, bool quiet, report::LiveRecord* live) {
   rehearsal::Record record;
   std::vector<report::Illustration> pictures;
   {
-    ProgressLine line;
+    ProgressLine line(!quiet);
     const auto show = [&](double share, const std::string& what) {
       line.show(share, what);
       if (live) live->progress(share, what);

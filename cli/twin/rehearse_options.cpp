@@ -1,8 +1,12 @@
 #include "cli/twin/rehearse_options.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <string_view>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
@@ -129,6 +133,24 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
                    "leave the drawings of machine and part out of the report");
 }
 
+/// Say what is written and where, or stand in the provenance of a record themselves.
+constexpr std::array<std::string_view, 7> kOptionsLeftOut{
+    "--out", "--record", "--as-printed", "--no-pictures", "--quiet", "--json", "--seed"};
+
+/// Throws InputError where it is no command of `rehearse`, whose options `app` has.
+void parse_command(CLI::App& app, const std::string& command_line) {
+  std::vector<std::string> words = split_command_line(command_line);
+  if (words.size() < 3 || words[1] != "rehearse")
+    throw InputError("'" + command_line + "' is no command of understudy rehearse");
+  words.erase(words.begin(), words.begin() + 2);
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  try {
+    app.parse(words);
+  } catch (const CLI::Error& error) {
+    throw InputError("'" + command_line + "': " + error.what());
+  }
+}
+
 }  // namespace
 
 void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
@@ -145,6 +167,8 @@ void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
       ->check(CLI::Range(0, 65535))
       ->needs(watch)
       ->capture_default_str();
+  add_quiet_option(command, options.output, "no progress, and the verdict alone, in one line");
+  add_json_option(command, options.output, "the summary");
 }
 
 rehearsal::RehearsalRequest RehearseOptions::with_faults() const {
@@ -154,20 +178,24 @@ rehearsal::RehearsalRequest RehearseOptions::with_faults() const {
 }
 
 RehearseOptions read_rehearse_command(const std::string& command_line) {
-  std::vector<std::string> words = split_command_line(command_line);
-  if (words.size() < 3 || words[1] != "rehearse")
-    throw InputError("'" + command_line + "' is no command of understudy rehearse");
   RehearseOptions options;
   CLI::App app;
   add_rehearse_options(app, options);
-  words.erase(words.begin(), words.begin() + 2);
-  std::reverse(words.begin(), words.end());  // as CLI11 takes them
-  try {
-    app.parse(words);
-  } catch (const CLI::Error& error) {
-    throw InputError("'" + command_line + "': " + error.what());
-  }
+  parse_command(app, command_line);
   return options;
+}
+
+std::map<std::string, std::string> rehearse_option_words(const std::string& command_line) {
+  RehearseOptions options;
+  CLI::App app;
+  add_rehearse_options(app, options);
+  parse_command(app, command_line);
+  std::map<std::string, std::string> given;
+  for (const CLI::Option* option : app.get_options())
+    if (option->count() > 0 &&
+        std::ranges::find(kOptionsLeftOut, option->get_name()) == kOptionsLeftOut.end())
+      given[option->get_name()] = fmt::format("{}", fmt::join(option->results(), " "));
+  return given;
 }
 
 std::string among_results(const std::string& file, const std::string& folder, const std::string& working) {

@@ -1,11 +1,13 @@
 // The options of `understudy rehearse`, for whoever runs that command or reads its words in a record.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
 
+#include "cli/output_options.h"
 #include "rehearsal/request/request.h"
 
 namespace understudy::cli {
@@ -16,6 +18,7 @@ struct RehearseOptions {
   std::string folder = "rehearsal";  ///< of results
   bool watch = false;                ///< show the growing report in a browser
   int watch_port = 0;                ///< of HTTP; 0: any free one
+  OutputOptions output;
 
   /// The request with its faults; throws InputError for words that tell none.
   rehearsal::RehearsalRequest with_faults() const;
@@ -27,6 +30,11 @@ void add_rehearse_options(CLI::App& command, RehearseOptions& options);
 /// What a command line asks for, `understudy rehearse ...` word by word as command_line() joined them.
 /// Throws InputError for any other command and for words that are not understood.
 RehearseOptions read_rehearse_command(const std::string& command_line);
+
+/// What such a command line gives for each argument and option that can change the answer and no record tells
+/// otherwise, by name: "program",
+/// "--gap-control". Throws as read_rehearse_command().
+std::map<std::string, std::string> rehearse_option_words(const std::string& command_line);
 
 /// `file` where it lies outside of `folder`; else its place in `working`, where that folder is being made.
 std::string among_results(const std::string& file, const std::string& folder, const std::string& working);

@@ -36,6 +36,8 @@ void add_run(CLI::App& command, const std::shared_ptr<ScenarioRequest>& request,
                   "show which figures differ from those in this earlier --out");
   run->add_flag("--update-golden", request->update_golden,
                 "write the figures of scenarios that pass to golden/ beside them");
+  add_quiet_option(*run, request->output, "no progress, and only the scenarios that fail and how many");
+  add_json_option(*run, request->output, "the results of all scenarios");
   run->callback([=, &action] { action = [=] { return run_scenarios(*request); }; });
 }
 

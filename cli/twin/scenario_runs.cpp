@@ -1,6 +1,7 @@
 #include "cli/twin/scenario_runs.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -25,6 +26,7 @@
 #include "regression/run_scenario.h"
 #include "regression/scenario_file.h"
 #include "report/page/write_results.h"
+#include "report/scenario_results_json.h"
 
 namespace understudy::cli {
 namespace {
@@ -149,7 +151,7 @@ class Runner {
   }
 
   ScenarioOutcome here(const Scenario& scenario, const std::string& inputs) {
-    ProgressLine line;
+    ProgressLine line(!request_.output.quiet);
     ScenarioOutcome outcome = run_here(
         scenario, request_.folder, request_.threads,
         [&](double share, const std::string& what) { line.show(share, scenario.name + ": " + what); });
@@ -166,7 +168,11 @@ class Runner {
     if (const auto before = baseline_.find(scenario.file.stem().string()); before != baseline_.end())
       runs_[i].changes = regression::changes(before->second, outcome.run);
     runs_done_[i] = true;
-    for (; printed_ < runs_.size() && runs_done_[printed_]; ++printed_) print_run(runs_[printed_]);
+    for (; printed_ < runs_.size() && runs_done_[printed_]; ++printed_) tell(runs_[printed_]);
+  }
+
+  void tell(const RunScenario& run) const {
+    if (!request_.output.json && !(request_.output.quiet && run.result.passed())) print_run(run);
   }
 
   const ScenarioRequest& request_;
@@ -181,7 +187,7 @@ class Runner {
 };
 
 /// Of scenarios that hold what else they expect: a figure that is wrong shall not become golden.
-void update_golden(const std::vector<RunScenario>& runs) {
+void update_golden(const std::vector<RunScenario>& runs, std::FILE* told) {
   for (const RunScenario& run : runs) {
     const fs::path golden = regression::golden_file_of(run.scenario.file);
     const auto& checks = run.result.checks;
@@ -194,8 +200,21 @@ void update_golden(const std::vector<RunScenario>& runs) {
     }
     fs::create_directories(golden.parent_path());
     write_file(golden, regression::golden_text(run.scenario, run.metrics, run.scenario.golden));
-    fmt::print("{}\n", golden.string());
+    fmt::print(told, "{}\n", golden.string());
   }
+}
+
+void print_end(const ScenarioRequest& request, const std::vector<RunScenario>& runs) {
+  if (request.output.json) {
+    std::vector<report::ToldScenario> told;
+    for (const RunScenario& run : runs) told.push_back({run.result, run.changes});
+    fmt::print("{}", report::scenario_results_json(told));
+    return;
+  }
+  const auto passed = std::ranges::count_if(runs, [](const RunScenario& run) { return run.result.passed(); });
+  fmt::print("{} passed, {} failed\n", passed, std::ssize(runs) - passed);
+  if (!request.folder.empty() && !request.output.quiet)
+    fmt::print("index: {}\n", (fs::path(request.folder) / "index.html").string());
 }
 
 int exit_status_of(const std::vector<RunScenario>& runs) {
@@ -228,10 +247,8 @@ int run_scenarios(const ScenarioRequest& request) {
   for (const RunScenario& run : runs) results.push_back(run.result);
   if (!request.junit.empty()) write_file(request.junit, regression::junit_xml(results));
   if (!request.folder.empty()) write_scenario_index(runs, request.folder);
-  const auto passed = std::ranges::count_if(results, &regression::ScenarioResult::passed);
-  fmt::print("{} passed, {} failed\n", passed, std::ssize(results) - passed);
-  if (!request.folder.empty()) fmt::print("index: {}\n", (fs::path(request.folder) / "index.html").string());
-  if (request.update_golden) update_golden(runs);
+  print_end(request, runs);
+  if (request.update_golden) update_golden(runs, request.output.json ? stderr : stdout);
   return exit_status_of(runs);
 }
 

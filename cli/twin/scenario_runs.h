@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/output_options.h"
+
 namespace understudy::cli {
 
 struct ScenarioRequest {
@@ -14,6 +16,7 @@ struct ScenarioRequest {
   int processes = 1;
   bool resume = false;
   bool update_golden = false;
+  OutputOptions output;
 };
 
 /// The folder of shipped scenarios, when none is named: here, or beside the models.

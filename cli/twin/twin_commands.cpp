@@ -12,6 +12,7 @@
 #include "machine/description.h"
 #include "rehearsal/library_versions.h"
 #include "renderer/scene_view.h"
+#include "report/gltf/replay_glb.h"
 #include "report/page/pack.h"
 #include "report/page/page_parts.h"
 #include "sim/as_built/as_built.h"
@@ -54,6 +55,7 @@ void add_twin_commands(CLI::App& app, Action& action) {
   add_pose(app, action);
   add_place(app, action);
   add_verify(app, action);
+  add_compare(app, action);
   add_register(app, action);
   add_scenario(app, action);
   add_sweep(app, action);
@@ -71,6 +73,7 @@ std::vector<std::string> left_out_commands() { return {}; }
 
 LibraryVersions library_versions_of_rooms() {
   LibraryVersions all = rehearsal::library_versions();
+  all["tinygltf"] = report::loaded_tinygltf();
   all["zlib"] = report::loaded_zlib();
   all.merge(report::page_packages());
   return all;

@@ -198,6 +198,12 @@ std::string why_not_as_written(const fs::path& folder) {
   return foreign_in(folder);
 }
 
+bool is_as_written(const fs::path& folder, const std::string& name) {
+  const Digests ours = read_manifest(folder);
+  const auto known = ours.find(name);
+  return known == ours.end() || sha256_hex(read_file(folder / name)) == known->second;
+}
+
 void check_replaceable(const fs::path& target) {
   if (const std::string why = why_not_replaceable(target); !why.empty()) refuse(target, why);
 }

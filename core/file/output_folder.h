@@ -42,6 +42,10 @@ class OutputFolder {
 /// at all. Empty: it is. Throws InputError where it cannot be read.
 std::string why_not_as_written(const std::filesystem::path& folder);
 
+/// Whether the file `name` in `folder` has the content that the manifest there gives it; true where no
+/// manifest names it.
+bool is_as_written(const std::filesystem::path& folder, const std::string& name);
+
 /// Throws InputError where an OutputFolder could not replace `target`: to be asked of many before long work.
 void check_replaceable(const std::filesystem::path& target);
 

@@ -50,6 +50,7 @@ class SvgChart {
  public:
   SvgChart(const ChartFrame& frame, const Scale& x, const Scale& y);
 
+  void title(const std::string& words) { drawing_.title(words); }  ///< as SvgDrawing::title()
   /// Numbers, a line across at each, and the name.
   void y_axis(const std::string& name);
   void x_axis(const std::string& name);                 ///< numbers and name

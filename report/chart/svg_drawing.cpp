@@ -23,6 +23,8 @@ SvgDrawing::SvgDrawing(double width, double height, const std::string& style)
     : svg_(fmt::format("<svg viewBox=\"0 0 {:g} {:g}\"{} role=\"img\" font-size=\"12\" fill=\"#5a6570\">\n",
                        width, height, style.empty() ? "" : fmt::format(" style=\"{}\"", style))) {}
 
+void SvgDrawing::title(std::string_view words) { svg_ += title_element(words) + "\n"; }
+
 void SvgDrawing::line(SvgPoint from, SvgPoint to, const std::string& attributes) {
   svg_ += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", from.x, from.y,
                       to.x, to.y, attributes);

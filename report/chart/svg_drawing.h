@@ -17,6 +17,8 @@ class SvgDrawing {
   /// `style` is added to the element's own: empty, or as "width:300px".
   SvgDrawing(double width, double height, const std::string& style = "");
 
+  /// What it shows, for readers who do not see it; ahead of all marks.
+  void title(std::string_view words);
   /// `attributes` as in SVG: `stroke="#d9dee2" stroke-dasharray="4 4"`.
   void line(SvgPoint from, SvgPoint to, const std::string& attributes);
   void polyline(std::span<const SvgPoint> points, const std::string& attributes);

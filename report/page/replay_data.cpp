@@ -12,6 +12,7 @@
 #include "core/text/stable_number.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
+#include "report/kept_points.h"
 #include "report/page/pack.h"
 #include "sim/surface/bead_sweep.h"
 
@@ -144,7 +145,6 @@ Json body_value(const ReplayBody& body, const ReplayBudget& budget) {
 /// Which points of a trace a straight line between neighbours stands for to within `tolerance` [m], its
 /// extrusion included.
 std::vector<std::size_t> points_within(const std::vector<TracePoint>& trace, double tolerance) {
-  std::vector<std::size_t> kept{0};
   constexpr std::size_t kMost = 256;
   const auto stands_for = [&](std::size_t a, std::size_t b) {
     const double span = trace[b].time - trace[a].time;
@@ -157,13 +157,7 @@ std::vector<std::size_t> points_within(const std::vector<TracePoint>& trace, dou
     }
     return angle_between(trace[a].X_WT.linear(), trace[b].X_WT.linear()) < 0.05;
   };
-  for (std::size_t at = 0; at + 1 < trace.size();) {
-    std::size_t next = at + 1;
-    while (next + 1 < trace.size() && next - at < kMost && stands_for(at, next + 1)) ++next;
-    kept.push_back(next);
-    at = next;
-  }
-  return kept;
+  return kept_points(trace.size(), kMost, stands_for);
 }
 
 std::vector<std::size_t> path_points(const std::vector<TracePoint>& trace, std::size_t most,

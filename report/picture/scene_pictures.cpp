@@ -1,28 +1,16 @@
 #include "report/picture/scene_pictures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "report/picture/body_colours.h"
 #include "sim/surface/bead_sweep.h"
 
 namespace understudy::report {
 namespace {
-
-using Colour = std::array<float, 3>;
-constexpr Colour kMetal{0.55f, 0.58f, 0.62f}, kStrut{0.25f, 0.42f, 0.62f}, kBrass{0.80f, 0.60f, 0.22f},
-    kPart{0.86f, 0.88f, 0.84f}, kTable{0.90f, 0.90f, 0.91f}, kPath{0.85f, 0.25f, 0.10f},
-    kHeater{0.45f, 0.20f, 0.18f}, kFilament{0.90f, 0.45f, 0.15f};
-
-Colour colour_of(const std::string& body) {
-  if (body.find("strut") != std::string::npos) return kStrut;
-  if (body == "nozzle") return kBrass;
-  if (body == "heater block") return kHeater;
-  return kMetal;
-}
 
 /// What a picture of beads can hold; a larger print is drawn coarser.
 constexpr std::size_t kTrianglesMost = 1'500'000;
@@ -110,7 +98,7 @@ void stand_level(const Pose& X_WO, renderer::PictureScene& drawn) {
 /// Without what was laid.
 renderer::PictureScene machine_and_path(const rehearsal::Scene& scene) {
   renderer::PictureScene drawn;
-  for (const auto& shape : scene.bodies) drawn.shapes.push_back({shape, colour_of(shape.name)});
+  for (const auto& shape : scene.bodies) drawn.shapes.push_back({shape, colour_of_body(shape.name)});
   drawn.shapes.push_back({scene.table, kTable});
   if (scene.part) drawn.shapes.push_back({{"part", geometry::MeshShape{scene.part}}, kPart});
   // What is still to come, as a thin line; of a very long program its next stretches.

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/error.h"
+#include "sim/surface/swept_shell.h"
 
 namespace understudy::sim {
 namespace {
@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kLookAhead = 128;  // sections that one straight piece may stand for
 constexpr double kFrontLag = 0.2e-3;     // [m], by which a piece's front may lead or trail as it grows
 constexpr int kSidesMost = 32;
-constexpr double kPole = 0.02;  // of a quarter turn: a cap ends in a small ring instead of a point
 
 Vec3 wide(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -42,16 +41,6 @@ double difference(const BeadSection& a, const BeadSection& b) {
          0.5 * a.width * (a.up_W - b.up_W).norm();
 }
 
-BeadSection between(const BeadSection& a, const BeadSection& b, double share) {
-  BeadSection s = b;
-  s.middle_W = a.middle_W + share * (b.middle_W - a.middle_W);
-  s.up_W = (a.up_W + share * (b.up_W - a.up_W)).normalized();
-  s.width = a.width + share * (b.width - a.width);
-  s.height = a.height + share * (b.height - a.height);
-  s.laid_at = a.laid_at + share * (b.laid_at - a.laid_at);
-  return s;
-}
-
 /// By how much a mitre's corner lies outside the round one that two beads make.
 double mitre_error(const Vec3& before, const Vec3& after, double width) {
   const double cosine = std::clamp(before.normalized().dot(after.normalized()), -1.0, 1.0);
@@ -72,7 +61,7 @@ bool stands_for(const BeadStretch& sections, std::size_t first, std::size_t last
     const double share = (s.middle_W - a.middle_W).dot(chord) / length2;
     if (share < before || share > 1) return false;
     before = share;
-    const BeadSection there = between(a, b, share);
+    const BeadSection there = section_between(a, b, share);
     if (difference(s, there) > tolerance) return false;
     if (std::abs(s.laid_at - there.laid_at) * speed > std::max(kFrontLag, tolerance)) return false;
   }
@@ -113,7 +102,7 @@ class Sweeper {
                          mitre_error(along_, along, start.width) <= tolerance_;
     if (goes_on) {
       const BeadSection joint = open_.back();
-      open_.back() = between(joint, start, 0.5);
+      open_.back() = section_between(joint, start, 0.5);
       open_.back().laid_at = joint.laid_at;
       open_.back().line = joint.line;
     } else {
@@ -174,59 +163,17 @@ class Sweeper {
   double not_before_ = 0;           // of the open stretch
 };
 
-struct Frame {
-  Vec3 along, side, up;
-};
-
-Frame frame_at(const BeadStretch& stretch, std::size_t i) {
-  const Vec3 before = i > 0 ? Vec3(stretch[i].middle_W - stretch[i - 1].middle_W) : Vec3::Zero();
-  const Vec3 after =
-      i + 1 < stretch.size() ? Vec3(stretch[i + 1].middle_W - stretch[i].middle_W) : Vec3::Zero();
-  Frame frame;
-  frame.along = (before.stableNormalized() + after.stableNormalized()).stableNormalized();
-  const Vec3 side = frame.along.cross(stretch[i].up_W);
-  // Laid straight along the tool axis, the section has no height direction of its own.
-  frame.side = side.norm() > 1e-6 ? side.normalized() : frame.along.unitOrthogonal();
-  frame.up = frame.side.cross(frame.along);
-  return frame;
-}
-
-/// A ring: two half circles about the ends of the flat core, counter-clockwise seen along `along`.
-void append_ring(const BeadSection& section, const Frame& frame, double latitude, int sides,
-                 std::vector<Vec3>& vertices) {
-  const double radius = 0.5 * section.height, flat = 0.5 * (section.width - section.height);
-  const Vec3 centre = section.middle_W + radius * std::sin(latitude) * frame.along;
-  for (const int half : {1, -1})
-    for (int k = 0; k <= sides / 2; ++k) {
-      const double angle = half * std::numbers::pi * (static_cast<double>(k) / (sides / 2) - 0.5);
-      const double out = radius * std::cos(latitude);
-      vertices.push_back(centre + half * (flat + out * std::cos(angle)) * frame.side +
-                         half * (half * out * std::sin(angle)) * frame.up);
-    }
-}
-
-/// A blob, or one bead from end to end: append_shell() closes its ends without a ring.
-bool is_one_bead(const BeadStretch& stretch) {
-  return stretch.size() == 1 ||
-         (stretch.size() == 2 && stretch[0].width == stretch[1].width &&
-          stretch[0].height == stretch[1].height && stretch[0].up_W == stretch[1].up_W);
-}
-
-Bead bead_of(const BeadStretch& stretch) {
-  const BeadSection &from = stretch.front(), &to = stretch.back();
-  Bead bead;
-  for (int i = 0; i < 3; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    bead.from_W[n] = static_cast<float>(from.middle_W[i]);
-    bead.to_W[n] = static_cast<float>(to.middle_W[i]);
-    bead.up_W[n] = static_cast<float>(from.up_W[i]);
-  }
-  bead.width = static_cast<float>(from.width);
-  bead.height = static_cast<float>(from.height);
-  return bead;
-}
-
 }  // namespace
+
+BeadSection section_between(const BeadSection& a, const BeadSection& b, double share) {
+  BeadSection s = b;
+  s.middle_W = a.middle_W + share * (b.middle_W - a.middle_W);
+  s.up_W = (a.up_W + share * (b.up_W - a.up_W)).normalized();
+  s.width = a.width + share * (b.width - a.width);
+  s.height = a.height + share * (b.height - a.height);
+  s.laid_at = a.laid_at + share * (b.laid_at - a.laid_at);
+  return s;
+}
 
 std::vector<BeadStretch> sweep_beads(const BeadIndex& beads, const SweepSettings& settings) {
   Sweeper sweeper(settings);
@@ -248,44 +195,14 @@ std::size_t section_count(const std::vector<BeadStretch>& stretches) {
 }
 
 void append_sweep(const BeadStretch& stretch, int sides, BeadMesh& mesh) {
-  if (is_one_bead(stretch)) {
-    append_shell(bead_of(stretch), sides, mesh);
-    return;
-  }
-  const ShellSize size = sweep_size(stretch, sides);
-  if (mesh.vertices.size() + size.vertices > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw InputError("a mesh of beads has " + std::to_string(mesh.vertices.size() + size.vertices) +
-                     " vertices, more than 2^31 - 1");
-  const int first = static_cast<int>(mesh.vertices.size()), around = sides + 2, quarter = sides / 4;
-  const auto latitude = [&](int step) {
-    return 0.5 * std::numbers::pi * std::min(static_cast<double>(step) / quarter, 1 - kPole);
-  };
-  for (std::size_t i = 0; i < stretch.size(); ++i) {
-    const Frame frame = frame_at(stretch, i);
-    if (i == 0)
-      for (int step = quarter; step > 0; --step)
-        append_ring(stretch[i], frame, -latitude(step), sides, mesh.vertices);
-    append_ring(stretch[i], frame, 0, sides, mesh.vertices);
-    if (i + 1 == stretch.size())
-      for (int step = 1; step <= quarter; ++step)
-        append_ring(stretch[i], frame, latitude(step), sides, mesh.vertices);
-  }
-  const int rings = static_cast<int>(stretch.size()) + 2 * quarter;
-  for (int ring = 0; ring + 1 < rings; ++ring)
-    for (int k = 0; k < around; ++k) {
-      const int a = first + ring * around + k, b = first + ring * around + (k + 1) % around;
-      mesh.triangles.push_back({a, b + around, b});
-      mesh.triangles.push_back({a, a + around, b + around});
-    }
-  const int last = first + (rings - 1) * around;
-  for (int k = 1; k + 1 < around; ++k) {
-    mesh.triangles.push_back({first, first + k, first + k + 1});
-    mesh.triangles.push_back({last, last + k + 1, last + k});
-  }
+  if (is_one_bead(stretch)) return append_shell(one_bead(stretch), sides, mesh);
+  SweptShell shell{std::move(mesh), {}, {}};
+  append_swept(stretch, {0, stretch.size() - 1}, sides, shell);
+  mesh = std::move(shell.mesh);
 }
 
 ShellSize sweep_size(const BeadStretch& stretch, int sides) {
-  if (is_one_bead(stretch)) return shell_size(bead_of(stretch), sides);
+  if (is_one_bead(stretch)) return shell_size(one_bead(stretch), sides);
   const auto around = static_cast<std::size_t>(sides) + 2;
   const std::size_t rings = stretch.size() + 2 * static_cast<std::size_t>(sides / 4);
   return {rings * around, 2 * (rings - 1) * around + 2 * (around - 2)};

@@ -26,6 +26,9 @@ struct BeadSection {
 /// alone is a blob.
 using BeadStretch = std::vector<BeadSection>;
 
+/// At a share of the way from one to the next; `line` is that of the next.
+BeadSection section_between(const BeadSection& a, const BeadSection& b, double share);
+
 struct SweepSettings {
   double by = HUGE_VAL;  ///< [s], what is laid later is left out
   /// [m], by which the body's surface may be off that of the beads: their middle lines, half widths, half

@@ -25,6 +25,15 @@ json summary(const Folder& folder, const std::string& name) {
   return json::parse(read_file(folder.path() / name / "summary.json"));
 }
 
+TEST(Calibrate, TellsAsMuchAsIsAsked) {
+  const Folder folder;
+  const std::string command = "calibrate " + kSample + " -o " + (folder / "m.yaml");
+  EXPECT_EQ(understudy(command + " --quiet").out, "machine: " + (folder / "m.yaml") + "\n");
+  const Outcome told = understudy(command + " --json --report " + (folder / "report"));
+  EXPECT_EQ(told.out, read_file(folder / "report/summary.json"));
+  EXPECT_EQ(told.err, "");
+}
+
 TEST(Calibrate, TheSampleGivesAMachineThatOtherCommandsRead) {
   const Folder folder;
   const Outcome outcome =

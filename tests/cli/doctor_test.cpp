@@ -33,7 +33,8 @@ const Versions kPackagesOfTheController{{"Boost", "libboost-math-dev"},
                                         {"yaml-cpp", "libyaml-cpp-dev"}};
 const Versions kPackagesOfTheTwin{{"Bullet", "libbullet-dev"}, {"FCL", "libfcl-dev"},
                                   {"LLVM", "libllvm15"},       {"Mesa", "libosmesa6-dev"},
-                                  {"MuJoCo", "libmujoco-dev"}, {"zlib", "zlib1g-dev"}};
+                                  {"MuJoCo", "libmujoco-dev"}, {"tinygltf", "libtinygltf-dev"},
+                                  {"zlib", "zlib1g-dev"}};
 
 Versions printed_versions(const std::string& text) {
   Versions versions;

@@ -1,6 +1,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -45,6 +46,42 @@ TEST(Rehearse, WritesTheContractsFilesAndAnswersByExitStatus) {
   EXPECT_LE(summary["gap"]["start_mm"], 0.2);
   EXPECT_EQ(summary["provenance"]["machine_sha256"].get<std::string>().size(), 64u);
   EXPECT_THAT(outcome.out, HasSubstr("report.html"));
+}
+
+/// A short print on the table.
+class RehearseTells : public testing::Test {
+ protected:
+  Outcome rehearse(const std::string& options) const {
+    return understudy("rehearse " + program_ + " --engine quasistatic --gap-control off --no-pictures " +
+                      "--tip-tolerance 5 --out " + (folder_ / "out") + " " + options);
+  }
+  Folder folder_;
+  std::string program_ = folder_.write(
+      "line.gcode", "G21 G90 M83\nM104 S200\nG0 X-3 Y0 Z1\nG1 Z0.15 F600\nG1 X3 E0.2 F300\nG0 Z2\n");
+};
+
+TEST_F(RehearseTells, TheVerdictAloneWhenQuiet) {
+  const Outcome told = rehearse("--quiet"), at_length = rehearse("");
+  EXPECT_EQ(told.out, at_length.out.substr(0, at_length.out.find('\n') + 1));
+  EXPECT_EQ(std::ranges::count(told.out, '\n'), 1) << told.out;
+  EXPECT_THAT(told.out, HasSubstr("line.gcode on hexapod: "));
+  EXPECT_EQ(told.err, "");
+  EXPECT_EQ(told.status, at_length.status);
+  EXPECT_TRUE(fs::exists(folder_ / "out/report.html"));
+}
+
+TEST_F(RehearseTells, TheSummaryAsOneDocument) {
+  const Outcome told = rehearse("--json -q");
+  EXPECT_EQ(told.out, read_file(folder_ / "out/summary.json"));
+  EXPECT_EQ(nlohmann::json::parse(told.out)["schema"], "understudy.rehearsal/1");
+  EXPECT_EQ(understudy("verify " + (folder_ / "out")).status, 0) << "its words are read again";
+}
+
+TEST_F(RehearseTells, ErrorsOnStandardErrorWhateverIsAsked) {
+  const Outcome told = rehearse("--json --quiet --machine none");
+  EXPECT_EQ(told.status, 2);
+  EXPECT_EQ(told.out, "");
+  EXPECT_THAT(told.err, HasSubstr("none"));
 }
 
 TEST(Rehearse, TheSameCommandAndSeedGiveTheSameBytes) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "core/file/read_file.h"
 #include "tests/cli/program_run.h"
@@ -49,6 +50,34 @@ std::string told_of(const std::string& name, const std::string& text) {
   if (begin == std::string::npos) return "nothing";
   const auto end = text.find("time ", begin);
   return text.substr(begin, text.find('\n', end) - begin);
+}
+
+TEST_F(ScenarioRuns, WhenQuietOnlyFailuresAreTold) {
+  write("two", 2, "0.01");  // no gap is so small
+  const Outcome told = understudy("scenario run --quiet " + at("one.yaml") + " " + at("two.yaml"));
+  EXPECT_EQ(told.status, 1);
+  EXPECT_THAT(told.out, ::testing::StartsWith("FAIL two\n"));
+  EXPECT_THAT(told.out, ::testing::EndsWith("1 passed, 1 failed\n"));
+  EXPECT_THAT(told.out, Not(HasSubstr("one.yaml")));
+}
+
+TEST_F(ScenarioRuns, OneJsonDocumentHoldsAllResults) {
+  run(at("one.yaml") + " --out " + at("before"));
+  write("one", 2, "0.01");
+  const Outcome told = understudy("scenario run --json " + at("one.yaml") + " --baseline " + at("before") +
+                                  " --out " + at("out"));
+  EXPECT_EQ(told.status, 1);
+  const auto json = nlohmann::json::parse(told.out);
+  EXPECT_EQ(json["schema"], "understudy.scenarios/1");
+  EXPECT_EQ(json["passed"], 0);
+  EXPECT_EQ(json["failed"], 1);
+  const auto& one = json["scenarios"][0];
+  EXPECT_EQ(one["name"], "one");
+  EXPECT_EQ(one["passed"], false);
+  EXPECT_GT(one["checks"][0]["value"], 0.01);
+  EXPECT_THAT(one["checks"][0]["message"].get<std::string>(), HasSubstr("above 0.01 mm"));
+  EXPECT_FALSE(one["changes"].empty()) << "another seed is another machine";
+  EXPECT_TRUE(fs::exists(one["report"].get<std::string>()));
 }
 
 TEST_F(ScenarioRuns, ProcessesAnswerAsOneAfterTheOther) {

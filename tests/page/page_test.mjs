@@ -210,6 +210,36 @@ const tests = {
     assert.ok(await page.locator('.pictures img').first().isVisible());
     await page.context().close();
   },
+  async 'two rehearsals beside each other: the answer, what differs, and both curves'() {
+    const page = await open(join(samples, 'compared/go-no-go.html'));
+    assert.match(await page.textContent('.verdict strong'), /GO with warnings \u2192 NO-GO/);
+    assert.equal(await page.locator('.plot-grid svg').count(), 4);
+    const box = await page.locator('.plot-grid svg polyline[stroke="#0072b2"]').first().boundingBox();
+    assert.ok(box.width > 200, 'the curve is ' + box.width + ' px wide');
+    assert.deepEqual(page.faults, []);
+    await page.context().close();
+    for (const name of ['compared/hostile-go.html', 'compared/stopped-go.html', 'compared/go-go.html']) {
+      const other = await open(join(samples, name), { viewport: { width: 390, height: 844 } });
+      assert.equal(await other.evaluate(() => window.evil), undefined, name);
+      const text = await other.innerText('#page');
+      for (const word of ['NaN', 'undefined', 'inf ']) assert.ok(!text.includes(word), name + ' says ' + word);
+      for (const width of [390, 1280]) {
+        await other.setViewportSize({ width, height: 844 });
+        const wide = await other.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(wide <= width, `${name} at ${width} px is ${wide} px wide`);
+      }
+      assert.deepEqual(other.faults, [], name);
+      await other.context().close();
+    }
+  },
+  async 'axe finds nothing serious on the page of two rehearsals'() {
+    const page = await open(join(samples, 'compared/go-no-go.html'), { bypassCSP: true });
+    await page.evaluate(() => { for (const d of document.querySelectorAll('details')) d.open = true; });
+    await page.evaluate(axe);
+    const found = await page.evaluate(() => axe.run());
+    assert.deepEqual(found.violations.filter((v) => ['serious', 'critical'].includes(v.impact)).map((v) => v.id + ': ' + v.nodes[0].target), []);
+    await page.context().close();
+  },
   async 'names and comments stay text'() {
     const page = await open('hostile');
     assert.equal(await page.evaluate(() => window.evil), undefined);

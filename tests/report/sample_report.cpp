@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/file/output_file.h"
+#include "report/page/comparison_page.h"
 #include "report/page/write_results.h"
 #include "tests/report/sample_record.h"
 #include "tests/report/sample_replay.h"
@@ -64,6 +66,16 @@ Record in_air() {
   return record;
 }
 
+/// The page of two samples beside each other, in FOLDER/compared.
+void write_compared(const std::filesystem::path& folder, const std::string& a, const std::string& b) {
+  const RecordedRehearsal first = read_recorded_rehearsal(folder / a),
+                          second = read_recorded_rehearsal(folder / b);
+  const std::filesystem::path page = folder / "compared" / (a + "-" + b + ".html");
+  std::filesystem::create_directories(page.parent_path());
+  understudy::write_file(page, comparison_html(compare_rehearsals(first, second), first, second));
+  std::cout << page.string() << "\n";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -82,11 +94,14 @@ int main(int argc, char** argv) {
   samples.emplace_back("believing", believing());
   samples.emplace_back("hostile", hostile());
   if (argc == 3) samples.emplace_back("large", sample_large(std::atoi(argv[2])));
-  for (const auto& [name, record] : samples) {
+  for (auto& [name, record] : samples) {
+    record.provenance.inputs_sha256 = std::string(64, 'a');
     const std::filesystem::path folder = std::filesystem::path(argv[1]) / name;
     std::filesystem::create_directories(folder);
     const bool ran = !record.trace.empty();
     write_results(record, ran ? sample_pictures() : std::vector<Illustration>(), folder);
     std::cout << (folder / "report.html").string() << "\n";
   }
+  for (const auto& [a, b] : {std::pair("go", "no-go"), {"hostile", "go"}, {"stopped", "go"}, {"go", "go"}})
+    write_compared(argv[1], a, b);
 }

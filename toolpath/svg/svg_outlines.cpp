@@ -31,6 +31,7 @@ constexpr double kPixel = 25.4 * kMillimetre / 96;  // CSS
 constexpr int kDeepest = 100;                       // groups in groups
 constexpr int kHalvings = 20;                       // of a curve
 constexpr std::size_t kMostPoints = 1'000'000;
+constexpr double kLargest = 100;  // [m], from the drawing's origin: larger is no part of a printer
 
 // What draws nothing, and is passed over with all that it holds.
 constexpr std::array<string_view, 12> kSilent{"defs",           "title",          "desc",   "metadata",
@@ -263,15 +264,26 @@ class Drawing {
         return to_page * Vec2(p.x(), p.y());
       };
       for (const Geom::Curve& curve : path) {
+        check_size(e, [&](double t) { return at(curve, t); });
         if (stroke.points.empty()) stroke.points.push_back(at(curve, 0));
         flatten([&](double t) { return at(curve, t); }, 0, 1, curve.isLineSegment() ? kHalvings : 0, stroke);
       }
       if (stroke.points.size() < 2) continue;  // a move without a line
-      for (const Vec2& p : stroke.points)
-        if (!p.allFinite()) fail(e, "a point of its outline is not finite");
       points_ += stroke.points.size();
       if (points_ > kMostPoints) fail(e, fmt::format("the drawing has more than {} points", kMostPoints));
       strokes_.push_back(std::move(stroke));
+    }
+  }
+
+  /// Before it is cut into pieces: a circle of 1e300 would become a million of them first.
+  void check_size(const Element& e, const std::function<Vec2(double)>& at) const {
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const Vec2 p = at(t);
+      if (!p.allFinite()) fail(e, "a point of its outline is not finite");
+      if (p.norm() > kLargest)
+        fail(e,
+             fmt::format("its outline comes to {:.3g} m from the drawing's origin, at most {:g} m are read",
+                         p.norm(), kLargest));
     }
   }
 

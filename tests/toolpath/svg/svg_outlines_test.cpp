@@ -130,6 +130,8 @@ TEST_F(SvgOutlines, RefusesWhatHasNoOutlineOrIsNone) {
   EXPECT_THAT(refusal("<circle r='-1'/>"), HasSubstr("must be above 0"));
   EXPECT_THAT(refusal("<circle r='5em'/>"), HasSubstr("r=\"5em\" is not a number"));
   EXPECT_THAT(refusal("<polyline points='1 2 3'/>"), HasSubstr("3 numbers"));
+  EXPECT_THAT(refusal("<circle r='1e300'/>"), HasSubstr("from the drawing's origin, at most 100 m are read"));
+  EXPECT_THAT(refusal("<line x2='5e5'/>"), HasSubstr("132 m from the drawing's origin"));
   EXPECT_THAT(refusal(""), HasSubstr("no outline: nothing to print"));
   EXPECT_THAT(refusal_of("<html/>"), HasSubstr("no <svg>"));
   EXPECT_THAT(refusal_of("G1 X5"), HasSubstr("no XML"));

@@ -1,0 +1,20 @@
+// How much a command tells on its two streams, and in what form.
+#pragma once
+
+#include <string>
+
+#include <CLI/App.hpp>
+
+namespace understudy::cli {
+
+struct OutputOptions {
+  bool quiet = false;  ///< no progress, and of the answer the least
+  bool json = false;   ///< the answer is one JSON document on standard output
+};
+
+/// `what` is still told, in words for the help. `options` must outlive `command`.
+void add_quiet_option(CLI::App& command, OutputOptions& options, const std::string& what);
+/// `what` the document is: "the summary".
+void add_json_option(CLI::App& command, OutputOptions& options, const std::string& what);
+
+}  // namespace understudy::cli
