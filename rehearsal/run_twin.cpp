@@ -119,7 +119,7 @@ struct Watch {
         trace(deposition, TraceObserver::kCapacity, setup.asked),
         collision(setup.truth, setup.as_built, setup.workblank ? setup.workblank->stock : setup.built_part,
                   collision_options(setup)),
-        removal(removal_of(setup)),
+        removal(removal_of(setup)),  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): a unique_ptr holds it
         thread(watching(options)) {}
 
   std::vector<sim::Observer*> watching(const RunOptions& options) {

@@ -56,7 +56,7 @@ PoseShares::PoseShares(const machine::MachineDescription& machine,
       mechanism_(machine_.make_mechanism()),
       condition_max_(condition_limit(machine)),
       X_BW_(machine.X_WB.inverse()),
-      bodies_(machine, sim::as_described(machine), obstacle, nullptr) {
+      bodies_(machine, sim::as_described(machine), std::move(obstacle), nullptr) {
   names_.emplace_back("reach");
   if (machine.is_chain()) {
     for (int i = 0; i < mechanism_->axis_count(); ++i) {

@@ -99,7 +99,8 @@ Chosen chosen(const BeadIndex& beads, const AsPrintedSettings& settings) {
   if (settings.skin) {
     fill(beads.size(), settings.threads, [&](std::size_t i) {
       const BeadCore core = core_of(beads.bead(i));
-      in[i] = settings.intended->signed_distance(core.middle) > -(*settings.skin + core.reach());
+      const bool near = settings.intended->signed_distance(core.middle) > -(*settings.skin + core.reach());
+      in[i] = near ? 1 : 0;
     });
   }
   Chosen result;

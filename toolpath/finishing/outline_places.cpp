@@ -73,7 +73,7 @@ class Walk {
     }
   }
 
-  void add(const Vec3& p, geometry::SurfacePoint at) {
+  void add(const Vec3& p, const geometry::SurfacePoint& at) {
     const Vec3 normal = fitted_normal(part_, at, reach_);
     outline_.deviation = std::max(outline_.deviation, angle_of(normal, at.normal));
     turn_to(normal);

@@ -1,6 +1,7 @@
 #include "toolpath/lattice/segment_sequence.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 

@@ -11,7 +11,6 @@
 namespace understudy::sim {
 namespace {
 
-using kinematics::kMaxAxes;
 using kinematics::SolveStatus;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 

@@ -69,8 +69,8 @@ SolveStatus QuasistaticMachine::place(const AxisVector& position) {
 
 SolveStatus QuasistaticMachine::load(const AxisVector& velocity, const AxisVector& acceleration) {
   if (inertia_) return mechanics_->load(velocity, acceleration, load_);
-  constexpr AxisVector still{};
-  return mechanics_->load(still, still, load_);
+  constexpr AxisVector kStill{};
+  return mechanics_->load(kStill, kStill, load_);
 }
 
 /// True when a play has moved.
