@@ -39,12 +39,13 @@ void check(herr_t status) {
 
 void put_text(hid_t object, const std::string& name, const std::string& text) {
   const Held type(H5Tcopy(H5T_C_S1), H5Tclose);
-  check(H5Tset_size(type.get(), std::max<std::size_t>(1, text.size())));
+  check(H5Tset_size(type.get(), H5T_VARIABLE));
   check(H5Tset_cset(type.get(), H5T_CSET_UTF8));
   const Held space(H5Screate(H5S_SCALAR), H5Sclose);
   const Held attribute(H5Acreate2(object, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
                        H5Aclose);
-  check(H5Awrite(attribute.get(), type.get(), text.empty() ? "" : text.data()));
+  const char* const words = text.c_str();
+  check(H5Awrite(attribute.get(), type.get(), &words));
 }
 
 /// "tip_error_um" is in um; a column without such an ending has no unit.

@@ -23,6 +23,12 @@ constexpr auto kLastPage = 5s;  // that a browser has to load it
 constexpr std::size_t kThreads = 16;
 constexpr int kViewers = 8;
 
+// The library's own options let a second server take the same port.
+void only_one(socket_t socket) {
+  const int yes = 1;
+  static_cast<void>(::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes));
+}
+
 }  // namespace
 
 struct LiveServer::Server {
@@ -106,6 +112,7 @@ void LiveServer::Server::stream(const httplib::Request&, httplib::Response& resp
 }
 
 void LiveServer::Server::route() {
+  http.set_socket_options(only_one);
   http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   http.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
     if (of_this_computer(request)) return httplib::Server::HandlerResponse::Unhandled;
@@ -120,6 +127,8 @@ void LiveServer::Server::route() {
     response.set_header("Cache-Control", "no-store");
     response.set_content(content.record(), "application/json");
   });
+  http.Get("/favicon.ico",
+           [](const httplib::Request&, httplib::Response& response) { response.status = 204; });
   http.Get("/events", [this](const httplib::Request& request, httplib::Response& response) {
     stream(request, response);
   });

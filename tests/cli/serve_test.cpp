@@ -116,8 +116,9 @@ TEST(ServeCommand, PronsolePrintsOnTheTwin) {
   const std::string file = folder.write("part.gcode", program);
   BackgroundRun server(
       folder,
-      fmt::format("--machine hexapod --dialect marlin --port pty:{} --speed 20 --gap-control off --out {}",
-                  pty, results));
+      fmt::format(
+          "serve --machine hexapod --dialect marlin --port pty:{} --speed 20 --gap-control off --out {}", pty,
+          results));
   ASSERT_THAT(server.first_output(), HasSubstr("marlin"));
   const std::string sender = fmt::format(
       "(echo connect {} 115200; sleep 3; echo load {}; sleep 1; echo print; sleep 20) | HOME={} timeout 40 "
