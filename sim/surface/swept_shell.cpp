@@ -36,9 +36,10 @@ void append_ring(const BeadSection& section, const Frame& frame, double latitude
                  SweptShell& shell) {
   const double radius = 0.5 * section.height, flat = 0.5 * (section.width - section.height);
   const Vec3 centre = section.middle_W + radius * std::sin(latitude) * frame.along;
+  const int steps = sides / 2;
   for (const int half : {1, -1})
-    for (int k = 0; k <= sides / 2; ++k) {
-      const double angle = half * std::numbers::pi * (static_cast<double>(k) / (sides / 2) - 0.5);
+    for (int k = 0; k <= steps; ++k) {
+      const double angle = half * std::numbers::pi * (static_cast<double>(k) / steps - 0.5);
       const double out = radius * std::cos(latitude);
       shell.mesh.vertices.push_back(centre + half * (flat + out * std::cos(angle)) * frame.side +
                                     half * (half * out * std::sin(angle)) * frame.up);

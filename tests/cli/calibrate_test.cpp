@@ -270,8 +270,8 @@ Story story_of(const Folder& folder, const std::string& built) {
             0);
   const json tip = summary(folder, "report")["tip"],
              print =
-                 printed(folder, "--machine " + (folder / "c.yaml") + " --before hexapod " + built, "out"),
-             figures = print["calibration"];
+                 printed(folder, "--machine " + (folder / "c.yaml") + " --before hexapod " + built, "out");
+  const json& figures = print["calibration"];
   return {tip["sigma_rms_um"], tip["sigma_worst_um"], figures["tip_rms_before_um"],
           figures["tip_rms_after_um"]};
 }

@@ -19,7 +19,6 @@ namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 class RecordedReplayTest : public testing::Test {
  protected:
