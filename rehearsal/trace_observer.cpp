@@ -9,13 +9,13 @@ namespace understudy::rehearsal {
 
 TraceObserver::TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity,
                              std::shared_ptr<const toolpath::RewrittenPath> asked)
-    : deposition_(deposition), asked_(std::move(asked)), capacity_(std::max<std::size_t>(2, capacity)) {}
+    : deposition_(deposition), asked_(std::move(asked)), trace_(capacity) {}
 
 void TraceObserver::observe(const sim::Snapshot& s) {
   TracePoint point;
   point.time = s.time;
   point.line = s.line;
-  point.extruding = count_ > 0 && s.filament > filament_;
+  point.extruding = trace_.count() > 0 && s.filament > filament_;
   point.X_WT = s.X_WT;
   point.X_WT_programmed = s.X_WT_commanded;
   point.X_WT_programmed.translation() -= offset_at(s.time);
@@ -34,7 +34,8 @@ void TraceObserver::observe(const sim::Snapshot& s) {
   }
   point.path = path_;
   filament_ = std::max(filament_, s.filament);
-  keep(point);
+  newest_ = point;
+  trace_.add(point);
   if (told_) told_(point);
 }
 
@@ -47,19 +48,6 @@ Vec3 TraceObserver::offset_at(double time) {
   if (offsets_.size() == 1 || !offsets_[1].gradual) return now.offset_W;
   const auto& next = offsets_[1];
   return now.offset_W + (time - now.time) / (next.time - now.time) * (next.offset_W - now.offset_W);
-}
-
-void TraceObserver::keep(const TracePoint& point) {
-  newest_ = point;
-  if (count_++ % static_cast<std::uint64_t>(stride_) != 0) return;
-  if (trace_.size() >= capacity_) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < trace_.size(); i += 2) trace_[kept++] = trace_[i];
-    trace_.resize(kept);
-    stride_ *= 2;
-    if ((count_ - 1) % static_cast<std::uint64_t>(stride_) != 0) return;
-  }
-  trace_.push_back(point);
 }
 
 std::optional<AccuracyFigures> TraceObserver::accuracy() const {
@@ -78,8 +66,9 @@ std::optional<AccuracyFigures> TraceObserver::accuracy() const {
 }
 
 std::vector<TracePoint> TraceObserver::take() {
-  if (!trace_.empty() && trace_.back().time < newest_.time) trace_.push_back(newest_);
-  return std::move(trace_);
+  std::vector<TracePoint> trace = trace_.take();
+  if (!trace.empty() && trace.back().time < newest_.time) trace.push_back(newest_);
+  return trace;
 }
 
 }  // namespace understudy::rehearsal

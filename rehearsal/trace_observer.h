@@ -8,6 +8,7 @@
 
 #include "control/print.h"
 #include "rehearsal/record.h"
+#include "rehearsal/thinned_series.h"
 #include "sim/deposition/deposition.h"
 #include "sim/observer.h"
 #include "toolpath/gcode/rewritten_path.h"
@@ -44,18 +45,14 @@ class TraceObserver : public sim::Observer {
   ErrorPeak tip_peak() const { return tip_peak_; }
   ErrorPeak orientation_peak() const { return orientation_peak_; }
   std::vector<TracePoint> take();
-  int stride() const { return stride_; }  ///< snapshots a point of the trace
+  int stride() const { return static_cast<int>(trace_.stride()); }  ///< snapshots a point of the trace
 
  private:
-  void keep(const TracePoint& point);
   Vec3 offset_at(double time);
 
   const sim::DepositionObserver& deposition_;
   std::shared_ptr<const toolpath::RewrittenPath> asked_;
-  std::size_t capacity_;
-  int stride_ = 1;
-  std::uint64_t count_ = 0;
-  std::vector<TracePoint> trace_;
+  ThinnedSeries<TracePoint> trace_;
   TracePoint newest_;
   std::function<void(const TracePoint&)> told_;
   std::deque<control::OffsetChange> offsets_;  ///< the one in force, and those to come

@@ -11,12 +11,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json result_value(const RecordedRehearsal& result) {
-  return {{"folder", result.folder.string()},
-          {"verdict", result.run.go ? "go" : "no-go"},
-          {"grade", result.grade},
-          {"version", result.run.version},
-          {"command", result.run.command},
-          {"inputs_sha256", result.run.inputs_sha256}};
+  return {{"folder", result.folder.string()},       {"verdict", result.run.go ? "go" : "no-go"},
+          {"grade", rehearsal::word(result.grade)}, {"version", result.run.version},
+          {"command", result.run.command},          {"inputs_sha256", result.run.inputs_sha256}};
 }
 
 Json inputs_value(const RehearsalComparison& comparison) {

@@ -7,7 +7,6 @@
 
 #include "core/digest.h"
 #include "core/error.h"
-#include "core/file/output_folder.h"
 #include "core/file/read_file.h"
 #include "report/json_figures.h"
 #include "report/recorded_trace.h"
@@ -23,12 +22,6 @@ constexpr const char* kSummaryFile = "summary.json";
 constexpr const char* kTraceFile = "trace.csv";
 constexpr const char* kAsBuiltFile = "as-built.yaml";
 
-void check_as_written(const fs::path& folder, const char* name) {
-  if (!is_as_written(folder, name))
-    throw InputError(Place{(folder / name).string()},
-                     fmt::format("it is not the file that {} names: the result is not whole", kManifest));
-}
-
 int count_at(const Json& object, const char* key) {
   const auto count = object.at(key).get<std::int64_t>();
   if (!object.at(key).is_number_integer() || count < 0 || count > std::numeric_limits<int>::max())
@@ -41,6 +34,13 @@ rehearsal::Severity severity_of(const Json& object) {
   if (word != "error" && word != "warning")
     throw std::runtime_error(fmt::format("severity is '{}', neither error nor warning", word));
   return word == "error" ? rehearsal::Severity::error : rehearsal::Severity::warning;
+}
+
+rehearsal::Grade grade_at(const Json& summary) {
+  const auto word = summary.at("grade").get<std::string>();
+  const auto grade = rehearsal::grade_of_word(word);
+  if (!grade) throw std::runtime_error(fmt::format("grade is '{}', which is none", word));
+  return *grade;
 }
 
 FindingGroup group_of(const Json& object) {
@@ -110,7 +110,7 @@ RecordedRehearsal read_recorded_rehearsal(const fs::path& folder) {
   bool simulated = false;
   try {
     const Json summary = Json::parse(text);
-    read.grade = summary.at("grade").get<std::string>();
+    read.grade = grade_at(summary);
     for (const Json& group : summary.at("finding_groups")) read.findings.push_back(group_of(group));
     read.inputs = inputs_of(summary, folder);
     simulated = summary.contains("print") && summary.at("print").at("duration_s").get<double>() > 0;

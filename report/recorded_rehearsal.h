@@ -8,6 +8,7 @@
 
 #include "regression/metrics.h"
 #include "rehearsal/findings/finding_groups.h"
+#include "rehearsal/findings/verdict.h"
 #include "rehearsal/record.h"
 #include "report/recorded_run.h"
 
@@ -16,7 +17,7 @@ namespace understudy::report {
 struct RecordedRehearsal {
   std::filesystem::path folder;
   RecordedRun run;
-  std::string grade;  ///< "go", "go-with-warnings", "no-go"
+  rehearsal::Grade grade = rehearsal::Grade::no_go;
   /// What the result was made from, by name: versions, SHA-256 of files, seed, engine. Whoever knows the
   /// words of `run.command` may add its options.
   std::map<std::string, std::string> inputs;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/file/output_folder.h"
 #include "core/file/read_file.h"
 #include "core/text/json_depth.h"
 
@@ -27,6 +28,12 @@ std::optional<std::string> text_at(const Json& object, const char* key) {
 }
 
 }  // namespace
+
+void check_as_written(const fs::path& folder, const std::string& name) {
+  if (!is_as_written(folder, name))
+    throw InputError(Place{(folder / name).string()},
+                     fmt::format("it is not the file that {} names: the result is not whole", kManifest));
+}
 
 RecordedRun read_recorded_run(const fs::path& folder) {
   const fs::path file = folder / "summary.json";

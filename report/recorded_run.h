@@ -13,6 +13,9 @@ struct RecordedRun {
   bool go = false;
 };
 
+/// Throws InputError where a file of the folder is not the one that its manifest names.
+void check_as_written(const std::filesystem::path& folder, const std::string& name);
+
 /// Throws InputError where the folder has no summary.json of a rehearsal.
 RecordedRun read_recorded_run(const std::filesystem::path& folder);
 

@@ -1,14 +1,10 @@
 #include "report/trace_hdf5.h"
 
 #include <algorithm>
-#include <limits>
-#include <sstream>
 
-#include <fmt/format.h>
 #include <hdf5.h>
 
 #include "core/error.h"
-#include "core/file/number_table.h"
 
 namespace understudy::report {
 namespace {
@@ -84,32 +80,6 @@ Held open_in_memory() {
 }
 
 }  // namespace
-
-TraceTable read_trace_csv(const std::string& text, const std::string& name) {
-  std::istringstream in(text);
-  TextRow row;
-  TraceTable table;
-  if (!read_text_row(in, row)) throw InputError({name}, "the table is empty");
-  for (const TextRow::Cell& cell : row.cells) table.names.push_back(cell.text);
-  if (table.names.front() != "time_s")
-    throw InputError(
-        {name, row.line},
-        fmt::format("not a trace of a rehearsal: its first column is {}, not time_s", table.names.front()));
-  table.columns.resize(table.names.size());
-  while (read_text_row(in, row)) {
-    if (row.cells.size() != table.names.size())
-      throw InputError({name, row.line},
-                       fmt::format("{} cells; the header has {}", row.cells.size(), table.names.size()));
-    for (std::size_t c = 0; c < row.cells.size(); ++c) {
-      const TextRow::Cell& cell = row.cells[c];
-      table.columns[c].push_back(cell.text.empty()
-                                     ? std::numeric_limits<double>::quiet_NaN()
-                                     : table_number(cell, table.names[c], {name, row.line, cell.column}));
-    }
-  }
-  if (table.columns.front().empty()) throw InputError({name}, "a header without rows");
-  return table;
-}
 
 std::string trace_hdf5(const TraceTable& table,
                        const std::vector<std::pair<std::string, std::string>>& attributes) {

@@ -6,7 +6,6 @@
 
 #include "cli/command.h"
 #include "core/file/output_file.h"
-#include "core/file/read_file.h"
 #include "report/recorded_run.h"
 #include "report/trace_hdf5.h"
 
@@ -20,13 +19,13 @@ struct TraceRequest {
 int export_trace(const TraceRequest& r) {
   check_writable(r.output);
   const report::RecordedRun run = report::read_recorded_run(r.folder);
-  const std::string file = (std::filesystem::path(r.folder) / "trace.csv").string();
-  const report::TraceTable table = report::read_trace_csv(read_file(file), file);
+  for (const char* name : {"summary.json", "trace.csv"}) report::check_as_written(r.folder, name);
+  const report::TraceTable table = report::read_trace_table(std::filesystem::path(r.folder) / "trace.csv");
   write_file(r.output, report::trace_hdf5(table, {{"schema", "understudy.trace/1"},
                                                   {"version", run.version},
                                                   {"inputs_sha256", run.inputs_sha256},
                                                   {"command", run.command}}));
-  fmt::print("{}: {} columns of {} rows\n", r.output, table.names.size(), table.columns.front().size());
+  fmt::print("{}: {} columns of {} rows\n", r.output, table.names.size(), table.rows());
   return kGood;
 }
 

@@ -134,8 +134,9 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
 }
 
 /// Say what is written and where, or stand in the provenance of a record themselves.
-constexpr std::array<std::string_view, 7> kOptionsLeftOut{
-    "--out", "--record", "--as-printed", "--no-pictures", "--quiet", "--json", "--seed"};
+constexpr std::array<std::string_view, 9> kOptionsLeftOut{"--out",         "--record", "--as-printed",
+                                                          "--no-pictures", "--quiet",  "--json",
+                                                          "--seed",        "--watch",  "--watch-port"};
 
 /// Throws InputError where it is no command of `rehearse`, whose options `app` has.
 void parse_command(CLI::App& app, const std::string& command_line) {

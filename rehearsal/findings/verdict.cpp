@@ -111,6 +111,12 @@ const char* word(Grade grade) {
   return "no-go";
 }
 
+std::optional<Grade> grade_of_word(const std::string& text) {
+  for (const Grade grade : {Grade::go, Grade::go_with_warnings, Grade::no_go})
+    if (text == word(grade)) return grade;
+  return std::nullopt;
+}
+
 const char* headline(Grade grade) {
   switch (grade) {
     case Grade::go:

@@ -68,11 +68,6 @@ std::string worst_list(const RehearsalComparison& comparison) {
          "</tbody></table></details>\n";
 }
 
-const char* verdict_class(const RecordedRehearsal& b) {
-  if (b.grade == "go") return "go";
-  return b.grade == "go-with-warnings" ? "go-with-warnings" : "no-go";
-}
-
 }  // namespace
 
 std::string comparison_html(const RehearsalComparison& comparison, const RecordedRehearsal& a,
@@ -93,7 +88,7 @@ std::string comparison_html(const RehearsalComparison& comparison, const Recorde
       "<div class=\"verdict {}\"><strong>{}</strong><div><p class=\"reason\">{}.</p></div></div>\n"
       "<div class=\"tables\">\n",
       html_text(kVersion), html_text(a.folder.filename().string()), html_text(b.folder.filename().string()),
-      verdict_class(b), html_text(verdict_change(a, b, " \u2192 ")),
+      rehearsal::word(b.grade), html_text(verdict_change(a, b, " \u2192 ")),
       html_text(comparison_sentence(comparison)));
   for (const WordTable& table : comparison_tables(comparison)) html += html_section(table);
   html += worst_list(comparison) + "</div>\n" + curves_section(comparison, a, b);

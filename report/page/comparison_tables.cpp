@@ -93,12 +93,6 @@ WordTable figures_table(const RehearsalComparison& comparison) {
   return table;
 }
 
-std::string headline(const std::string& grade) {
-  if (grade == "go") return "GO";
-  if (grade == "go-with-warnings") return "GO with warnings";
-  return "NO-GO";
-}
-
 }  // namespace
 
 std::vector<WordTable> comparison_tables(const RehearsalComparison& comparison) {
@@ -109,8 +103,8 @@ std::vector<WordTable> comparison_tables(const RehearsalComparison& comparison) 
 }
 
 std::string verdict_change(const RecordedRehearsal& a, const RecordedRehearsal& b, const char* arrow) {
-  if (a.grade == b.grade) return headline(a.grade);
-  return headline(a.grade) + arrow + headline(b.grade);
+  const std::string before = rehearsal::headline(a.grade), after = rehearsal::headline(b.grade);
+  return before == after ? before : before + arrow + after;
 }
 
 std::string comparison_text(const RehearsalComparison& comparison, const RecordedRehearsal& a,

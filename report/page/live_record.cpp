@@ -20,30 +20,19 @@ Json live_value(double share, const std::string& what) {
 
 }  // namespace
 
-LiveRecord::LiveRecord(std::size_t capacity) : capacity_(std::max<std::size_t>(2, capacity)) {
-  record_.title = "rehearsal";
-}
+LiveRecord::LiveRecord(std::size_t capacity) : trace_(capacity) { described_.title = "rehearsal"; }
 
 void LiveRecord::begins(const rehearsal::Record& described) {
   const std::scoped_lock lock(mutex_);
-  record_ = described;
-  record_.go = std::none_of(record_.findings.begin(), record_.findings.end(), [](const auto& finding) {
-    return finding.severity == rehearsal::Severity::error;
-  });
+  described_ = described;
+  described_.go =
+      std::none_of(described_.findings.begin(), described_.findings.end(),
+                   [](const auto& finding) { return finding.severity == rehearsal::Severity::error; });
 }
 
 void LiveRecord::moved(const rehearsal::TracePoint& newest) {
   const std::scoped_lock lock(mutex_);
-  if (count_++ % stride_ != 0) return;
-  auto& trace = record_.trace;
-  if (trace.size() >= capacity_) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < trace.size(); i += 2) trace[kept++] = trace[i];
-    trace.resize(kept);
-    stride_ *= 2;
-    if ((count_ - 1) % stride_ != 0) return;
-  }
-  trace.push_back(newest);
+  trace_.add(newest);
 }
 
 void LiveRecord::progress(double share, const std::string& what) {
@@ -57,7 +46,8 @@ std::string LiveRecord::json() const {
   Json live;
   {
     const std::scoped_lock lock(mutex_);
-    record = record_;
+    record = described_;
+    record.trace = trace_.points();
     live = live_value(share_, what_);
   }
   Json report = report_data(record, {});
@@ -74,7 +64,7 @@ std::string LiveRecord::page() const {
   std::string title;
   {
     const std::scoped_lock lock(mutex_);
-    title = record_.title;
+    title = described_.title;
   }
   return live_html(title, json());
 }

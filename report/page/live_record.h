@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rehearsal/run_listener.h"
+#include "rehearsal/thinned_series.h"
 
 namespace understudy::report {
 
@@ -29,9 +30,8 @@ class LiveRecord : public rehearsal::RunListener {
 
  private:
   mutable std::mutex mutex_;
-  std::size_t capacity_;
-  std::size_t stride_ = 1, count_ = 0;
-  rehearsal::Record record_;
+  rehearsal::Record described_;
+  rehearsal::ThinnedSeries<rehearsal::TracePoint> trace_;
   double share_ = 0;
   std::string what_ = "reading";
 };

@@ -35,17 +35,16 @@ Frame frame_at(const BeadStretch& stretch, std::size_t i) {
 void append_ring(const BeadSection& section, const Frame& frame, double latitude, int sides,
                  SweptShell& shell) {
   const double radius = 0.5 * section.height, flat = 0.5 * (section.width - section.height);
-  const Vec3 centre = section.middle_W + radius * std::sin(latitude) * frame.along;
+  const double across = std::cos(latitude), forward = std::sin(latitude), out = radius * across;
+  const Vec3 centre = section.middle_W + radius * forward * frame.along;
   const int steps = sides / 2;
   for (const int half : {1, -1})
     for (int k = 0; k <= steps; ++k) {
       const double angle = half * std::numbers::pi * (static_cast<double>(k) / steps - 0.5);
-      const double out = radius * std::cos(latitude);
-      shell.mesh.vertices.push_back(centre + half * (flat + out * std::cos(angle)) * frame.side +
-                                    half * (half * out * std::sin(angle)) * frame.up);
-      shell.normals.push_back(std::cos(latitude) *
-                                  (half * std::cos(angle) * frame.side + std::sin(angle) * frame.up) +
-                              std::sin(latitude) * frame.along);
+      const double c = std::cos(angle), s = std::sin(angle);
+      shell.mesh.vertices.push_back(centre + half * (flat + out * c) * frame.side +
+                                    half * (half * out * s) * frame.up);
+      shell.normals.push_back(across * (half * c * frame.side + s * frame.up) + forward * frame.along);
     }
 }
 

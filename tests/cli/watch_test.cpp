@@ -27,6 +27,17 @@ int port_of(const std::string& said) {
              : 0;
 }
 
+/// A rehearsal of the bottle that is watched.
+struct Watched {
+  Watched() : run(folder, fmt::format("rehearse {} --watch --out {}", kRehearse, out)) {
+    port = port_of(run.first_error_output());
+  }
+  Folder folder;
+  std::string out = folder / "results";
+  BackgroundRun run;
+  int port = 0;  ///< 0: it told none
+};
+
 /// All of /events until the server ends them.
 std::string events_of(httplib::Client& client) {
   std::string heard;
@@ -38,12 +49,9 @@ std::string events_of(httplib::Client& client) {
 }
 
 TEST(WatchCommand, ShowsTheRunWhileItGoesAndTheReportAtItsEnd) {
-  const Folder folder;
-  const std::string out = folder / "results";
-  BackgroundRun run(folder, fmt::format("rehearse {} --watch --out {}", kRehearse, out));
-  const int port = port_of(run.first_error_output());
-  ASSERT_GT(port, 0);
-  httplib::Client client("127.0.0.1", port);
+  Watched watched;
+  ASSERT_GT(watched.port, 0);
+  httplib::Client client("127.0.0.1", watched.port);
   client.set_read_timeout(120);
 
   const auto page = client.Get("/");
@@ -58,16 +66,14 @@ TEST(WatchCommand, ShowsTheRunWhileItGoesAndTheReportAtItsEnd) {
 
   const auto last = client.Get("/");
   ASSERT_TRUE(last) << "the command waits for who watches";
-  EXPECT_LE(run.wait(), 1) << "a verdict, whichever";
-  EXPECT_EQ(last->body, read_file(out + "/report.html"));
+  EXPECT_LE(watched.run.wait(), 1) << "a verdict, whichever";
+  EXPECT_EQ(last->body, read_file(watched.out + "/report.html"));
 }
 
 TEST(WatchCommand, ItsDataAreThoseOfTheReportUpToNow) {
-  const Folder folder;
-  BackgroundRun run(folder, fmt::format("rehearse {} --watch --out {}", kRehearse, folder / "results"));
-  const int port = port_of(run.first_error_output());
-  ASSERT_GT(port, 0);
-  httplib::Client client("127.0.0.1", port);
+  const Watched watched;
+  ASSERT_GT(watched.port, 0);
+  httplib::Client client("127.0.0.1", watched.port);
   double latest = -1;
   for (int looked = 0; looked < 1000; ++looked) {
     const auto record = client.Get("/record.json");
@@ -88,23 +94,21 @@ TEST(WatchCommand, ItsDataAreThoseOfTheReportUpToNow) {
 }
 
 TEST(WatchCommand, AnswersThisComputersNamesOnly) {
-  const Folder folder;
-  BackgroundRun run(folder, fmt::format("rehearse {} --watch --out {}", kRehearse, folder / "results"));
-  const int port = port_of(run.first_error_output());
-  ASSERT_GT(port, 0);
-  httplib::Client client("127.0.0.1", port);
-  const auto answer = client.Get("/record.json", {{"Host", fmt::format("example.org:{}", port)}});
+  Watched watched;
+  ASSERT_GT(watched.port, 0);
+  httplib::Client client("127.0.0.1", watched.port);
+  const auto answer = client.Get("/record.json", {{"Host", fmt::format("example.org:{}", watched.port)}});
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 403);
   EXPECT_TRUE(answer->body.empty());
 
-  const Outcome second =
-      understudy(fmt::format("rehearse {} --watch --watch-port {} --out {}", kRehearse, port, folder / "b"));
+  const Outcome second = understudy(fmt::format("rehearse {} --watch --watch-port {} --out {}", kRehearse,
+                                                watched.port, watched.folder / "b"));
   EXPECT_EQ(second.status, 2);
-  EXPECT_THAT(second.err, HasSubstr(fmt::format("--watch-port {}: the port is in use", port)));
+  EXPECT_THAT(second.err, HasSubstr(fmt::format("--watch-port {}: the port is in use", watched.port)));
 
-  run.interrupt();
-  EXPECT_EQ(run.wait(), 128 + 2);
+  watched.run.interrupt();
+  EXPECT_EQ(watched.run.wait(), 128 + 2);
 }
 
 }  // namespace

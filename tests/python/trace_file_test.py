@@ -42,6 +42,13 @@ class TraceFile(unittest.TestCase):
                 self.assertEqual(trace["qw"].attrs["unit"], "1")
                 self.assertEqual(trace["line"].dtype, "int32")
 
+            with open(folder / "trace.csv", "a") as text:
+                text.write(",".join(rows[-1].values()) + "\n")
+            changed = run("export", "trace", folder, "-o", pathlib.Path(place, "again.h5"))
+            self.assertEqual(changed.returncode, 2)
+            self.assertIn("trace.csv: it is not the file that manifest.sha256 names", changed.stderr)
+            self.assertFalse(pathlib.Path(place, "again.h5").exists())
+
     def test_what_is_no_rehearsal_is_refused(self):
         with tempfile.TemporaryDirectory() as place:
             refused = run("export", "trace", place, "-o", pathlib.Path(place, "trace.h5"))

@@ -50,7 +50,7 @@ TEST_F(ReadRehearsal, GivesBackWhatTheRecordSays) {
   const rehearsal::Record record = sample_no_go();
   write(record);
   const RecordedRehearsal read = read_recorded_rehearsal(result());
-  EXPECT_EQ(read.grade, "no-go");
+  EXPECT_EQ(read.grade, rehearsal::Grade::no_go);
   EXPECT_FALSE(read.run.go);
   EXPECT_EQ(std::get<double>(read.figures.at("gap.frames")), static_cast<double>(record.gap->frames));
   EXPECT_FALSE(read.figures.contains("verdict"));

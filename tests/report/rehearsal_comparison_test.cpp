@@ -37,7 +37,7 @@ class Comparison : public testing::Test {
     made.folder = folder_ / name;
     made.run.inputs_sha256 = "same";
     made.run.go = true;
-    made.grade = "go";
+    made.grade = rehearsal::Grade::go;
     made.inputs = {{"seed", "4"}, {"engine", "mujoco"}};
     made.figures = {{"gap.start_mm", 0.13}, {"print.duration_s", 6.3}, {"accuracy.tip_max_um", 200.0}};
     return made;
@@ -125,7 +125,7 @@ TEST_F(Comparison, CurvesThatDifferAreToldWithTheirLine) {
 }
 
 TEST_F(Comparison, TheJsonHoldsBothValuesAndLeavesOutWhatIsAbsent) {
-  b_.grade = "no-go";
+  b_.grade = rehearsal::Grade::no_go;
   b_.run.go = false;
   b_.figures["gap.start_mm"] = 0.15;
   b_.figures["sag.strands"] = 2.0;

@@ -269,6 +269,7 @@ class Drawing {
         flatten([&](double t) { return at(curve, t); }, 0, 1, curve.isLineSegment() ? kHalvings : 0, stroke);
       }
       if (stroke.points.size() < 2) continue;  // a move without a line
+      for (const Vec2& p : stroke.points) check_place(e, p);
       points_ += stroke.points.size();
       if (points_ > kMostPoints) fail(e, fmt::format("the drawing has more than {} points", kMostPoints));
       strokes_.push_back(std::move(stroke));
@@ -277,14 +278,14 @@ class Drawing {
 
   /// Before it is cut into pieces: a circle of 1e300 would become a million of them first.
   void check_size(const Element& e, const std::function<Vec2(double)>& at) const {
-    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-      const Vec2 p = at(t);
-      if (!p.allFinite()) fail(e, "a point of its outline is not finite");
-      if (p.norm() > kLargest)
-        fail(e,
-             fmt::format("its outline comes to {:.3g} m from the drawing's origin, at most {:g} m are read",
-                         p.norm(), kLargest));
-    }
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) check_place(e, at(t));
+  }
+
+  void check_place(const Element& e, const Vec2& p) const {
+    if (!p.allFinite()) fail(e, "a point of its outline is not finite");
+    if (p.norm() > kLargest)
+      fail(e, fmt::format("its outline comes to {:.3g} m from the drawing's origin, at most {:g} m are read",
+                          p.norm(), kLargest));
   }
 
   /// Appends what lies behind `from` up to `to`.

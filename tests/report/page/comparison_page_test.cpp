@@ -23,7 +23,7 @@ class ComparisonPage : public testing::Test {
       const bool of_a = result == &a_;
       result->folder = folder_ / (of_a ? "a" : "b");
       std::filesystem::create_directories(result->folder);
-      result->grade = of_a ? "go" : "no-go";
+      result->grade = of_a ? rehearsal::Grade::go : rehearsal::Grade::no_go;
       result->inputs = {{"seed", of_a ? "4" : "5"}, {"program file", std::string(64, of_a ? 'a' : 'b')}};
       result->figures = {{"gap.in_band_fraction", of_a ? 1.0 : 0.504283},
                          {"collision.checks", of_a ? 40806. : 38486.}};

@@ -17,7 +17,7 @@ class LivePage {
 
   constructor(private readonly report: Report, private readonly page: HTMLElement, theme: HTMLElement) {
     page.append(element('header', {}, element('div', { class: 'top' }, element('p', { class: 'eyebrow' }, 'Understudy rehearsal'), theme), this.title,
-      element('div', { class: 'verdict running' }, element('strong', {}, 'running'), element('div', {}, this.note, this.bar))), this.causes);
+      element('div', { class: 'verdict running' }, element('strong', {}, 'running'), element('div', {}, this.note, this.bar))));
     this.draw();
   }
 
@@ -52,7 +52,10 @@ class LivePage {
   private draw() {
     this.title.textContent = this.report.title;
     if (this.report.live) this.tell(this.report.live);
-    this.causes.replaceChildren(...(this.report.summary.findings.length ? [drawCauses(this.report, null, () => undefined)] : []));
+    if (this.report.summary.findings.length) {
+      this.causes.replaceChildren(drawCauses(this.report, null, () => undefined));
+      this.page.querySelector('header')!.after(this.causes);
+    }
     if (!this.report.trace) return;
     if (this.plots) { document.dispatchEvent(new Event('understudy-theme')); return; }  // they read the record anew
     this.plots = drawPlots(this.report, null, () => null);
