@@ -13,7 +13,7 @@
 #include "geometry/mesh.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
-#include "report/recorded_run.h"
+#include "report/recorded/recorded_run.h"
 #include "toolpath/program.h"
 
 namespace understudy::cli {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/trace_table.h"
+#include "report/recorded/trace_table.h"
 
 namespace understudy::report {
 

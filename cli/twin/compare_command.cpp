@@ -14,7 +14,7 @@
 #include "report/comparison_json.h"
 #include "report/page/comparison_page.h"
 #include "report/page/comparison_tables.h"
-#include "report/rehearsal_comparison.h"
+#include "report/recorded/rehearsal_comparison.h"
 
 namespace understudy::cli {
 namespace {

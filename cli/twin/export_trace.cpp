@@ -6,7 +6,7 @@
 
 #include "cli/command.h"
 #include "core/file/output_file.h"
-#include "report/recorded_run.h"
+#include "report/recorded/recorded_run.h"
 #include "report/trace_hdf5.h"
 
 namespace understudy::cli {

@@ -5,7 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/doctor.h"
-#include "cli/twin/campaign_command.h"
+#include "cli/twin/campaign/campaign_command.h"
 #include "cli/twin/compensation_commands.h"
 #include "core/units.h"
 #include "machine/default_machine.h"

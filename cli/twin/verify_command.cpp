@@ -16,8 +16,8 @@
 #include "core/version.h"
 #include "machine/description.h"
 #include "rehearsal/request/input_digest.h"
-#include "report/recorded_run.h"
-#include "report/verification.h"
+#include "report/recorded/recorded_run.h"
+#include "report/recorded/verification.h"
 
 namespace understudy::cli {
 namespace {

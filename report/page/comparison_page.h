@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "report/rehearsal_comparison.h"
+#include "report/recorded/rehearsal_comparison.h"
 
 namespace understudy::report {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "report/page/word_table.h"
-#include "report/rehearsal_comparison.h"
+#include "report/recorded/rehearsal_comparison.h"
 
 namespace understudy::report {
 
