@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <hdf5.h>
 
 #include "core/error.h"
@@ -80,6 +81,12 @@ Held open_in_memory() {
 }
 
 }  // namespace
+
+std::string loaded_hdf5() {
+  unsigned major = 0, minor = 0, release = 0;
+  check(H5get_libversion(&major, &minor, &release));
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
 
 std::string trace_hdf5(const TraceTable& table,
                        const std::vector<std::pair<std::string, std::string>>& attributes) {

@@ -15,4 +15,7 @@ namespace understudy::report {
 std::string trace_hdf5(const TraceTable& table,
                        const std::vector<std::pair<std::string, std::string>>& attributes);
 
+/// Of the HDF5 library, as it is loaded: "1.10.8".
+std::string loaded_hdf5();
+
 }  // namespace understudy::report

@@ -7,6 +7,7 @@
 #include "cli/doctor.h"
 #include "cli/twin/campaign/campaign_command.h"
 #include "cli/twin/compensation_commands.h"
+#include "cli/watch/live_server.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
@@ -15,6 +16,7 @@
 #include "report/gltf/replay_glb.h"
 #include "report/page/pack.h"
 #include "report/page/page_parts.h"
+#include "report/trace_hdf5.h"
 #include "sim/as_built/as_built.h"
 #include "sim/plant/plant.h"
 
@@ -73,6 +75,8 @@ std::vector<std::string> left_out_commands() { return {}; }
 
 LibraryVersions library_versions_of_rooms() {
   LibraryVersions all = rehearsal::library_versions();
+  all["HDF5"] = report::loaded_hdf5();
+  all["cpp-httplib"] = loaded_httplib();
   all["tinygltf"] = report::loaded_tinygltf();
   all["zlib"] = report::loaded_zlib();
   all.merge(report::page_packages());

@@ -11,6 +11,7 @@
 #include <httplib.h>
 
 #include "core/error.h"
+#include "core/library_versions.h"
 
 namespace understudy::cli {
 namespace {
@@ -30,6 +31,8 @@ void only_one(socket_t socket) {
 }
 
 }  // namespace
+
+std::string loaded_httplib() { return loaded_version("libcpp-httplib", CPPHTTPLIB_VERSION); }
 
 struct LiveServer::Server {
   explicit Server(LiveContent served) : content(std::move(served)) {}

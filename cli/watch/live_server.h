@@ -32,4 +32,7 @@ class LiveServer {
   std::unique_ptr<Server> server_;
 };
 
+/// Of cpp-httplib, as it is loaded: "0.11.4".
+std::string loaded_httplib();
+
 }  // namespace understudy::cli

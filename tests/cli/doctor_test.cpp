@@ -34,6 +34,7 @@ const Versions kPackagesOfTheController{{"Boost", "libboost-math-dev"},
 const Versions kPackagesOfTheTwin{{"Bullet", "libbullet-dev"}, {"FCL", "libfcl-dev"},
                                   {"LLVM", "libllvm15"},       {"Mesa", "libosmesa6-dev"},
                                   {"MuJoCo", "libmujoco-dev"}, {"tinygltf", "libtinygltf-dev"},
+                                  {"HDF5", "libhdf5-dev"},     {"cpp-httplib", "libcpp-httplib-dev"},
                                   {"zlib", "zlib1g-dev"}};
 
 Versions printed_versions(const std::string& text) {
