@@ -128,9 +128,9 @@ TEST(DotSpread, ANarrowBeamThatWasMeasuredIsWholeAndAHalfOfItIsNot) {
 
 TEST(DotSpread, AWaistThatIsKnownBadlyIsNoReasonToCallADotHidden) {
   machine::MachineDescription believed = calibrated(1);
-  EXPECT_EQ(whole_frames(with_waist(0.8), believed, 9), 0);
+  EXPECT_EQ(whole_frames(with_waist(0.75), believed, 9), 0);
   believed.gap_sensor->waist->sigma = 0.1 * believed.laser.waist_diameter;
-  EXPECT_EQ(whole_frames(with_waist(0.8), believed, 9), 40);
+  EXPECT_EQ(whole_frames(with_waist(0.75), believed, 9), 40);
 }
 
 }  // namespace
