@@ -194,6 +194,12 @@ constexpr int kMountingFreedoms = 11;
 using MountingVector = Eigen::Matrix<double, kMountingFreedoms, 1>;
 using MountingMatrix = Eigen::Matrix<double, kMountingFreedoms, kMountingFreedoms>;
 
+/// Of a beam whose waist, in `laser`, is the one that its dots show.
+struct MeasuredWaist {
+  double drawn = 0;  ///< [m], as the file's section `laser` has it
+  double sigma = 0;  ///< [m], of the one that was measured
+};
+
 /// What a machine file says of the calibration that `laser` and `microscope` come from.
 struct GapSensorCalibration {
   OpticsMounting drawn;             ///< as the file's sections `laser` and `microscope` have them
@@ -202,6 +208,7 @@ struct GapSensorCalibration {
   int pictures = 0;
   /// Of the errors of the calibrated mounting; symmetric, positive semi-definite.
   MountingMatrix covariance = MountingMatrix::Zero();
+  std::optional<MeasuredWaist> waist;  ///< empty: nobody measured it, the drawn one counts
 };
 
 /// The gap between tip and surface (Song 2015, 3.3).

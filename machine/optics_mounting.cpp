@@ -38,6 +38,11 @@ OpticsMounting drawn_mounting(const MachineDescription& machine) {
   return machine.gap_sensor ? machine.gap_sensor->drawn : mounting_of(machine);
 }
 
+double drawn_waist(const MachineDescription& machine) {
+  const bool measured = machine.gap_sensor && machine.gap_sensor->waist;
+  return measured ? machine.gap_sensor->waist->drawn : machine.laser.waist_diameter;
+}
+
 OpticsMounting moved(const OpticsMounting& from, const MountingVector& error) {
   const Pose X_LL = make_pose(exp_rotation(Vec3(error[2], error[3], 0)), Vec3(error[0], error[1], 0));
   const Pose X_CC = make_pose(exp_rotation(error.segment<3>(7)), error.segment<3>(4));

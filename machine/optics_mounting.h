@@ -12,6 +12,9 @@ OpticsMounting mounting_of(const MachineDescription& machine);
 /// What the file's sections `laser` and `microscope` say, whatever a calibration has found since.
 OpticsMounting drawn_mounting(const MachineDescription& machine);
 
+/// [m], of the beam, as the file's section `laser` says, whatever a calibration has found since.
+double drawn_waist(const MachineDescription& machine);
+
 /// `from` with each device moved in its own frame: turned about its origin, and offset.
 OpticsMounting moved(const OpticsMounting& from, const MountingVector& error);
 

@@ -54,6 +54,13 @@ std::string freedoms(const GapSensorResult& result) {
   return out;
 }
 
+std::string beam(const GapSensorResult& result) {
+  if (!result.machine.gap_sensor->waist) return "";
+  const machine::MeasuredWaist& waist = *result.machine.gap_sensor->waist;
+  return fmt::format("the beam is {:.1f} um wide, 1 sigma {:.1f} um; drawn: {:.1f} um\n",
+                     to_um(result.machine.laser.waist_diameter), to_um(waist.sigma), to_um(waist.drawn));
+}
+
 std::string readings(const GapSensorResult& result) {
   const machine::GapLimits& limits = result.machine.gap;
   std::string out = "\nover a flat    read as drawn    1 sigma as drawn    1 sigma calibrated\n";
@@ -86,7 +93,7 @@ GapReadingChange gap_reading_change(const GapSensorResult& result, double gap) {
 }
 
 std::string gap_sensor_text(const GapSensorResult& result) {
-  std::string out = head(result) + freedoms(result) + readings(result);
+  std::string out = head(result) + freedoms(result) + beam(result) + readings(result);
   for (const std::string& warning : result.warnings) out += "warning: " + warning + "\n";
   return out;
 }

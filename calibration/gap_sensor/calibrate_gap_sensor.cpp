@@ -62,8 +62,7 @@ void add_dots(const std::vector<MeasuredGapPicture>& pictures, const std::string
   for (const MeasuredGapPicture& picture : pictures) {
     if (!used(picture)) continue;
     seen.push_back(picture.row);
-    problem.dots.push_back({picture.row.flat, picture.row.height, picture.row.height_sigma,
-                            picture.dot.position_px, picture.dot.covariance_px2});
+    problem.dots.push_back(seen_dot(picture.row, picture.dot));
   }
   if (seen.size() == pictures.size()) return;
   const auto first = std::find_if_not(pictures.begin(), pictures.end(), used);
@@ -116,7 +115,29 @@ GapSensorProblem gap_sensor_problem(const machine::MachineDescription& machine) 
   problem.camera = machine.microscope.camera;
   problem.tolerance = machine::mounting_sigmas(*machine.tolerances.mounting);
   problem.speckle_length = machine.laser.waist_diameter;
+  problem.waist = machine::drawn_waist(machine);
+  problem.blur_px = machine.microscope.blur_px;
   return problem;
+}
+
+SeenDot seen_dot(const GapPicture& row, const vision::DotMeasurement& dot) {
+  return {row.flat,           row.height,     row.height_sigma, dot.position_px,
+          dot.covariance_px2, dot.spread_px2, dot.spread_sigma};
+}
+
+void set_gap_sensor(const GapSensorProblem& problem, const GapSensorFit& fit,
+                    machine::MachineDescription& machine) {
+  machine::GapSensorCalibration record;
+  record.drawn = problem.drawn;
+  record.pictures = static_cast<int>(problem.dots.size());
+  record.covariance = fit.covariance;
+  machine::set_mounting(fit.mounting, machine.laser, machine.microscope);
+  machine.laser.waist_diameter = problem.waist;
+  if (fit.waist > 0) {
+    record.waist = machine::MeasuredWaist{problem.waist, fit.waist_sigma};
+    machine.laser.waist_diameter = fit.waist;
+  }
+  machine.gap_sensor = record;
 }
 
 GapSensorResult calibrate_gap_sensor(const std::string& file, const machine::MachineDescription& machine) {
@@ -135,9 +156,9 @@ GapSensorResult calibrate_gap_sensor(const std::string& file, const machine::Mac
   result.fit = fit_gap_sensor(problem);
   check_explained(result);
   add_warnings(result);
-  result.machine.gap_sensor = {problem.drawn, file, table.sha256, static_cast<int>(problem.dots.size()),
-                               result.fit.covariance};
-  machine::set_mounting(result.fit.mounting, result.machine.laser, result.machine.microscope);
+  set_gap_sensor(problem, result.fit, result.machine);
+  result.machine.gap_sensor->measurements = file;
+  result.machine.gap_sensor->measurements_sha256 = table.sha256;
   return result;
 }
 

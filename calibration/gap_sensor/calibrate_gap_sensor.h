@@ -36,5 +36,9 @@ GapSensorResult calibrate_gap_sensor(const std::string& table, const machine::Ma
 /// From dots to the result. `machine` is the one that the dots were looked for with; its drawing is where the
 /// tolerances begin.
 GapSensorProblem gap_sensor_problem(const machine::MachineDescription& machine);
+SeenDot seen_dot(const GapPicture& row, const vision::DotMeasurement& dot);
+/// Gives `machine` what the fit found, and a record that names no table.
+void set_gap_sensor(const GapSensorProblem& problem, const GapSensorFit& fit,
+                    machine::MachineDescription& machine);
 
 }  // namespace understudy::calibration

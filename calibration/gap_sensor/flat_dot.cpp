@@ -17,4 +17,21 @@ std::optional<Vec2> dot_pixel(const machine::OpticsMounting& mounting, Camera ca
   return camera.project(mounting.X_TC.inverse() * *p_T);
 }
 
+std::optional<Eigen::Matrix2d> dot_spread(const machine::OpticsMounting& mounting, double waist_diameter,
+                                          const Camera& camera, const Flat& flat) {
+  const auto seen_beside = [&](const Vec3& shift_L) {
+    machine::OpticsMounting ray = mounting;
+    ray.X_TL.translation() += ray.X_TL.linear() * shift_L;
+    return dot_pixel(ray, camera, flat);
+  };
+  const double sigma = waist_diameter / 4;  // of a beam whose 1/e^2 diameter is the waist's
+  Eigen::Matrix2d across;
+  for (int i = 0; i < 2; ++i) {
+    const auto behind = seen_beside(-sigma * Vec3::Unit(i)), ahead = seen_beside(sigma * Vec3::Unit(i));
+    if (!behind || !ahead) return std::nullopt;
+    across.col(i) = 0.5 * (*ahead - *behind);
+  }
+  return across * across.transpose();
+}
+
 }  // namespace understudy::calibration

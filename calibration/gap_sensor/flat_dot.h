@@ -18,4 +18,8 @@ std::optional<Vec3> dot_on_flat(const machine::OpticsMounting& mounting, const F
 /// Its pixel, within the picture or beyond; `camera` but for its focal length, which is the mounting's.
 std::optional<Vec2> dot_pixel(const machine::OpticsMounting& mounting, Camera camera, const Flat& flat);
 
+/// Second moments [px^2] of the dot of a round Gaussian beam, by the lens alone: without its blur.
+std::optional<Eigen::Matrix2d> dot_spread(const machine::OpticsMounting& mounting, double waist_diameter,
+                                          const Camera& camera, const Flat& flat);
+
 }  // namespace understudy::calibration

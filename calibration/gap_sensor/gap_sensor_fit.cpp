@@ -7,6 +7,7 @@
 #include <limits>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "calibration/gap_sensor/waist_fit.h"
 #include "core/units.h"
 #include "machine/optics_mounting.h"
 
@@ -18,8 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using machine::kMountingFreedoms;
 
-constexpr double kSameSpeckle = 0.99;  // correlation of two dots on one place: a hundredth is the camera's
-constexpr double kUnseen = 1e6;        // residual where the optics see no dot: steps that way are refused
+constexpr double kUnseen = 1e6;  // residual where the optics see no dot: steps that way are refused
 constexpr double kGapLow = -1e-3, kGapHigh = 8e-3;  // [m], in which a flat is looked for
 
 /// Unknowns: errors of the mounting in their tolerances, then the zero of each flat [mm].
@@ -46,27 +46,30 @@ Vec2 rate_of(const GapSensorProblem& problem, Flat flat) {
   return ahead && behind ? Vec2((*ahead - *behind) / (2 * kStep)) : Vec2::Zero();
 }
 
-/// Of all dots' coordinates: speckle that fades over its length, and heights. Flats are apart.
+std::vector<double> zeros_of(const GapSensorProblem& problem, const VectorXd& x) {
+  std::vector<double> zeros;
+  for (std::size_t flat = 0; flat < problem.slopes.size(); ++flat)
+    zeros.push_back(zero_of(x, static_cast<int>(flat)));
+  return zeros;
+}
+
+/// Of all dots' coordinates: speckle, and heights.
 MatrixXd noise_covariance(const GapSensorProblem& problem, const VectorXd& start) {
   const auto n = static_cast<Index>(problem.dots.size());
+  const MatrixXd alike = speckle_correlation(problem, zeros_of(problem, start));
   MatrixXd covariance = MatrixXd::Zero(2 * n, 2 * n);
-  std::vector<Vec3> place(problem.dots.size());  // of the dot on its flat, which stands still
   std::vector<Eigen::Matrix2d> root(problem.dots.size());
-  for (std::size_t i = 0; i < place.size(); ++i) {
+  for (std::size_t i = 0; i < root.size(); ++i) {
     const SeenDot& dot = problem.dots[i];
-    const Flat flat = flat_of(problem, dot, zero_of(start, dot.flat));
-    place[i] = dot_on_flat(problem.drawn, flat).value_or(Vec3::Zero()) + flat.gap * Vec3::UnitZ();
     root[i] = square_root(dot.covariance_px2);
-    const Vec2 rate = dot.height_sigma * rate_of(problem, flat);
-    const auto at = 2 * static_cast<Index>(i);
-    covariance.block<2, 2>(at, at) = dot.covariance_px2 + rate * rate.transpose();
+    const Vec2 rate = dot.height_sigma * rate_of(problem, flat_of(problem, dot, zero_of(start, dot.flat)));
+    const auto row = static_cast<Index>(i);
+    covariance.block<2, 2>(2 * row, 2 * row) = dot.covariance_px2 + rate * rate.transpose();
     for (std::size_t j = 0; j < i; ++j) {
-      if (problem.dots[j].flat != dot.flat) continue;
-      const double travelled = (place[i] - place[j]).norm();
-      const double alike = kSameSpeckle * std::max(0.0, 1 - travelled / problem.speckle_length);
-      const auto other = 2 * static_cast<Index>(j);
-      covariance.block<2, 2>(at, other) = alike * root[i] * root[j];
-      covariance.block<2, 2>(other, at) = alike * root[j] * root[i];
+      const auto column = static_cast<Index>(j);
+      const double share = alike(row, column);
+      covariance.block<2, 2>(2 * row, 2 * column) = share * root[i] * root[j];
+      covariance.block<2, 2>(2 * column, 2 * row) = share * root[j] * root[i];
     }
   }
   return covariance;
@@ -198,13 +201,17 @@ GapSensorFit fit_gap_sensor(const GapSensorProblem& problem) {
   fit.covariance = problem.tolerance.asDiagonal() *
                    covariance.topLeftCorner<kMountingFreedoms, kMountingFreedoms>() *
                    problem.tolerance.asDiagonal();
+  fit.zero = zeros_of(problem, x);
   for (std::size_t flat = 0; flat < problem.slopes.size(); ++flat) {
     const auto at = kMountingFreedoms + static_cast<Index>(flat);
-    fit.zero.push_back(zero_of(x, static_cast<int>(flat)));
     fit.zero_sigma.push_back(kMillimetre * std::sqrt(covariance(at, at)));
   }
   fit.chi_square = values.squaredNorm();
   fill_residuals(problem, noise, px, fit);
+  if (const auto waist = fit_waist(problem, fit.mounting, fit.zero)) {
+    fit.waist = waist->diameter;
+    fit.waist_sigma = waist->sigma;
+  }
   return fit;
 }
 

@@ -18,6 +18,8 @@ struct SeenDot {
   double height_sigma = 0;  ///< [m], of that height beside the others of its flat
   Vec2 position_px{0, 0};
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d spread_px2 = Eigen::Matrix2d::Zero();  ///< second central moments
+  double spread_sigma = 0;  ///< of those, along any direction: a share of them; 0: the width is not known
 };
 
 /// A gap that was measured otherwise.
@@ -34,6 +36,8 @@ struct GapSensorProblem {
   machine::MountingVector tolerance;  ///< 1 sigma; 0: known exactly
   /// [m] that the dot travels on the flat until its speckle is new; dots nearer to each other err alike.
   double speckle_length = 0;
+  double waist = 0;          ///< [m], 1/e^2 diameter of the beam as drawn; 0: its width is not asked for
+  double blur_px = 0;        ///< 1 sigma of the optics
   std::vector<Vec2> slopes;  ///< of each flat
   std::vector<SeenDot> dots;
   std::vector<KnownGap> known;  ///< at least one
@@ -51,6 +55,8 @@ struct GapSensorFit {
   double chi_square = 0;                ///< dots, known gaps and tolerances together
   int degrees_of_freedom = 0;
   int iterations = 0;
+  double waist = 0;        ///< [m], as the dots show it; 0: they do not
+  double waist_sigma = 0;  ///< [m]
 };
 
 /// Levenberg-Marquardt from the drawing. Not converged: the optics as drawn see no dot of such a flat.

@@ -82,6 +82,12 @@ double narrowest(const Eigen::Matrix2d& seen, const Eigen::Matrix2d& whole) {
   return mean - std::sqrt(std::max(0.0, mean * mean - ratio.determinant()));
 }
 
+/// Of a second moment, a share of it, that the calibrated waist leaves: twice that of the waist.
+double spread_sigma(const machine::MachineDescription& machine) {
+  if (!machine.gap_sensor || !machine.gap_sensor->waist) return 0;
+  return 2 * machine.gap_sensor->waist->sigma / machine.laser.waist_diameter;
+}
+
 /// The gap, of a few over the range, whose dot is nearest: where Newton begins.
 bool nearest_on_grid(const machine::MachineDescription& machine, const LocalSurface& surface,
                      const Vec2& pixel, double& gap) {
@@ -166,7 +172,8 @@ bool read_gap(const machine::MachineDescription& machine, const LocalSurface& su
     const double change = track.rate.dot(weight * miss) / gain;
     if (std::abs(change) < kConverged) {
       const Vec2 along = track.rate.normalized();
-      reading = {gap, 1 / std::sqrt(gain), std::abs(along.x() * miss.y() - along.y() * miss.x()), 0};
+      reading = {gap, 1 / std::sqrt(gain), std::abs(along.x() * miss.y() - along.y() * miss.x()), 0,
+                 spread_sigma(machine)};
       Eigen::Matrix2d whole;
       if (predict_spread(machine, surface, gap, whole)) reading.narrowest = narrowest(dot.spread_px2, whole);
       return gap >= kGapLow && gap <= kGapHigh;
@@ -178,8 +185,9 @@ bool read_gap(const machine::MachineDescription& machine, const LocalSurface& su
 }
 
 bool whole(const GapReading& reading, const vision::DotMeasurement& dot) {
-  constexpr double kUnmodelled = 0.05;  // the camera's rounding, the beam's waist off by 2 %, facets
-  return reading.narrowest >= 1 - kPlausibleSigmas * dot.spread_sigma - kUnmodelled;
+  constexpr double kUnmodelled = 0.05;  // the camera's rounding, a blur that is off by a fifth, facets
+  const double sigma = std::hypot(dot.spread_sigma, reading.whole_sigma);
+  return reading.narrowest >= 1 - kPlausibleSigmas * sigma - kUnmodelled;
 }
 
 Region region_for_gap(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,

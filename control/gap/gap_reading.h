@@ -14,6 +14,7 @@ struct GapReading {
   /// Second moment of the dot over that of the whole beam, in the direction where it is smallest: 0.36 where
   /// an edge hides half of it.
   double narrowest = 1;
+  double whole_sigma = 0;  ///< of the whole beam's second moment, a share of it: its waist was measured
 };
 
 /// Where the dot must appear for a gap. False when the beam misses the modelled surface or the camera.

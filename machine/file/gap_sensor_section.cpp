@@ -14,6 +14,8 @@ namespace understudy::machine {
 namespace {
 
 constexpr const char* kCovariance = "covariance_mm_rad";
+constexpr const char* kWaist = "waist_diameter_mm";
+constexpr const char* kWaistSigma = "waist_sigma_um";
 constexpr const char* kWriter = "understudy calibrate gap-sensor";
 
 Eigen::VectorXd covariance_units() {
@@ -40,6 +42,29 @@ Pose read_device(YamlMap& map, const std::string& body, const Pose& drawn) {
   return X;
 }
 
+/// A calibration from before it measured the beam has neither key.
+void read_waist(YamlMap& map, Laser& laser, GapSensorCalibration& record) {
+  if (!map.has(kWaist) && !map.has(kWaistSigma)) return;
+  const double found = map.quantity(kWaist, {0.005, 5}, "of the beam, as its dots show it");
+  const double sigma = map.quantity(kWaistSigma, {0, 1000}, "1 sigma of that");
+  if (!map.complete()) return;
+  const double off = found / laser.waist_diameter - 1;
+  if (std::abs(off) > kWaistOff)
+    throw InputError(
+        map.place(kWaist),
+        fmt::format("{} is {:g} mm, {:+.0f} % off the drawn {:g} mm, more than {:.0f} %: is this "
+                    "the calibration of another machine?",
+                    map.path(kWaist), to_mm(found), 100 * off, to_mm(laser.waist_diameter), 100 * kWaistOff));
+  record.waist = MeasuredWaist{laser.waist_diameter, sigma};
+  laser.waist_diameter = found;
+}
+
+std::string waist_text(const MachineDescription& machine) {
+  if (!machine.gap_sensor->waist) return "";
+  return fmt::format("  {}: {:.6f}\n  {}: {:.3f}\n", kWaist, to_mm(machine.laser.waist_diameter), kWaistSigma,
+                     to_um(machine.gap_sensor->waist->sigma));
+}
+
 void read_section(YamlMap& map, MachineDescription& machine) {
   GapSensorCalibration record;
   record.drawn = mounting_of(machine);
@@ -51,6 +76,8 @@ void read_section(YamlMap& map, MachineDescription& machine) {
   found.X_TC = read_device(map, "microscope", record.drawn.X_TC);
   found.focal_px = map.quantity("focal_px", {1, 1e8}, "focal length over the width of a pixel");
   const Eigen::MatrixXd covariance = read_covariance(map, kCovariance, covariance_units(), kWriter);
+  Laser laser = machine.laser;
+  read_waist(map, laser, record);
   if (!map.complete()) return;
   const double scale = found.focal_px / record.drawn.focal_px - 1;
   if (std::abs(scale) > kMountingScaleOff)
@@ -61,6 +88,7 @@ void read_section(YamlMap& map, MachineDescription& machine) {
                     map.path("focal_px"), found.focal_px, 100 * scale, record.drawn.focal_px,
                     100 * kMountingScaleOff));
   record.covariance = covariance;
+  machine.laser = laser;
   set_mounting(found, machine.laser, machine.microscope);
   machine.gap_sensor = record;
 }
@@ -83,7 +111,7 @@ std::string gap_sensor_section(const MachineDescription& machine) {
       "`microscope`.\n  measurements: {}\n  measurements_sha256: {}\n  pictures: {}\n",
       kWriter, quoted_text(record.measurements), quoted_text(record.measurements_sha256), record.pictures);
   return head + mount_text("laser", machine.laser.X_TL) + mount_text("microscope", machine.microscope.X_TC) +
-         fmt::format("  focal_px: {:.9f}\n", machine.microscope.camera.focal_px) +
+         fmt::format("  focal_px: {:.9f}\n", machine.microscope.camera.focal_px) + waist_text(machine) +
          covariance_text(kCovariance, record.covariance, covariance_units(),
                          "docs/machine-description.md#gap-sensor");
 }

@@ -13,6 +13,7 @@ namespace understudy::machine {
 constexpr double kMountingFar = 5e-3;      // [m]
 constexpr double kMountingTurned = 0.17;   // [rad], 10 deg
 constexpr double kMountingScaleOff = 0.2;  // of the drawn scale
+constexpr double kWaistOff = 0.5;          // of the drawn waist
 
 /// Where the file has one; after laser and microscope. Throws InputError for a part that is missing or far
 /// from what is drawn, and for a covariance that is none.

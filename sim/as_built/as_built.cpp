@@ -63,8 +63,10 @@ AsBuilt without_errors(const machine::MachineDescription& machine, Geometry geom
       });
   built.laser = machine.laser;
   built.microscope = machine.microscope;
-  if (geometry == Geometry::drawn)
+  if (geometry == Geometry::drawn) {
     machine::set_mounting(machine::drawn_mounting(machine), built.laser, built.microscope);
+    built.laser.waist_diameter = machine::drawn_waist(machine);
+  }
   built.filament_diameter = machine.tool.filament_diameter;
   built.extruder_lag = machine.process.extruder_lag;
   if (const auto* table = std::get_if<geometry::Box>(&machine.table.form)) {

@@ -107,6 +107,8 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthS
   machine::BuiltTolerances others = machine::load_built_tolerances(machine.file.string(), fixture);
   if (parameters.play) others.play = 0;
   if (machine.gap_sensor) others.camera_centre = 0;  // found as a turn of the microscope
+  if (machine.gap_sensor && machine.gap_sensor->waist)
+    others.waist = machine.gap_sensor->waist->sigma / machine.laser.waist_diameter;
   if (parameters.covariance.size() == 0)
     throw InputError(
         file,

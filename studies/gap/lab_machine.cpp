@@ -61,16 +61,12 @@ void calibrate_gap_sensor(std::uint64_t seed, MachineDescription& machine) {
   calibration::GapSensorProblem problem = calibration::gap_sensor_problem(machine);
   problem.slopes = sample.rows.slopes;
   problem.known = sample.rows.known;
-  for (std::size_t i = 0; i < dots.size(); ++i) {
-    const calibration::GapPicture& row = sample.rows.rows[i];
+  for (std::size_t i = 0; i < dots.size(); ++i)
     if (dots[i].status == vision::DotStatus::ok)
-      problem.dots.push_back(
-          {row.flat, row.height, row.height_sigma, dots[i].position_px, dots[i].covariance_px2});
-  }
+      problem.dots.push_back(calibration::seen_dot(sample.rows.rows[i], dots[i]));
   const calibration::GapSensorFit fit = calibration::fit_gap_sensor(problem);
   if (!fit.converged) throw MachineError("the gap sensor of a built machine could not be calibrated");
-  machine.gap_sensor = {problem.drawn, "", "", static_cast<int>(problem.dots.size()), fit.covariance};
-  machine::set_mounting(fit.mounting, machine.laser, machine.microscope);
+  calibration::set_gap_sensor(problem, fit, machine);
 }
 
 }  // namespace

@@ -254,8 +254,8 @@ TEST(GapCycle, ControllingTheGapAlongAPathNeitherAllocatesNorLocks) { control_wi
 
 TEST(GapCycle, NorDoesAimingByTheUncertaintyOfACalibratedSensor) {
   machine::MachineDescription calibrated = hexapod();
-  calibrated.gap_sensor = {machine::mounting_of(calibrated), "", "", 10,
-                           1e-12 * machine::MountingMatrix::Identity()};
+  calibrated.gap_sensor = {
+      machine::mounting_of(calibrated), "", "", 10, 1e-12 * machine::MountingMatrix::Identity(), {}};
   ASSERT_GT(safe_aim(calibrated, {}, kGap).sigma, 0);
   control_without_calls(calibrated);
 }

@@ -25,7 +25,7 @@ machine::MachineDescription known_to(double sigma) {
   machine::MountingVector up = machine::MountingVector::Zero();
   up.head<2>() = drawn.X_TL.linear().row(2).head<2>().transpose();
   up.segment<3>(4) = drawn.X_TC.linear().row(2).transpose();
-  m.gap_sensor = {drawn, "", "", 1, sigma * sigma * up * up.transpose()};
+  m.gap_sensor = {drawn, "", "", 1, sigma * sigma * up * up.transpose(), {}};
   return m;
 }
 
@@ -54,7 +54,7 @@ TEST(SensorUncertainty, IsTheSpreadOfReadingsOfSensorsDrawnFromTheCovariance) {
   for (int i = 0; i < machine::kMountingFreedoms; ++i)
     for (int j = 0; j < machine::kMountingFreedoms; ++j) root(i, j) = 1e-5 * random.normal();
   const Mounting mounting = machine::mounting_of(m);
-  m.gap_sensor = {mounting, "", "", 1, root * root.transpose()};
+  m.gap_sensor = {mounting, "", "", 1, root * root.transpose(), {}};
   LocalSurface curved = sloping(0.2, -0.1);
   curved.curvature(0, 0) = -1 / 15.5e-3;
   for (const LocalSurface& surface : {LocalSurface{}, sloping(0.3, 0.3), curved}) {

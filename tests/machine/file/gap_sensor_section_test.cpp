@@ -29,7 +29,9 @@ MachineDescription calibrated() {
     for (int j = 0; j < kMountingFreedoms; ++j) mixed(i, j) = 1e-4 * random.normal();
   }
   const OpticsMounting drawn = mounting_of(m);
-  m.gap_sensor = {drawn, "gaps \"3\".csv", std::string(64, '0'), 12, mixed * mixed.transpose()};
+  m.gap_sensor = {drawn, "gaps \"3\".csv",          std::string(64, '0'),
+                  12,    mixed * mixed.transpose(), MeasuredWaist{m.laser.waist_diameter, 1.5e-6}};
+  m.laser.waist_diameter = 0.13e-3;
   set_mounting(moved(drawn, error), m.laser, m.microscope);
   return m;
 }
@@ -65,6 +67,30 @@ TEST_F(GapSensorSection, TheDrawingIsKeptForWhatIsBuilt) {
   EXPECT_TRUE(drawn_mounting(read).X_TC.isApprox(drawn.microscope.X_TC, 0));
   EXPECT_EQ(drawn_mounting(read).focal_px, drawn.microscope.camera.focal_px);
   EXPECT_TRUE(mounting_of(read).X_TL.isApprox(read.laser.X_TL, 0));
+}
+
+TEST_F(GapSensorSection, TheMeasuredWaistIsTheControllersAndTheDrawnOneIsKept) {
+  const MachineDescription drawn = load_machine("hexapod"), read = load_machine(write(text()));
+  EXPECT_NEAR(read.laser.waist_diameter, 0.13e-3, 1e-9);
+  ASSERT_TRUE(read.gap_sensor->waist);
+  EXPECT_NEAR(read.gap_sensor->waist->sigma, 1.5e-6, 1e-9);
+  EXPECT_EQ(drawn_waist(read), drawn.laser.waist_diameter);
+  EXPECT_EQ(drawn_waist(drawn), drawn.laser.waist_diameter);
+}
+
+TEST_F(GapSensorSection, OfACalibrationThatMeasuredNoWaistTheDrawnOneCounts) {
+  MachineDescription m = calibrated();
+  m.gap_sensor->waist.reset();
+  const MachineDescription read = load_machine(write(with_section(read_file(m.file), gap_sensor_section(m))));
+  EXPECT_FALSE(read.gap_sensor->waist);
+  EXPECT_EQ(read.laser.waist_diameter, load_machine("hexapod").laser.waist_diameter);
+}
+
+TEST_F(GapSensorSection, AWaistNeedsItsSigmaAndIsNearTheDrawnOne) {
+  EXPECT_THAT(refusal("  waist_sigma_um: 1.500\n", ""), HasSubstr("gap_sensor.waist_sigma_um"));
+  EXPECT_THAT(refusal("waist_diameter_mm: 0.13", "waist_diameter_mm: 0.23"),
+              AllOf(HasSubstr("gap_sensor.waist_diameter_mm is 0.23 mm, +53 % off the drawn 0.15 mm"),
+                    HasSubstr("more than 50 %"), HasSubstr(kInThatLine)));
 }
 
 TEST_F(GapSensorSection, LeavesTheRestOfTheFileAsItIsAndReplacesAnOlderOne) {

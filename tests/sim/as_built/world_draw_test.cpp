@@ -180,12 +180,20 @@ TEST(MountingDraw, SpreadsAsItsTolerancesState) {
 TEST(MountingDraw, StaysWhereItIsWhenTheControllerIsCalibrated) {
   const auto hexapod = machine::load_machine("hexapod");
   machine::MachineDescription calibrated = hexapod;
-  calibrated.gap_sensor = {machine::mounting_of(hexapod), "", "", 1, machine::MountingMatrix::Zero()};
+  calibrated.gap_sensor = {machine::mounting_of(hexapod),
+                           "",
+                           "",
+                           1,
+                           machine::MountingMatrix::Zero(),
+                           machine::MeasuredWaist{hexapod.laser.waist_diameter, 1e-6}};
   calibrated.laser.X_TL.translation().x() += 0.2e-3;
-  for (const char* set : {"nominal", "manufactured"})
-    EXPECT_EQ(make_as_built(calibrated, set, 4).laser.X_TL.matrix(),
-              make_as_built(hexapod, set, 4).laser.X_TL.matrix())
-        << set;
+  calibrated.laser.waist_diameter *= 0.9;
+  for (const char* set : {"nominal", "manufactured"}) {
+    const machine::Laser of_calibrated = make_as_built(calibrated, set, 4).laser,
+                         of_drawn = make_as_built(hexapod, set, 4).laser;
+    EXPECT_EQ(of_calibrated.X_TL.matrix(), of_drawn.X_TL.matrix()) << set;
+    EXPECT_EQ(of_calibrated.waist_diameter, of_drawn.waist_diameter) << set;
+  }
 }
 
 TEST(WorldDraw, WithoutTolerancesItIsAsDescribed) {

@@ -68,6 +68,19 @@ TEST(LabMachine, ItsGeometryIsNearerToTheTruthThanTheDrawing) {
   EXPECT_EQ(lab.truth.laser.X_TL.matrix(), lab.built.laser.X_TL.matrix());
 }
 
+/// Machine 1006's beam is 14 % narrower than drawn: dots that nothing hides were taken for hidden ones.
+TEST(LabMachine, KnowsHowWideItsBeamIs) {
+  for (const std::uint64_t seed : {1u, 1006u}) {
+    const LabMachine& lab = lab_machine(seed);
+    ASSERT_TRUE(lab.machine.gap_sensor->waist);
+    const double sigma = lab.machine.gap_sensor->waist->sigma;
+    EXPECT_LT(sigma, 0.02 * drawn().laser.waist_diameter);
+    // What the blur differs by, 10 % of 0.7 px beside a beam of 2.4 px, counts as the beam's: 2 %.
+    EXPECT_NEAR(lab.machine.laser.waist_diameter, lab.built.laser.waist_diameter, 4 * sigma + 3e-6) << seed;
+  }
+  EXPECT_LT(lab_machine(1006).machine.laser.waist_diameter, 0.9 * drawn().laser.waist_diameter);
+}
+
 TEST(LabMachine, NeedsAGapSensor) {
   EXPECT_THROW(make_lab_machine(machine::load_machine("finishing"), 1), InputError);
 }
