@@ -48,7 +48,7 @@ TEST(PrintTime, WhatCannotBeReachedHasNone) {
   const TemporaryFolder folder;
   const std::string program = (folder / "far.gcode").string();
   write_file(program, "; estimated printing time (normal mode) = 5s\nG1 X9000 F600\n");
-  const PrintTime time = time_on("hexapod", program);
+  const PrintTime time = time_on("arm", program);
   EXPECT_FALSE(time.planned.has_value());
   EXPECT_EQ(time.slicers, 5);
 }
