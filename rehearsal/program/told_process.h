@@ -14,10 +14,6 @@
 
 namespace understudy::rehearsal {
 
-// Finding::about, of filament.
-inline constexpr const char* kOtherFilament = "other filament";
-inline constexpr const char* kOtherFlow = "other flow";
-
 /// The number that a slicer's comment begins with, of toolpath::slicer_facts(); several extruders are a list.
 std::optional<double> fact_number(const std::map<std::string, std::string>& facts, const std::string& key);
 
@@ -27,8 +23,8 @@ void mount_nozzle(machine::Tool& tool, double bore);
 /// [m], of the request or the comments; 0: neither tells.
 double told_layer(const DialectRequest& dialect, const std::map<std::string, std::string>& facts);
 
-/// Warnings: the slicer worked for another nozzle or filament than what is there; the request's layer is not the
-/// one [m] that most of the path has (0: none).
+/// Warnings: the slicer worked for another nozzle or filament than what is there; the request's layer is not
+/// the one [m] that most of the path has (0: none).
 std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,
                                       const std::map<std::string, std::string>& facts, double typical_layer);
 
