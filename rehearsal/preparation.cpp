@@ -45,6 +45,7 @@ void read_into(const RehearsalRequest& request, TwinSetup& setup, Mended& mended
   for (const auto& lines : read.passed_over) mended.passed_over.emplace_back(lines.line, lines.last_line);
   mended.facts = std::move(read.facts);
   mended.features = std::move(read.features);
+  mended.beads = std::move(read.beads);
 }
 
 /// The program, and the part as the controller holds it, go to where the part was found.
@@ -108,8 +109,10 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
   if (!request.part_pose.empty()) believe_part_pose(request, setup);
   if (setup.machine.tool.prints() && !setup.cure)
-    setup.layers = std::make_shared<ProgrammedLayers>(setup.program, setup.machine, setup.part,
-                                                      told_layer(request.dialect, mended.facts));
+    setup.layers = std::make_shared<ProgrammedLayers>(
+        setup.program, setup.machine, setup.part, told_layer(request.dialect, mended.facts), mended.beads);
+  if (const auto other = other_flow(setup.program, setup.machine, mended.beads))
+    mended.findings.push_back(*other);
   for (Finding& finding : process_warnings(request.dialect, setup.machine.tool, mended.facts,
                                            setup.layers ? setup.layers->typical_layer() : 0))
     mended.findings.push_back(std::move(finding));

@@ -12,6 +12,7 @@
 #include "rehearsal/request/request.h"
 #include "rehearsal/run_twin.h"
 #include "toolpath/inspection/feature_types.h"
+#include "toolpath/inspection/told_beads.h"
 
 namespace understudy::rehearsal {
 
@@ -21,6 +22,7 @@ struct Mended {
   std::vector<std::pair<int, int>> passed_over;  // lines
   std::map<std::string, std::string> facts;      // that the slicer's comments state
   toolpath::FeatureTypes features;               // likewise
+  toolpath::ToldBeads beads;                     // likewise
 };
 
 using control::gap_control_of;

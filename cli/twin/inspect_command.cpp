@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -82,6 +83,29 @@ void print_process(const rehearsal::Inspection& found) {
                  i + 1 == temperatures.size() ? " C\n" : "");
 }
 
+std::string minutes(double seconds) {
+  const auto whole = std::llround(seconds);
+  if (whole < 60) return fmt::format("{} s", whole);
+  return whole >= 3600 ? fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60)
+                       : fmt::format("{} min {} s", whole / 60, whole % 60);
+}
+
+void print_time(const rehearsal::PrintTime& time) {
+  if (!time.planned && !time.slicers) return;
+  std::string text;
+  if (time.planned) text = minutes(*time.planned) + " on the machine";
+  if (time.slicers)
+    text += fmt::format("{}{} for the slicer", text.empty() ? "" : ", ", minutes(*time.slicers));
+  if (time.planned && time.slicers && *time.slicers > 0)
+    text += fmt::format(" ({:+.1f} %)", 100 * (*time.planned / *time.slicers - 1));
+  fmt::print("  time: {}\n", text);
+  if (time.limits.empty()) return;
+  std::vector<std::string> limits;
+  for (const rehearsal::OtherLimit& limit : time.limits)
+    limits.push_back(fmt::format("{} {:g} {} (here {:g})", limit.name, limit.slicer, limit.unit, limit.here));
+  fmt::print("  the slicer counts with other limits: {}\n", fmt::join(limits, ", "));
+}
+
 void print_foreign_words(const rehearsal::Inspection& found, const std::string& machine) {
   if (found.foreign_words.empty()) return;
   fmt::print("  {} turn axes that {} does not have: ", fmt::join(found.foreign_words, " "), machine);
@@ -158,6 +182,7 @@ int inspect(const std::string& program, const std::string& machine, const rehear
   print_beads(found.summary);
   print_features(found.feature_lengths);
   print_process(found);
+  print_time(found.time);
   if (found.summary.tilt_max > 0.5 * kDegree)
     fmt::print("  the tool leans by up to {:.1f} deg\n", to_deg(found.summary.tilt_max));
   print_readings(found);

@@ -75,6 +75,7 @@ struct MotionPlanner::State {
   void push(const toolpath::Step& step);
   void find_slopes(PathSegment& segment, AxisVector& axes) const;
   void queue(PathSegment segment);
+  double junction_speed(const PathSegment& before, const PathSegment& after) const;
   void cut_last(double exit_speed);
   void finish();
   bool plan();
@@ -148,20 +149,27 @@ void MotionPlanner::State::queue(PathSegment segment) {
   filament_rest = segment.filament_end;
   if (!segment.moves() && segment.rest == 0) return;
   if (cut_segments < first_segment + segments.size()) {
-    const PathSegment& before = segments.back();
-    double speed = 0;
-    if (segment.moves() && before.moves()) {
-      const int axes = kinematics.axis_count();
-      speed = std::min(speed_limit(before.speed, before.slope_end, limits.motion, axes),
-                       speed_limit(segment.speed, segment.slope_begin, limits.motion, axes));
-      speed = std::min(speed, corner_speed(corner_jump(before, segment, axes), limits.channels));
-    }
-    segment.entry_speed = speed;
-    cut_last(speed);
+    segment.entry_speed = junction_speed(segments.back(), segment);
+    cut_last(segment.entry_speed);
   }
   X_WT_rest = segment.X_WT_end;
   segments.push_back(segment);
   resting = false;
+}
+
+// Where one of the two is a rest, what the axes can do at once. A shorter one could have the jump of the stop
+// and that of the start in one cycle.
+double MotionPlanner::State::junction_speed(const PathSegment& before, const PathSegment& after) const {
+  const int axes = kinematics.axis_count();
+  double speed = std::numeric_limits<double>::infinity();
+  if (before.moves()) speed = speed_limit(before.speed, before.slope_end, limits.motion, axes);
+  if (after.moves())
+    speed = std::min(speed, speed_limit(after.speed, after.slope_begin, limits.motion, axes));
+  if (before.moves() && after.moves())
+    return std::min(speed, corner_speed(corner_jump(before, after, axes), limits.channels));
+  const double rest = std::max(before.rest, after.rest);
+  if (before.moves() == after.moves() || rest < limits.motion.cycle_time) return 0;
+  return std::min(speed, jump_speed(corner_jump(before, after, axes), limits.channels));
 }
 
 // Cuts the one segment that waits for its end to be known.

@@ -37,10 +37,10 @@ struct MotionStart {
 /// within one cycle by at most half of acceleration * cycle_time and `velocity_jump`; the other half is for
 /// speeding up and down. So within any cycle an axis changes its velocity by at most acceleration *
 /// cycle_time
-/// + velocity_jump, however dense the corners; starts and stops take no jump. The tip's own acceleration does
-/// not hold at corners where there are such jumps.
-/// Where a step leaves a pose that lets an axis turn freely (a table under an upright tool), the axis turns
-/// to where the step needs it first, with the tool at rest on the part.
+/// + velocity_jump, however dense the corners. Stops for a rest of a cycle or more, and the starts after it,
+/// take the jump alone; others none. The tip's own acceleration does not hold at corners where there are such
+/// jumps. Where a step leaves a pose that lets an axis turn freely (a table under an upright tool), the axis
+/// turns to where the step needs it first, with the tool at rest on the part.
 class MotionPlanner {
  public:
   /// The mechanism and X_WB must outlive the planner. Throws InputError for a start that the mechanism cannot

@@ -90,6 +90,7 @@ void append_pieces(const PathSegment& segment, const SegmentPlace& place, const 
   piece.corner = std::any_of(piece.jump.begin(), piece.jump.end(), [](double j) { return j > 0; });
   piece.node_speed_max = segment.entry_speed;
   if (!segment.moves()) {
+    piece.speed_max = segment.entry_speed;
     pieces.push_back(piece);
     return;
   }

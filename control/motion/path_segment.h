@@ -51,8 +51,9 @@ struct PathSegment {
 
   bool moves() const { return length > 0; }
   Vec3 tip_at(double s) const;
-  toolpath::RotaryTurns turns_at(double s) const;     ///< of one with `rotary`
-  Vec3 tip_slope() const { return travel / length; }  ///< per unit of s, constant along the segment
+  toolpath::RotaryTurns turns_at(double s) const;  ///< of one with `rotary`
+  /// Per unit of s, constant along the segment.
+  Vec3 tip_slope() const { return moves() ? Vec3(travel / length) : Vec3::Zero(); }
   Twist twist_W() const;  ///< the same with the angular part, of an orientation on the shortest arc
   double filament_at(double fraction) const;
 };

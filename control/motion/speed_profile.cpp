@@ -83,9 +83,8 @@ double largest_speed2(const Bounds& bounds, double length, double x_end_max, dou
 
 double node_cap(const std::deque<Piece>& pieces, std::size_t k) {
   const Piece& piece = pieces[k];
-  if (piece.length == 0 || (k > 0 && pieces[k - 1].length == 0)) return 0;
   double speed = std::min(piece.node_speed_max, piece.speed_max);
-  if (k > 0) speed = std::min(speed, pieces[k - 1].speed_max);
+  if (k > 0 && pieces[k - 1].length > 0) speed = std::min(speed, pieces[k - 1].speed_max);
   return speed * speed;
 }
 
@@ -98,8 +97,8 @@ struct CornerWindow {
 };
 
 CornerWindow corner_window(const std::deque<Piece>& pieces, std::size_t k, const ChannelLimits& limits) {
-  CornerWindow window{k, 0, std::min(pieces[k].speed_max, corner_speed(pieces[k].jump, limits)),
-                      pieces[k].jump};
+  const double speed = std::min(pieces[k].node_speed_max, pieces[k].speed_max);
+  CornerWindow window{k, 0, std::min(speed, corner_speed(pieces[k].jump, limits)), pieces[k].jump};
   double distance = 0;
   for (std::size_t j = k; j-- > 0;) {
     const Piece& piece = pieces[j];
@@ -148,6 +147,13 @@ double corner_speed(const ChannelArray& jump, const ChannelLimits& limits) {
   return speed;
 }
 
+double jump_speed(const ChannelArray& slope, const ChannelLimits& limits) {
+  double speed = kInfinity;
+  for (int i = 0; i < limits.count; ++i)
+    if (std::abs(slope[i]) > kNoSlope) speed = std::min(speed, limits.velocity_jump[i] / std::abs(slope[i]));
+  return speed;
+}
+
 double cycle_reach(double speed, const ChannelArray& slope, const ChannelLimits& limits) {
   double acceleration = kInfinity;
   for (int i = 0; i < limits.count; ++i)
@@ -179,23 +185,21 @@ void plan_speeds(std::deque<Piece>& pieces, double speed2_begin, const ChannelLi
     Piece& piece = pieces[k];
     piece.end_speed2 = next;
     const double cap = node_cap(pieces, k);
-    if (cap > 0)
+    if (cap > 0 && piece.length > 0)
       piece.node_speed2 = largest_speed2(bounds_of(piece, limits), piece.length, next, cap);
     else
-      piece.node_speed2 = 0;
+      piece.node_speed2 = cap;
     next = piece.node_speed2;
   }
   double x = pieces.empty() ? 0 : std::min(speed2_begin, pieces.front().node_speed2);
   for (Piece& piece : pieces) {
     piece.node_speed2 = x;
-    if (piece.length == 0) {
-      x = 0;
-    } else {
+    if (piece.length > 0) {
       const double u =
           acceleration_range(bounds_of(piece, limits), piece.length, piece.end_speed2, x).high.at(x);
-      x = std::clamp(x + 2 * piece.length * u, 0.0, piece.end_speed2);
+      piece.end_speed2 = std::clamp(x + 2 * piece.length * u, 0.0, piece.end_speed2);
     }
-    piece.end_speed2 = x;
+    x = piece.end_speed2;
     assert(piece.length == 0 || piece.node_speed2 + piece.end_speed2 > 0);
   }
 }

@@ -24,9 +24,10 @@ struct Piece {
   ChannelArray slope_begin{}, slope_end{};  ///< dq/ds
   ChannelArray used{};  ///< part of each acceleration limit that jumps at corners near by may take
 
-  double node_speed_max = 0;  ///< [m/s], where the piece begins; 0: at rest there
-  bool corner = false;        ///< `jump` is not 0
-  ChannelArray jump{};        ///< |change of dq/ds| from the piece before
+  double node_speed_max =
+      0;                ///< [m/s], where the piece begins; 0: at rest there. Of a rest: with which it is met
+  bool corner = false;  ///< `jump` is not 0
+  ChannelArray jump{};  ///< |change of dq/ds| from the piece before
 
   double node_speed2 = 0;   ///< planned x where it begins [m^2/s^2]
   double end_speed2 = 0;    ///< planned x where it ends
@@ -46,13 +47,17 @@ struct ChannelLimits {
 /// Largest speed at which a lone corner stays within its share.
 double corner_speed(const ChannelArray& jump, const ChannelLimits& limits);
 
+/// Largest speed that a motion stops from, or starts with, by `velocity_jump` alone.
+double jump_speed(const ChannelArray& slope, const ChannelLimits& limits);
+
 /// Path run through in one cycle that begins at `speed`, within the channels' accelerations.
 double cycle_reach(double speed, const ChannelArray& slope, const ChannelLimits& limits);
 
 /// Lowers node_speed_max and raises `used` for the corners among the pieces. Idempotent.
 void limit_corners(std::deque<Piece>& pieces, const ChannelLimits& limits);
 
-/// Fills node_speed2 and end_speed2 of all pieces: from x = speed2_begin to rest at the end.
+/// Fills node_speed2 and end_speed2 of all pieces: from x = speed2_begin to rest at the end. A rest is met
+/// with its node_speed2, and the motion after it starts with its end_speed2.
 void plan_speeds(std::deque<Piece>& pieces, double speed2_begin, const ChannelLimits& limits);
 
 }  // namespace understudy::control

@@ -144,6 +144,14 @@ std::string about_program(const Finding& finding, const Record&) {
                        finding.value, finding.limit);
   if (finding.about == kOtherLayer)
     return "look whether `--place X,Y,Z` (mm) has the program at its height, and at the slicer's layers";
+  if (finding.about == kOtherFilament)
+    return fmt::format(
+        "if that filament will be loaded: `--machine 'NAME{{tool.filament_diameter_mm: {:g}}}'`; else slice "
+        "for "
+        "the one of {:g} mm",
+        finding.value, finding.limit);
+  if (finding.about == kOtherFlow)
+    return "look at the slicer's extrusion multiplier, at `M221`, and at the diameter of the filament";
   if (finding.about.starts_with(kPassedOver))
     return "mend this line and rehearse again: what the machine does there is not known, and everything else "
            "here is about the program without it";

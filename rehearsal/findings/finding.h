@@ -25,6 +25,8 @@ struct Finding {
 inline constexpr const char* kPassedOver = "line that is passed over,";
 inline constexpr const char* kOtherNozzle = "another nozzle";
 inline constexpr const char* kOtherLayer = "other layers";
+inline constexpr const char* kOtherFilament = "other filament";
+inline constexpr const char* kOtherFlow = "other flow";
 inline constexpr const char* kStopped = "the print stopped";
 inline constexpr const char* kTooLow = "too low";
 inline constexpr const char* kTooHigh = "too high";

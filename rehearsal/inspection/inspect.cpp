@@ -102,6 +102,7 @@ class Inspector {
       summarise_as(options_);
     request_words();
     request_place();
+    if (result_.summary.printed) result_.time = print_time(result_.request, result_.slicer_facts);
     return std::move(result_);
   }
 

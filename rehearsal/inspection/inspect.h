@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "rehearsal/inspection/print_time.h"
 #include "rehearsal/program/readings.h"
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
@@ -32,6 +33,7 @@ struct Inspection {
   std::string told_by;           ///< how its language is known: "its ending", "its content"; empty: G-code
   std::optional<double> nozzle;  ///< [m], that the slicer worked for
   double machine_nozzle = 0;     ///< [m]
+  PrintTime time;                ///< of what `request` asks for
   /// How it may be rehearsed: dialect, place on the table, words to ignore, temperature.
   RehearsalRequest request;
 };

@@ -38,6 +38,7 @@ void read_gcode_into(ReadProgram& read, const std::string& text, const Rehearsal
   options.passed_over = &read.passed_over;
   read.facts = toolpath::slicer_facts(text);
   read.features = toolpath::FeatureTypes(text);
+  read.beads = toolpath::ToldBeads(text);
   const toolpath::ProgramTurn turn{from_deg(request.dialect.turn_deg), from_deg(request.dialect.spin_deg)};
   read.program = toolpath::parse_turned_gcode(text, request.program, options, turn);
 }

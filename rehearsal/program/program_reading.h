@@ -11,6 +11,7 @@
 #include "rehearsal/request/request.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/inspection/feature_types.h"
+#include "toolpath/inspection/told_beads.h"
 
 namespace understudy::rehearsal {
 
@@ -20,6 +21,7 @@ struct ReadProgram {
   std::vector<toolpath::PassedOver> passed_over;  ///< none where the request is strict
   std::map<std::string, std::string> facts;       ///< of the slicer's comments (toolpath::slicer_facts)
   toolpath::FeatureTypes features;                ///< of the slicer's comments
+  toolpath::ToldBeads beads;                      ///< of the slicer's comments
 };
 
 /// With the temperature that the request asks for ahead of it. Throws InputError as read_gcode() and

@@ -101,7 +101,8 @@ struct ProgrammedLayers::Stretch {
 
 ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
                                    const machine::MachineDescription& machine,
-                                   const std::shared_ptr<const geometry::Mesh>& part, double told)
+                                   const std::shared_ptr<const geometry::Mesh>& part, double told,
+                                   const toolpath::ToldBeads& beads)
     : limits_(machine.gap), told_(told) {
   const std::vector<float> areas = programmed_areas(program, machine);
   std::vector<std::pair<double, double>> printed;
@@ -141,8 +142,22 @@ ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
   }
   stretches.push_back(close(samples));
   for (const Stretch& stretch : stretches) assign(stretch);
+  take_told(beads, areas);
   carry_on(program);
   typical_ = typical(stretches);
+}
+
+void ProgrammedLayers::take_told(const toolpath::ToldBeads& beads, const std::vector<float>& areas) {
+  if (beads.empty()) return;
+  if (layers_.size() < areas.size()) layers_.resize(areas.size());
+  for (std::size_t line = 0; line < areas.size(); ++line) {
+    const toolpath::ToldBead told = beads.at(static_cast<int>(line));
+    const double area = static_cast<double>(areas[line]), told_area = told.area();
+    if (area <= 0 || told_area <= 0 || std::abs(area - told_area) > kSameBead * told_area) continue;
+    const auto height = static_cast<float>(told.height);
+    if (beads.supports() && layers_[line].layer > height) continue;
+    layers_[line] = {height, areas[line]};
+  }
 }
 
 /// What still flows as a travel begins belongs to the line before it.

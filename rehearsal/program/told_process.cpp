@@ -5,14 +5,18 @@
 
 #include <fmt/format.h>
 
+#include "core/quantile.h"
 #include "core/units.h"
+#include "rehearsal/program/programmed_areas.h"
 
 namespace understudy::rehearsal {
 namespace {
 
-constexpr double kSameNozzle = 0.05;  // of the bore; sizes differ by a quarter
-constexpr double kSameLayer = 0.3;    // of its height, which lines side by side make uneven
-constexpr double kThickest = 10;      // [mm], of layers that comments tell
+constexpr double kSameNozzle = 0.05;   // of the bore; sizes differ by a quarter
+constexpr double kSameLayer = 0.3;     // of its height, which lines side by side make uneven
+constexpr double kSameFilament = 0.1;  // of its diameter; slicers state what was measured
+constexpr double kSameFlow = 0.15;     // of the told section: firmwares' flow is set that finely
+constexpr double kThickest = 10;       // [mm], of layers that comments tell
 
 Finding warning(double value, double limit, std::string message, const char* about) {
   return {"program", Severity::warning, 0, 0, value, limit, "mm", std::move(message), 0, about};
@@ -42,6 +46,36 @@ double told_layer(const DialectRequest& dialect, const std::map<std::string, std
   return said && *said > 0 && *said < kThickest ? from_mm(*said) : 0;
 }
 
+std::optional<Finding> other_flow(const toolpath::Program& program,
+                                  const machine::MachineDescription& machine,
+                                  const toolpath::ToldBeads& beads) {
+  if (beads.empty() || !machine.tool.prints()) return std::nullopt;
+  const std::vector<float> areas = programmed_areas(program, machine);
+  std::vector<double> shares;  // of the told section
+  int first_line = 0;
+  for (std::size_t line = 0; line < areas.size(); ++line) {
+    const double told = beads.at(static_cast<int>(line)).area();
+    if (told <= 0 || areas[line] <= 0) continue;
+    shares.push_back(static_cast<double>(areas[line]) / told);
+    if (first_line == 0 && std::abs(shares.back() - 1) > kSameFlow) first_line = static_cast<int>(line);
+  }
+  if (shares.empty()) return std::nullopt;
+  const double share = quantile(shares, 0.5);
+  if (std::abs(share - 1) <= kSameFlow) return std::nullopt;
+  return Finding{"program",
+                 Severity::warning,
+                 first_line,
+                 0,
+                 100 * share,
+                 100,
+                 "%",
+                 fmt::format("fed is {:.0f} % of the filament of the beads that the comments tell, as from "
+                             "line {} on: another flow, or another filament?",
+                             100 * share, first_line),
+                 0,
+                 kOtherFlow};
+}
+
 std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,
                                       const std::map<std::string, std::string>& facts, double typical_layer) {
   std::vector<Finding> findings;
@@ -52,6 +86,13 @@ std::vector<Finding> process_warnings(const DialectRequest& dialect, const machi
         warning(*sliced, bore,
                 fmt::format("sliced for a nozzle of {:g} mm, rehearsed with one of {:g} mm", *sliced, bore),
                 kOtherNozzle));
+  const double filament = to_mm(tool.filament_diameter);
+  const auto sold = fact_number(facts, "filament_diameter");
+  if (tool.prints() && sold && *sold > 0 && std::abs(*sold - filament) > kSameFilament * filament)
+    findings.push_back(
+        warning(*sold, filament,
+                fmt::format("sliced for filament of {:g} mm, rehearsed with one of {:g} mm", *sold, filament),
+                kOtherFilament));
   const double layer = to_mm(typical_layer);
   if (dialect.layer_mm && layer > 0 && std::abs(layer - *dialect.layer_mm) > kSameLayer * *dialect.layer_mm)
     findings.push_back(warning(layer, *dialect.layer_mm,

@@ -9,6 +9,8 @@
 #include "machine/description.h"
 #include "rehearsal/findings/finding.h"
 #include "rehearsal/request/request.h"
+#include "toolpath/inspection/told_beads.h"
+#include "toolpath/program.h"
 
 namespace understudy::rehearsal {
 
@@ -21,9 +23,14 @@ void mount_nozzle(machine::Tool& tool, double bore);
 /// [m], of the request or the comments; 0: neither tells.
 double told_layer(const DialectRequest& dialect, const std::map<std::string, std::string>& facts);
 
-/// Warnings: the slicer worked for another nozzle than the one that is there; the request's layer is not the
-/// one [m] that most of the path has (0: none).
+/// Warnings: the slicer worked for another nozzle or filament than what is there; the request's layer is not
+/// the one [m] that most of the path has (0: none).
 std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,
                                       const std::map<std::string, std::string>& facts, double typical_layer);
+
+/// A warning: over most of the path whose beads comments tell, the program feeds another amount of filament.
+std::optional<Finding> other_flow(const toolpath::Program& program,
+                                  const machine::MachineDescription& machine,
+                                  const toolpath::ToldBeads& beads);
 
 }  // namespace understudy::rehearsal

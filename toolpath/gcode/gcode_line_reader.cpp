@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text/trimmed.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode_block.h"
 #include "toolpath/gcode/gcode_lexer.h"
@@ -130,6 +131,7 @@ class GcodeLineReader::Lines {
 
   void read(std::string_view words, int line) {
     said_place_ = false;
+    take_comment(trimmed(words));
     if (over_) over_->before(state_, steps_.size());
     try {
       run(words, line);
@@ -176,6 +178,12 @@ class GcodeLineReader::Lines {
   }
 
  private:
+  /// KISSlicer's words for a firmware whose E counts on: its programs have no M83.
+  void take_comment(std::string_view words) {
+    if (words.starts_with("; KISSlicer")) of_kisslicer_ = true;
+    if (of_kisslicer_ && words == "; firmware_type = 1") state_.extrude_relative();
+  }
+
   /// What cannot be passed over may come of lines that were.
   void fail_with_passed_over(const InputError& error) const {
     if (!over_ || over_->found().empty()) return;
@@ -297,6 +305,7 @@ class GcodeLineReader::Lines {
   std::vector<std::string> calls_;  // of macros, the outermost first
   int macro_lines_ = 0;
   bool said_place_ = false;
+  bool of_kisslicer_ = false;
   std::optional<std::pair<GcodeState, std::size_t>> undo_;  // before the last line; number of steps
   bool at_once_ = false;  // unknown words are told by the line that has them
 };

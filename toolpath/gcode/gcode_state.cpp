@@ -123,14 +123,28 @@ void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
 void GcodeState::set_nozzle(Block& block, std::vector<Step>& steps) {
   const Word* wait = block.find(Command::heat_and_wait);
   const Word* command = wait != nullptr ? wait : block.find(Command::heat);
+  const bool tool = command == nullptr && sets_tool(block);
+  if (tool) {
+    command = block.find(Command::retract);
+    block.take('P');
+    if (block.take('R') != nullptr && block.find('S') == nullptr) return;  // of a tool that stands by
+  }
   if (command == nullptr) return;
   const auto cooling = wait != nullptr ? block.extract('R') : std::nullopt;  // waits while it cools, too
   const Word* s = cooling ? &*cooling : block.take('S');
+  const auto machinekit = s == nullptr && !tool ? block.extract('P') : std::nullopt;
+  if (machinekit) s = &*machinekit;
   if (s == nullptr) block.fail(*command, fmt::format("'{}' needs S, the temperature in C", command->text));
   if (s->value < 0) block.fail(*s, fmt::format("'{}': the nozzle temperature is below 0 C", s->text));
   steps.push_back(step(StepKind::temperature, block.line()));
   steps.back().temperature = s->value + kCelsiusZero;
   steps.back().wait = wait != nullptr;
+}
+
+/// G10 P0 S200: RepRapFirmware's, of the tool P. Of the tool's place it does not speak.
+bool GcodeState::sets_tool(const Block& block) const {
+  return block.find(Command::retract) != nullptr && block.find('L') == nullptr &&
+         block.find('P') != nullptr && (block.find('S') != nullptr || block.find('R') != nullptr);
 }
 
 /// P names a fan; all but the first cool something else. Without S the fan runs at full speed.
@@ -206,7 +220,7 @@ void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
   if (block.find(Command::home) != nullptr) return home(block, steps);
   if (block.find(Command::set_position) != nullptr) return set_position(block);
   if (block.find(Command::retract) != nullptr || block.find(Command::unretract) != nullptr)
-    return retract(block, steps);
+    return sets_tool(block) ? void() : retract(block, steps);
   const Word* word = block.find_any(kMotionWords);
   const Word* in_machine = block.find(Command::machine_position);
   if (in_machine != nullptr && block.find_any("XYZBC") == nullptr)
@@ -304,11 +318,12 @@ double GcodeState::fed_filament(Block& block) {
   if (word == nullptr) return 0;
   const double value = length_of(block, *word, unit_);
   const double before = extruder_;
-  extruder_ = relative_extrusion_ ? before + value : value;
+  const bool relative = relative_extrusion();
+  extruder_ = relative ? before + value : value;
   if (std::abs(extruder_) > kLargestExtruder)
     block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
                                   to_mm(extruder_), to_mm(kLargestExtruder)));
-  return count_fed(flow_ * (relative_extrusion_ ? value : value - before));
+  return count_fed(flow_ * (relative ? value : value - before));
 }
 
 double GcodeState::count_fed(double filament) {

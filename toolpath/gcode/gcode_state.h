@@ -44,7 +44,10 @@ class GcodeState {
 
   const Pose& X_WT() const { return position_.X_WT(); }
   bool relative() const { return relative_; }
-  bool relative_extrusion() const { return relative_extrusion_; }
+  /// E counts on: by M83, and as every axis under G91 (Marlin, Klipper).
+  bool relative_extrusion() const { return relative_extrusion_ || relative_; }
+  /// As if M83 had been read.
+  void extrude_relative() { relative_extrusion_ = true; }
   bool ended() const { return ended_; }
   bool on_arc() const { return is_curve(); }
   double fed() const { return fed_; }                     ///< [m] of filament, since the beginning
@@ -67,6 +70,7 @@ class GcodeState {
   void dwell(Block& block, std::vector<Step>& steps);
   void home(Block& block, std::vector<Step>& steps);
   void set_nozzle(Block& block, std::vector<Step>& steps);
+  bool sets_tool(const Block& block) const;
   void set_fan(Block& block, std::vector<Step>& steps);
   std::optional<double> percent(Block& block, const char* what) const;
   void select_tool(Block& block);

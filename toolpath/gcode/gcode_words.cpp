@@ -76,6 +76,7 @@ constexpr WithoutEffect kWithoutEffect[] = {
     {'M', 110, "N"},             // line number
     {'M', 114, "DER"},           // position asked for
     {'M', 115, "UVP"},           // firmware asked for
+    {'M', 116, "PHCS"},          // wait for temperatures
     {'M', 119, ""},              // end switches asked for
     {'M', 140, "STP"},           // bed temperature
     {'M', 141, "SP"},            // chamber temperature
@@ -95,6 +96,8 @@ constexpr WithoutEffect kWithoutEffect[] = {
     {'M', 413, "S"},             // power-loss recovery
     {'M', 420, "SZVLTC"},        // levelling on or off
     {'M', 501, ""},              // stored settings
+    {'M', 566, "XYZEP"},         // jerk, of RepRapFirmware
+    {'M', 572, "DSE"},           // pressure advance, of RepRapFirmware
     {'M', 593, "XYFD"},          // input shaping
     {'M', 862.1, "PQT"},         // checks of nozzle, model, firmware
     {'M', 862.2, "PQ"},          //

@@ -160,10 +160,28 @@ TEST(SpeedProfile, CornersOnBothSidesOfAStopAreNotOfOneCycle) {
   EXPECT_EQ(pieces[2].node_speed_max, 0);
 }
 
-TEST(SpeedProfile, RestBringsTheSpeedToNothingOnBothSides) {
+std::deque<Piece> with_a_rest(double arrival, double departure) {
   std::deque<Piece> pieces;
   for (int n = 0; n < 21; ++n) pieces.push_back(straight_piece(n == 10 ? 0 : 1e-4, 0.05));
   pieces[10].rest = 0.3;
+  pieces[10].node_speed_max = arrival;
+  pieces[11].node_speed_max = departure;
+  return pieces;
+}
+
+// v^2 = v0^2 + 2 a s on either side.
+TEST(SpeedProfile, ARestIsMetAndLeftWithTheSpeedsThatItAllows) {
+  std::deque<Piece> pieces = with_a_rest(2e-3, 3e-3);
+  plan_speeds(pieces, 0, limits_of(1, 1.0, 1e-3));
+  EXPECT_NEAR(pieces[9].end_speed2, 4e-6, 1e-12);
+  EXPECT_NEAR(pieces[10].node_speed2, 4e-6, 1e-12);
+  EXPECT_NEAR(pieces[11].node_speed2, 9e-6, 1e-12);
+  EXPECT_NEAR(pieces[8].node_speed2, 4e-6 + 2 * 2e-4, 1e-12);
+  EXPECT_NEAR(pieces[12].end_speed2, 9e-6 + 2 * 2e-4, 1e-12);
+}
+
+TEST(SpeedProfile, RestBringsTheSpeedToNothingOnBothSides) {
+  std::deque<Piece> pieces = with_a_rest(0, 0);
   plan_speeds(pieces, 0, limits_of(1, 1.0, 1e-3));
   EXPECT_EQ(pieces[10].node_speed2, 0);
   EXPECT_EQ(pieces[11].node_speed2, 0);

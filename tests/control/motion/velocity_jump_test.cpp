@@ -47,6 +47,20 @@ TEST(VelocityJump, AnAxisWithoutAJumpStillHoldsTheCornerDown) {
               two_legs(0.040, 0.050, corner, printer.limits.tip_acceleration), 3e-3);
 }
 
+// Filament that is drawn back and fed again with the tool at rest; 2 mm at 40 mm/s take 50 ms.
+TEST(VelocityJump, ARestIsReachedAndLeftAtTheJump) {
+  FiveAxisForTest printer;
+  const double feed = 0.050, a = printer.limits.tip_acceleration, jump = printer.limits.velocity_jump[0];
+  const std::string leg = "G1 X20 F3000\n", back = "G1 X40 F3000\n";
+  const auto legs = [&](double speed) { return two_legs(0.020, feed, speed, a); };
+  EXPECT_NEAR(printer.plan(leg + "G1 E-2 F2400\n" + back).back().setpoint.time, legs(jump) + 0.050, 3e-3);
+  EXPECT_GT(legs(0) - legs(jump), 0.01);  // told apart
+  // Shorter than a cycle, it could have both jumps in one.
+  EXPECT_NEAR(printer.plan(leg + "G1 E-0.02 F2400\n" + back).back().setpoint.time, legs(0) + 0.5e-3, 3e-3);
+  printer.limits.velocity_jump.fill(0);
+  EXPECT_NEAR(printer.plan(leg + "G1 E-2 F2400\n" + back).back().setpoint.time, legs(0) + 0.050, 3e-3);
+}
+
 TEST(VelocityJump, NoCycleChangesAnAxisByMoreThanItsJumpAndItsAccelerationHoweverDenseTheCorners) {
   const FiveAxisForTest printer;
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -96,7 +110,7 @@ double slicers_estimate(const std::string& text) {
   return seconds;
 }
 
-TEST(VelocityJump, ASlicedProgramTakesTheSlicersTimeWithinFivePercent) {
+TEST(VelocityJump, ASlicedProgramTakesTheSlicersTimeWithinThreePercent) {
   const std::string path = UNDERSTUDY_SOURCE_DIR "/scenarios/planar/box.gcode";
   const double estimate = slicers_estimate(read_file(path));
   ASSERT_GT(estimate, 600);
@@ -104,7 +118,7 @@ TEST(VelocityJump, ASlicedProgramTakesTheSlicersTimeWithinFivePercent) {
   const auto program = toolpath::read_gcode(path, printer.gcode());
   const auto report = check_constraints(program, printer.machine);
   EXPECT_TRUE(report.findings.empty());
-  EXPECT_NEAR(report.duration, estimate, 0.05 * estimate);
+  EXPECT_NEAR(report.duration, estimate, 0.03 * estimate);
   RecordProperty("planned_s", fmt::format("{:.1f}", report.duration));
 }
 

@@ -78,6 +78,53 @@ TEST(ProgrammedLayers, AWedgeIsAsHighAtEachLineAsItsFilamentIsEnoughFor) {
       << "filament of 0.15 mm does not reach 0.4 mm";
 }
 
+/// With the comments of PrusaSlicer, layers as high as told but for the last, which lies `lower` [mm], and
+/// lines 0.45 mm wide; filament of `flow`.
+std::string told_rows(const std::vector<double>& layers, double flow = 1, double lower = 0) {
+  std::string text = "M83\nG1 F600\n;TYPE:Perimeter\n;WIDTH:0.45\n";
+  double z = 0;
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    const double h = layers[n], volume = 20 * ((0.45 - h) * h + std::numbers::pi / 4 * h * h) * flow;
+    z += h - (n + 1 == layers.size() ? lower : 0);
+    text += fmt::format(";HEIGHT:{}\nG0 X0 Y0 Z{:.3f}\nG1 X20 E{:.4f}\n", h, z, volume);
+  }
+  return text;
+}
+
+ProgrammedLayers told_layers_of(const std::string& text) {
+  return {toolpath::parse_gcode(text, "p", {}), printer(), nullptr, 0, toolpath::ToldBeads(text)};
+}
+
+TEST(ProgrammedLayers, LinesOfLayersOfSeveralHeightsHaveTheOnesThatAreTold) {
+  const ProgrammedLayers told = told_layers_of(told_rows({0.3, 0.06, 0.3, 0.3, 0.06, 0.3}));
+  const double thin = 0.06e-3 * 0.1 / 0.13;  // accepted_min over aim
+  for (const int thick_line : {7, 13, 16, 22}) {
+    EXPECT_NEAR(told.band(thick_line).low, 0.15e-3, 1e-9) << thick_line;
+    EXPECT_GT(told.band(thick_line).high, 0.3e-3) << thick_line;
+  }
+  for (const int thin_line : {10, 19}) EXPECT_NEAR(told.band(thin_line).low, thin, 1e-9) << thin_line;
+}
+
+// By the path alone, a layer of 0.13 mm would be meant.
+TEST(ProgrammedLayers, ALineThatLiesLowerThanToldHasTheBandOfWhatIsTold) {
+  const std::string text = told_rows({0.3, 0.3, 0.3}, 1, 0.17);
+  EXPECT_NEAR(told_layers_of(text).band(13).low, 0.15e-3, 1e-9);
+  EXPECT_LT(layers_of(text).band(13).low, 0.13e-3);
+}
+
+TEST(ProgrammedLayers, WhatIsToldAndNotFedIsNotBelieved) {
+  const std::string starved = told_rows({0.3, 0.3, 0.3}, 0.6);
+  EXPECT_EQ(told_layers_of(starved).band(13).high, layers_of(starved).band(13).high);
+}
+
+// 0.15 mm of air below a line of 0.3 mm, which 15 % more filament fills in part.
+TEST(ProgrammedLayers, OverSupportsALineMayLieHigherThanItIsThick) {
+  std::string text = told_rows({0.3, 0.3}) + "G0 Z1.05\nG0 X0 Y0\nG1 X20 E2.661\n";
+  EXPECT_NEAR(told_layers_of(text).band(13).low, 0.15e-3, 1e-9);
+  text += ";TYPE:Support material\n";
+  EXPECT_GT(told_layers_of(text).band(13).low, 0.16e-3);
+}
+
 TEST(ProgrammedLayers, WhatHangsInTheAirHasTheBandOfTheMachine) {
   const ProgrammedLayers layers = layers_of(rows({30}));
   EXPECT_EQ(layers.typical_layer(), 0);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -40,6 +41,13 @@ TEST(ToldProcess, AnotherNozzleThanTheSlicersIsAWarning) {
   EXPECT_THAT(process_warnings({}, nozzle_of(0.4), {}, 0), IsEmpty());
 }
 
+TEST(ToldProcess, AnotherFilamentThanTheSlicersIsAWarning) {
+  const auto warnings = process_warnings({}, nozzle_of(0.4), {{"filament_diameter", "3"}}, 0);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0].message, HasSubstr("sliced for filament of 3 mm, rehearsed with one of 1.75 mm"));
+  EXPECT_THAT(process_warnings({}, nozzle_of(0.4), {{"filament_diameter", "1.78,1.75"}}, 0), IsEmpty());
+}
+
 TEST(ToldProcess, TheLayerIsTheRequestsElseTheComments) {
   DialectRequest dialect;
   EXPECT_EQ(told_layer(dialect, {}), 0);
@@ -52,6 +60,24 @@ TEST(ToldProcess, TheLayerIsTheRequestsElseTheComments) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0].message,
               HasSubstr("most of the path lies 0.450 mm over what is below, not 0.3 mm"));
+}
+
+// 20 mm of bead of 0.45 x 0.2 mm are 1.628 mm3, of filament of 1.75 mm 0.6769 mm.
+TEST(ToldProcess, FilamentThatDoesNotMakeTheToldBeadsIsAWarning) {
+  const std::string start = "M83\n;HEIGHT:0.2\n;WIDTH:0.45\nG1 X20 F600 ";
+  machine::MachineDescription machine;
+  machine.tool = nozzle_of(0.4);
+  const auto warning = [&](const std::string& text) {
+    return other_flow(toolpath::parse_gcode(text, "p", {}), machine, toolpath::ToldBeads(text));
+  };
+  EXPECT_FALSE(warning(start + "E0.677\n").has_value());
+  EXPECT_FALSE(warning(start + "E0.61\n").has_value()) << "a flow of 90 %";
+  const auto starved = warning("M221 S60\n" + start + "E0.677\n");
+  ASSERT_TRUE(starved.has_value());
+  EXPECT_EQ(starved->severity, Severity::warning);
+  EXPECT_EQ(starved->gcode_line, 5);
+  EXPECT_NEAR(starved->value, 60, 0.1);
+  EXPECT_FALSE(warning("M83\nG1 X20 F600 E5\n").has_value()) << "nothing is told";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 namespace understudy::toolpath {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Coordinates = RotaryWords::Coordinates;
@@ -232,6 +233,33 @@ TEST(GcodeDialect, StepsKnowTheTurnsThatTheProgramSaid) {
   ASSERT_TRUE(steps[6].rotary);
   EXPECT_EQ(steps[6].rotary->c, 0);
   EXPECT_FALSE(parse("G0 X1")[0].rotary);
+}
+
+// As Cura's end block has it, after M82. [mm] fed in all: 10, then 2 and 2 drawn back.
+TEST(GcodeDialect, UnderG91ExtrusionCountsOnAsEveryAxisDoes) {
+  const auto steps = parse("M82\nG1 X10 E10 F600\nG91\nG1 E-2 F2700\nG1 E-2 Z0.2\nG90\nG1 X20 E16\n");
+  std::vector<double> fed;
+  for (const Step& step : steps) fed.push_back(std::round(1e6 * step.filament) / 1e3);
+  EXPECT_THAT(fed, ElementsAre(10, -2, -2, 10));
+}
+
+TEST(GcodeDialect, KisslicersFirmwareOfRelativeExtrusionNeedsNoM83) {
+  const std::string lines = "G1 X10 E1 F600\nG1 X20 E1\n";
+  EXPECT_NEAR(parse("; KISSlicer - FREE\n; firmware_type = 1\n" + lines)[1].filament, 1e-3, 1e-12);
+  for (const std::string other : {"; KISSlicer - FREE\n; firmware_type = 2\n", "; firmware_type = 1\n"})
+    EXPECT_EQ(parse(other + lines)[1].filament, 0) << other;
+}
+
+TEST(GcodeDialect, RepRapFirmwaresG10SetsTheTemperatureOfItsTool) {
+  const auto steps = parse("G10 P0 S200 R150\nM116\nM566 X480 Y480 Z24 E600\nG10 P0 R120\nG1 X10 F600\n");
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[0].kind, StepKind::temperature);
+  EXPECT_NEAR(steps[0].temperature, 200 + kCelsiusZero, 1e-9);
+  EXPECT_THAT(rejection("G10 P0 S200 X5\nG1 X1 F60\n"), HasSubstr("'X5' belongs to no command"));
+}
+
+TEST(GcodeDialect, MachinekitsTemperatureIsItsP) {
+  EXPECT_NEAR(parse("M104 P210\nG1 X1 F60\n")[0].temperature, 210 + kCelsiusZero, 1e-9);
 }
 
 }  // namespace

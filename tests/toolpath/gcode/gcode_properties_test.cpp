@@ -112,12 +112,13 @@ struct Style {
                        (start.y() + shift.y()) / unit, (start.z() + shift.z()) / unit));
     }
     line(relative ? "G91" : "G90");
+    const bool counts_on = relative_filament || relative;
     double fed = 0;
     bool first = true;
     for (const Target& target : targets) {
       const Vec3 said = (target.p_mm - (relative ? before : Vec3(-shift))) / unit;
       fed += target.fed_mm;
-      const std::string filament = fmt::format(" E{:.9f}", (relative_filament ? target.fed_mm : fed) / unit);
+      const std::string filament = fmt::format(" E{:.9f}", (counts_on ? target.fed_mm : fed) / unit);
       const std::string xyz = fmt::format(" X{:.9f} Y{:.9f} Z{:.9f}", said.x(), said.y(), said.z());
       const std::string feed = fmt::format(" F{:.9f}", target.feed / unit);
       const std::string words = letters_turned ? feed + filament + xyz : xyz + filament + feed;

@@ -92,7 +92,7 @@ TEST(WorkOffsets, WhatTheyDoNotMeanIsRefusedByName) {
   EXPECT_THAT(rejection("G10 L2 P1 R45"), HasSubstr("'G10' names none of X Y Z"));
   EXPECT_THAT(rejection("G10 L2 P1 X1 R45"), HasSubstr("'R45' belongs to no command"));
   EXPECT_THAT(rejection("G10 L2 P1 X200000"), HasSubstr("beyond 100000 mm"));
-  EXPECT_THAT(rejection("G10 P1 S200"), HasSubstr("alone on its line, or G10 L2"));
+  EXPECT_THAT(rejection("G10 P1 X5"), HasSubstr("alone on its line, or G10 L2"));
 }
 
 }  // namespace
