@@ -13,9 +13,6 @@ namespace understudy::machine {
 struct CalibratedParameters {
   /// [m], total free travel along each strut of a hexapod, where the estimator found it.
   std::optional<kinematics::PerStrut<double>> play;
-  /// Share of its travel by which each strut of a hexapod goes farther than its motor's turns say, where it
-  /// was identified (docs/identify.md).
-  std::optional<kinematics::PerStrut<double>> lead;
   /// Of the errors of the section's numbers; symmetric, positive semi-definite, 0 where a number was not
   /// estimated. [m] and [rad], directions count as [rad]. Empty: not known, of a plug-in's calibration.
   ///
@@ -24,6 +21,9 @@ struct CalibratedParameters {
   /// and rotation vector, both in O, of the tool, then of the work; then of each axis its direction and, of a
   /// turn, its point.
   Eigen::MatrixXd covariance;
+  /// Share of its travel by which each strut of a hexapod goes farther than its motor's turns say, where it
+  /// was identified (docs/identify.md).
+  std::optional<kinematics::PerStrut<double>> lead = {};
 };
 
 /// What one row of the covariance is multiplied by to come from the file's unit to SI; one for each row.

@@ -10,6 +10,8 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/units.h"
+#include "machine/built_tolerances.h"
+#include "machine/load_encoders.h"
 #include "machine/record/commanded_path.h"
 #include "rehearsal/preparation.h"
 #include "rehearsal/run_twin.h"
@@ -24,13 +26,12 @@ using machine::LoadReading;
 using machine::RecordedMotion;
 using machine::Status;
 
+constexpr double kSigmas = 3;                 // of the play from joint to joint
 constexpr std::size_t kBetweenReports = 512;  // samples
 
 double all_play(const machine::MachineDescription& machine, int axis) {
   return machine.visit(
-      [](const machine::HexapodModel& hexapod) {
-        return hexapod.play.screw_nut + 2 * hexapod.play.ball_joint;
-      },
+      [](const machine::HexapodModel& hexapod) { return hexapod.play.screw_nut + hexapod.play.ball_joint; },
       [&](const machine::ChainModel& chain) { return chain.play[static_cast<std::size_t>(axis)]; });
 }
 
@@ -172,7 +173,7 @@ void tell_limits(const RecordedMotion& motion, const ReplayedRecord& result,
   if (!motion.whole) notes.emplace_back("the record was cut short: compared up to its last whole entry");
   if (motion.fault != machine::Fault::none)
     notes.emplace_back(fmt::format("the machine has the fault '{}' at {:.3f} s: compared up to there",
-                                to_string(motion.fault), motion.ends - motion.begins));
+                                   to_string(motion.fault), motion.ends - motion.begins));
   if (motion.load.empty())
     notes.emplace_back(
         "the record has no encoders behind the play: play, zero offsets and leads of the machine cannot "
@@ -189,9 +190,10 @@ const char* to_string(MeasuredSide side) { return side == MeasuredSide::drive ? 
 double agreed_default(const machine::MachineDescription& machine, int axis, MeasuredSide side) {
   const machine::Drive& drive = machine.drives[static_cast<std::size_t>(axis)];
   if (side == MeasuredSide::drive) return drive.lead / drive.steps_per_turn + drive.step();
-  return all_play(machine, axis) + drive.step() +
-         machine::load_encoder_counts(machine.file.string())
-             .of(machine.make_mechanism()->axis_is_angle(axis));
+  const std::string file = machine.file.string();
+  const double share = 1 + kSigmas * machine::load_built_tolerances(file).play;
+  const bool turns = machine.make_mechanism()->axis_is_angle(axis);
+  return share * all_play(machine, axis) + drive.step() + machine::load_encoder_counts(file).of(turns);
 }
 
 bool AxisDifference::agrees() const { return std::abs(largest) <= agreed; }

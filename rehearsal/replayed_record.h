@@ -24,7 +24,8 @@ enum class MeasuredSide { drive, load };
 const char* to_string(MeasuredSide side);
 
 /// Of a slide or strut [m], of a turn [rad]: a full step and a microstep where the drives measure (a motor
-/// that loses steps loses four), all play, a microstep and a count behind it.
+/// that loses steps loses four), the play with three
+/// times its tolerance, a microstep and a count behind it.
 double agreed_default(const machine::MachineDescription& machine, int axis, MeasuredSide side);
 
 /// The machine less the twin.

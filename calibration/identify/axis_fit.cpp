@@ -150,19 +150,18 @@ class Fitter {
     return changed;
   }
 
-  /// Rows between both lines, near a change of side.
+  /// Rows between both lines, and those around them in time: the axis crosses its play, or floats in it.
   void leave_out(const Solution& solution, int round) {
     used_.setOnes();
     if (round == 0) return;
     const double half = solution.value[kPlay] / 2 - kBetween * options_.noise;
-    std::vector<double> changes;
-    for (Eigen::Index k = 1; k < count(); ++k)
-      if (columns_(k, kPlay) != columns_(k - 1, kPlay)) changes.push_back(time(k));
+    std::vector<double> between;
+    for (Eigen::Index k = 0; k < count(); ++k)
+      if (std::abs(solution.residual[k] + solution.value[kPlay] * columns_(k, kPlay)) < half)
+        between.push_back(time(k));
     for (Eigen::Index k = 0; k < count(); ++k) {
-      const double off = solution.residual[k] + solution.value[kPlay] * columns_(k, kPlay);
-      if (std::abs(off) >= half) continue;
-      const auto next = std::lower_bound(changes.begin(), changes.end(), time(k) - options_.transition);
-      if (next != changes.end() && *next <= time(k) + options_.transition) used_[k] = 0;
+      const auto next = std::lower_bound(between.begin(), between.end(), time(k) - options_.around);
+      if (next != between.end() && *next <= time(k) + options_.around) used_[k] = 0;
     }
   }
 

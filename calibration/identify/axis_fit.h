@@ -30,9 +30,9 @@ constexpr std::size_t kAxisParameters = 6;
 const char* to_string(AxisParameter parameter);
 
 struct AxisFitOptions {
-  double noise = 0;         ///< [m] or [rad], 1 sigma of a row; above 0
-  double turn = 0;          ///< travel in a turn of the motor; 0: no periodic error is looked for
-  double transition = 0.2;  ///< [s], in which an axis crosses its play
+  double noise = 0;      ///< [m] or [rad], 1 sigma of a row; above 0
+  double turn = 0;       ///< travel in a turn of the motor; 0: no periodic error is looked for
+  double around = 0.04;  ///< [s], of a row that is under way: rows so near to it may be too
 };
 
 struct AxisFit {

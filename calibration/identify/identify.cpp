@@ -28,9 +28,7 @@ double noise_of(const machine::Drive& drive, double count) {
 
 double described_play(const machine::MachineDescription& machine, std::size_t axis) {
   return machine.visit(
-      [](const machine::HexapodModel& hexapod) {
-        return hexapod.play.screw_nut + 2 * hexapod.play.ball_joint;
-      },
+      [](const machine::HexapodModel& hexapod) { return hexapod.play.screw_nut + hexapod.play.ball_joint; },
       [&](const machine::ChainModel& chain) { return chain.play[axis]; });
 }
 
@@ -47,19 +45,21 @@ void tell_untold(const IdentifiedAxis& axis, std::vector<std::string>& untold) {
   const AxisFit& moved = axis.load ? *axis.load : axis.drive;
   if (!moved.told(AxisParameter::lag))
     untold.emplace_back(fmt::format("{} drive lag: {}", axis.name,
-                                 moved.untold[static_cast<std::size_t>(AxisParameter::lag)]));
+                                    moved.untold[static_cast<std::size_t>(AxisParameter::lag)]));
 }
 
 void warn_of_fit(const IdentifiedAxis& axis, std::vector<std::string>& warnings) {
   if (!axis.load || axis.load->rows == 0) return;
   const AxisFit& fit = *axis.load;
+  // Too small a chi-square is no fault: rounding is less than its sigma where axes move slowly.
+  const bool large = fit.chi_square > fit.degrees_of_freedom;
   if (const std::string misfit = misfit_warning(fit.chi_square, fit.degrees_of_freedom,
                                                 "stiffness, heat, joints that are not where they are drawn");
-      !misfit.empty())
+      large && !misfit.empty())
     warnings.emplace_back(axis.name + ": " + misfit);
   if (fit.left_out > fit.rows / 10)
     warnings.emplace_back(fmt::format("{}: {} of {} rows lie between both ends of its play and are left out",
-                                   axis.name, fit.left_out, fit.rows));
+                                      axis.name, fit.left_out, fit.rows));
 }
 
 AxisFit fitted(const std::vector<AxisRow>& rows, const machine::Drive& drive, double noise) {
@@ -152,7 +152,7 @@ void warn_of_record(const machine::RecordedMotion& motion, std::vector<std::stri
   if (!motion.whole) warnings.emplace_back("the record was cut short: used up to its last whole entry");
   if (motion.fault != machine::Fault::none)
     warnings.emplace_back(fmt::format("the machine has the fault '{}' at {:.3f} s: used up to there",
-                                   to_string(motion.fault), motion.ends - motion.begins));
+                                      to_string(motion.fault), motion.ends - motion.begins));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ class Errors {
 };
 
 void add_play(const machine::Play& described, double found, std::size_t strut, AsBuilt& built) {
-  const double nominal = described.screw_nut + 2 * described.ball_joint, total = std::max(0.0, found);
+  const double nominal = described.screw_nut + described.ball_joint, total = std::max(0.0, found);
   built.nut_play[strut] = nominal > 0 ? described.screw_nut * total / nominal : total;
   built.ball_play[strut] = nominal > 0 ? described.ball_joint * total / nominal : 0;
 }

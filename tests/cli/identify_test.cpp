@@ -22,7 +22,7 @@ using ::testing::Not;
 const std::string kMoves = std::string(UNDERSTUDY_SOURCE_DIR) + "/scenarios/identify/hexapod.gcode";
 const std::string kWithEncoders = " --machine 'hexapod{load_encoders.count_um: 1}'";
 
-// [mm], [um], [permille]; the drawing has 170, 50 + 2 x 25 and 0.
+// [mm], [um], [permille]; the drawing has 170, 50 + 25 and 0.
 constexpr std::array kOffset{170.213, 169.871, 170.055, 169.702, 170.318, 170.004};
 constexpr std::array kNut{61.0, 44.0, 52.0, 38.0, 57.0, 49.0};
 constexpr std::array kBall{25.0, 29.0, 21.0, 24.0, 27.0, 19.0};
@@ -80,7 +80,7 @@ TEST_F(Identify, FindsThePlayZerosAndLeadsThatTheMachineWasBuiltWith) {
   ASSERT_EQ(json["axes"].size(), kOffset.size());
   for (std::size_t i = 0; i < kOffset.size(); ++i) {
     const auto& axis = json["axes"][i];
-    const double play = kNut[i] + 2 * kBall[i];
+    const double play = kNut[i] + kBall[i];
     EXPECT_NEAR(axis["play_um"].get<double>(), play, 0.1 * play) << i;
     EXPECT_NEAR(axis["zero_um"].get<double>(), 1e3 * (kOffset[i] - 170), 10) << i;
     EXPECT_NEAR(axis["lead_permille"].get<double>(), kLead[i], 0.05) << i;
