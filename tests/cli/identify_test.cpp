@@ -167,8 +167,10 @@ TEST_F(Identify, RefusesWhatIsNoRecordOfThisMachine) {
   const std::string later = "understudy.port-record/2" + read_file(record()).substr(24);
   refused(own_.write("later.record", later), kWithEncoders, "it is no record of a port");
   refused(shortened("first.record", 2e-5), kWithEncoders, "cut short before the first state");
-  const Outcome brief = understudy("identify " + shortened("brief.record", 2e-3) + kWithEncoders + " -o " +
-                                   (own_ / "found.yaml"));
+  const std::string step = own_.write("step.gcode", "G21\nG90\nG1 X1 Y0 Z50 F600\n");
+  ASSERT_EQ(understudy(recording(kWithEncoders, built_, step, own_, "brief.record")).status, 0);
+  const Outcome brief =
+      understudy("identify " + (own_ / "brief.record") + kWithEncoders + " -o " + (own_ / "found.yaml"));
   EXPECT_EQ(brief.status, 2) << brief.out;
   EXPECT_THAT(brief.err, HasSubstr("at least 1 s of motion are needed"));
   const Outcome other = understudy("rehearse --replay " + record() + kWithEncoders + " --fixture bottle");
