@@ -85,8 +85,9 @@ TEST_F(CommandedPathTest, IsWhereThePortItselfWasThroughHoldResumeAndStop) {
   for (const LoadReading& reading : motion.drives) {
     const auto& target = path.at(reading.sampled_at);
     for (std::size_t i = 0; i < 6; ++i) {
-      // The port brakes in steps of its clock, which are this path's too.
-      ASSERT_NEAR(target.position[i], reading.position[i], 1e-12) << reading.sampled_at << " axis " << i;
+      // A loopback port that is held states where it was a step before it came to rest, at 5 mm/s and below.
+      ASSERT_NEAR(target.position[i], reading.position[i], 0.5e-3 * 5e-3)
+          << reading.sampled_at << " axis " << i;
       moved = std::max(moved, std::abs(reading.position[i] - motion.drives.front().position[i]));
     }
   }
