@@ -15,6 +15,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "cli/command.h"
+#include "cli/identify_command.h"
 #include "cli/new_machine_command.h"
 #include "cli/plain_processor.h"
 #include "core/error.h"
@@ -77,6 +78,7 @@ int run(int argc, char** argv) {
   cli::add_plan(app, action);
   cli::add_kinematics(app, action);
   cli::add_calibrate(app, action);
+  cli::add_identify(app, action);
   cli::add_measure(app, action);
   cli::add_export(app, action);
   cli::add_new_machine(app, action);

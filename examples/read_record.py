@@ -26,4 +26,4 @@ with open(sys.argv[1], "rb") as file:
             state = struct.unpack(f"<dd{n}dQQQBB", body)
             print("state", state[0], "executed", state[n + 3], "of", state[n + 2], *state[2:n + 2])
         else:
-            print({4: "wait", 5: "urgent", 6: "outputs", 7: "frame"}.get(kind, kind), *struct.unpack_from("<d", body))
+            print({4: "wait", 5: "urgent", 6: "outputs", 7: "frame", 8: "load"}.get(kind, kind), *struct.unpack_from("<d", body))

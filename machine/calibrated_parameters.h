@@ -17,13 +17,17 @@ struct CalibratedParameters {
   /// estimated. [m] and [rad], directions count as [rad]. Empty: not known, of a plug-in's calibration.
   ///
   /// Order, of a hexapod: base joint in B, platform joint in T and length offset of strut 1, 2, ...; dev; the
-  /// play of struts 1 to 6 where there is `play`. Of a chain: position and rotation vector, both in O, of the
-  /// tool, then of the work; then of each axis its direction and, of a turn, its point.
+  /// play of struts 1 to 6 where there is `play`, then their `lead` where there is that. Of a chain: position
+  /// and rotation vector, both in O, of the tool, then of the work; then of each axis its direction and, of a
+  /// turn, its point.
   Eigen::MatrixXd covariance;
+  /// Share of its travel by which each strut of a hexapod goes farther than its motor's turns say, where it
+  /// was identified (docs/identify.md).
+  std::optional<kinematics::PerStrut<double>> lead = {};
 };
 
 /// What one row of the covariance is multiplied by to come from the file's unit to SI; one for each row.
-Eigen::VectorXd calibrated_units(const MachineDescription& machine, bool with_play);
+Eigen::VectorXd calibrated_units(const MachineDescription& machine, bool with_play, bool with_lead = false);
 
 /// As load_machine(), with what the file says of the calibration's parameters.
 MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters);

@@ -23,6 +23,7 @@
 #include "machine/file/hexapod_section.h"
 #include "machine/file/optics_section.h"
 #include "machine/file/tool_section.h"
+#include "machine/load_encoders.h"
 #include "machine/machine_notes.h"
 #include "machine/model_files.h"
 
@@ -113,6 +114,7 @@ struct MachineFile {
   std::optional<AcceptedErrors> accepted;
   std::optional<Cure> cure;
   MachineNotes notes;
+  LoadEncoderCounts load_encoders;
 };
 
 /// The tool of section `tool`, or the one of that name in `tools`, in its place.
@@ -190,6 +192,7 @@ void read_machine(YamlMap& root, MachineFile& file, const std::string& wanted_to
   root.section("table", "what the work stands on", [&](YamlMap& map) { read_table(map, m.table); });
   root.section("motion", "speeds of the tip, and the cycle", [&](YamlMap& map) { read_motion(map, m); });
   read_control_section(root, m.control);
+  read_load_encoders(root, file.load_encoders);
   if (!root.complete()) return;
   if (!chain) settle_home(root.place(m.calibration ? "calibration" : "geometry"), m);
   if (m.has_microscope) check_optics(root, m);
@@ -237,6 +240,10 @@ MachineDescription load_machine(const std::string& name_or_path, CalibratedParam
 
 BuiltTolerances load_built_tolerances(const std::string& name_or_path) {
   return read_file_of(name_or_path).tolerances;
+}
+
+LoadEncoderCounts load_encoder_counts(const std::string& name_or_path) {
+  return read_file_of(name_or_path).load_encoders;
 }
 
 std::optional<Cure> load_cure(const std::string& name_or_path) { return read_file_of(name_or_path).cure; }

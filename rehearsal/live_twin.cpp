@@ -60,6 +60,8 @@ LiveTwin::LiveTwin(const RehearsalRequest& request)
   options.camera_faults = setup_.camera_faults;
   options.seed = setup_.seed;
   options.nozzle_offset = setup_.as_built.nozzle_offset;
+  options.load_encoders.emplace(setup_.truth, setup_.as_built,
+                                machine::load_encoder_counts(setup_.machine.file.string()));
   const auto camera = [this](const sim::Shot& shot) { return expose(shot); };
   port_ = std::make_unique<sim::SimulatedPort>(
       setup_.machine, *plant_, watch_->microscope ? sim::Exposure(camera) : sim::Exposure(),

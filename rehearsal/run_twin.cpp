@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "core/version.h"
 #include "machine/record/recording_port.h"
 #include "sim/curing/curing.h"
 #include "sim/deposition/bead_temperature.h"
@@ -250,6 +251,9 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   twin.seed = setup.seed;
   twin.nozzle_offset = setup.as_built.nozzle_offset;
   twin.hold_at_limits = options.beyond_limits;
+  if (!setup.machine.file.empty())
+    twin.load_encoders.emplace(setup.truth, setup.as_built,
+                               machine::load_encoder_counts(setup.machine.file.string()));
   sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
                           {&watch.thread}, twin);
 
@@ -258,6 +262,11 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   if (!options.record.empty()) {
     writer.emplace(options.record, port.axis_count());
     recorded.emplace(port, *writer);
+    writer->note(fmt::format("version {}", kVersion));
+    writer->note("program " + setup.program.file);
+    writer->note("program_sha256 " + setup.program.sha256);
+    writer->note("machine_sha256 " + setup.machine.sha256);
+    writer->note("port twin://" + setup.engine);
   }
   machine::MachinePort& seen = recorded ? static_cast<machine::MachinePort&>(*recorded) : port;
 

@@ -17,6 +17,7 @@
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
 #include "cli/watch/live_server.h"
+#include "cli/twin/replay_option.h"
 #include "core/file/output_folder.h"
 #include "core/file/read_file.h"
 #include "core/interrupt.h"
@@ -212,9 +213,16 @@ rehearsal::Record rehearse_into(const rehearsal::RehearsalRequest& request,
 
 void add_rehearse(CLI::App& app, Action& action) {
   auto options = std::make_shared<RehearseOptions>();
+  auto replay = std::make_shared<ReplayOptions>();
   auto* command = app.add_subcommand("rehearse", "Print a program on the twin and say go or no-go");
   add_rehearse_options(*command, *options);
-  command->callback([=, &action] { action = [=] { return rehearse(*options); }; });
+  add_replay_options(*command, *replay);
+  command->callback([=, &action] {
+    if (replay->record.empty() && options->request.program.empty()) throw CLI::RequiredError("program");
+    action = [=] {
+      return replay->record.empty() ? rehearse(*options) : run_replay(*command, *options, *replay);
+    };
+  });
 }
 
 }  // namespace understudy::cli

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "drivers/camera/frame_source.h"
+#include "machine/load_reading.h"
 #include "machine/port.h"
 
 namespace understudy::drivers {
@@ -18,7 +19,7 @@ struct CameraUse {
 /// All but capture() goes to the port. capture() returns the first frame that was exposed after the call,
 /// while the port's time passes; its stamp is carried to the port's clock by its age. A frame that is older
 /// is never returned. no_frame: the camera has ended; deadline_exceeded: no frame came in time.
-class CameraPort : public machine::MachinePort {
+class CameraPort : public machine::MachinePort, public machine::LoadSide {
  public:
   /// The port must outlive this object.
   CameraPort(machine::MachinePort& port, std::unique_ptr<FrameSource> source)
@@ -27,6 +28,7 @@ class CameraPort : public machine::MachinePort {
   int axis_count() const override { return port_.axis_count(); }
   double now() const override { return port_.now(); }
   machine::AxisState state() const override { return port_.state(); }
+  bool read_load(machine::LoadReading& reading) const override { return machine::read_load(port_, reading); }
   machine::Status submit(std::span<const machine::Setpoint> setpoints, double deadline) override {
     return port_.submit(setpoints, deadline);
   }

@@ -9,7 +9,7 @@ namespace understudy::machine {
 /// First word of the first line; the number of axes follows.
 constexpr std::string_view kRecordMagic = "understudy.port-record/1";
 
-enum class RecordKind : std::uint8_t { note = 1, submit, state, wait, urgent, outputs, frame };
+enum class RecordKind : std::uint8_t { note = 1, submit, state, wait, urgent, outputs, frame, load };
 
 constexpr std::size_t kEntryMax = 256'000'000;  ///< [bytes], of one entry: a picture of a large camera
 

@@ -148,6 +148,13 @@ std::optional<RecordedEntry> read_entry(RecordKind kind, Payload payload) {
     case RecordKind::frame:
       entry = read_frame(payload);
       break;
+    case RecordKind::load: {
+      LoadReading load;
+      load.sampled_at = payload.take<double>();
+      payload.take_axes(load.position);
+      entry = load;
+      break;
+    }
     default:
       return std::nullopt;
   }

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "machine/load_reading.h"
 #include "machine/port.h"
 
 namespace understudy::machine {
@@ -40,7 +41,7 @@ struct RecordedFrame {
   Frame frame;  ///< of an answer ok
 };
 using RecordedEntry = std::variant<RecordedNote, RecordedSubmit, AxisState, RecordedWait, RecordedUrgent,
-                                   RecordedOutputs, RecordedFrame>;
+                                   RecordedOutputs, RecordedFrame, LoadReading>;
 
 struct RecordEnd {
   int axes = 0;

@@ -95,6 +95,13 @@ void RecordWriter::state(const AxisState& s) {
   end(begun);
 }
 
+void RecordWriter::load(const LoadReading& reading) {
+  const std::size_t at = begin(RecordKind::load);
+  put(reading.sampled_at);
+  put_axes(reading.position);
+  end(at);
+}
+
 void RecordWriter::wait(double now, double until, double ended, Status answer) {
   const std::size_t begun = begin(RecordKind::wait);
   put(now);

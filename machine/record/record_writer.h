@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/file/append_file.h"
+#include "machine/load_reading.h"
 #include "machine/port.h"
 #include "machine/record/record_format.h"
 
@@ -26,6 +27,7 @@ class RecordWriter {
   void note(std::string_view text);
   void submit(double now, double deadline, std::span<const Setpoint> setpoints, Status answer);
   void state(const AxisState& state);
+  void load(const LoadReading& reading);
   void wait(double now, double until, double ended, Status answer);
   void urgent(double now, UrgentCommand command, Status answer);
   void outputs(double now, const Outputs& outputs, double deadline, Status answer);

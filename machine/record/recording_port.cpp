@@ -11,6 +11,12 @@ Status RecordingPort::submit(std::span<const Setpoint> setpoints, double deadlin
   return answer;
 }
 
+void RecordingPort::write_positions() {
+  writer_.state(port_.state());
+  LoadReading load;
+  if (read_load(load)) writer_.load(load);
+}
+
 Status RecordingPort::wait_until(double time) {
   while (true) {
     const double now = port_.now();
@@ -19,7 +25,7 @@ Status RecordingPort::wait_until(double time) {
     if (answer == Status::ok && until < time && port_.now() <= now)  // its clock is coarser than that
       answer = port_.wait_until(until = time);
     writer_.wait(now, until, port_.now(), answer);
-    writer_.state(port_.state());
+    write_positions();
     writer_.flush();
     if (answer != Status::ok || until >= time) return answer;
   }
@@ -44,7 +50,7 @@ Status RecordingPort::capture(const Region& region, Frame& frame, double deadlin
   const double now = port_.now();
   const Status answer = port_.capture(region, frame, deadline);
   writer_.frame(now, region, deadline, answer, frame);
-  writer_.state(port_.state());
+  write_positions();
   writer_.flush();
   return answer;
 }

@@ -48,7 +48,7 @@ class Errors {
 };
 
 void add_play(const machine::Play& described, double found, std::size_t strut, AsBuilt& built) {
-  const double nominal = described.screw_nut + 2 * described.ball_joint, total = std::max(0.0, found);
+  const double nominal = described.screw_nut + described.ball_joint, total = std::max(0.0, found);
   built.nut_play[strut] = nominal > 0 ? described.screw_nut * total / nominal : total;
   built.ball_play[strut] = nominal > 0 ? described.ball_joint * total / nominal : 0;
 }
@@ -61,9 +61,10 @@ void add_errors(const machine::HexapodModel& hexapod, const machine::CalibratedP
     built.hexapod.length_offset[i] += errors.number();
   }
   built.hexapod.deviation = std::abs(built.hexapod.deviation + errors.number());
-  if (!parameters.play) return;
-  for (std::size_t i = 0; i < kinematics::kStruts; ++i)
+  for (std::size_t i = 0; parameters.play && i < kinematics::kStruts; ++i)
     add_play(hexapod.play, (*parameters.play)[i] + errors.number(), i, built);
+  for (std::size_t i = 0; parameters.lead && i < kinematics::kStruts; ++i)
+    built.drives[i].scale = (*parameters.lead)[i] + errors.number();
 }
 
 void add_errors(Errors errors, kinematics::Chain& chain) {
@@ -81,9 +82,10 @@ void add_errors(Errors errors, kinematics::Chain& chain) {
 
 AsBuilt draw_calibrated(const machine::MachineDescription& machine,
                         const machine::CalibratedParameters& parameters, std::uint64_t seed) {
-  const bool with_play = parameters.play.has_value();
-  UNDERSTUDY_ASSERT(parameters.covariance.rows() == machine::calibrated_units(machine, with_play).size(),
-                    "the reader of the file takes a covariance of the machine's rows only");
+  const bool with_play = parameters.play.has_value(), with_lead = parameters.lead.has_value();
+  UNDERSTUDY_ASSERT(
+      parameters.covariance.rows() == machine::calibrated_units(machine, with_play, with_lead).size(),
+      "the reader of the file takes a covariance of the machine's rows only");
   AsBuilt built = as_described(machine);
   built.source = kCalibrated;
   built.seed = seed;
@@ -106,6 +108,7 @@ AsBuilt draw_calibrated(const machine::MachineDescription& machine, const TruthS
   (void)machine::load_machine(machine.file.string(), parameters);
   machine::BuiltTolerances others = machine::load_built_tolerances(machine.file.string(), fixture);
   if (parameters.play) others.play = 0;
+  if (parameters.lead) others.lead = 0;
   if (machine.gap_sensor) others.camera_centre = 0;  // found as a turn of the microscope
   if (machine.gap_sensor && machine.gap_sensor->waist)
     others.waist = machine.gap_sensor->waist->sigma / machine.laser.waist_diameter;

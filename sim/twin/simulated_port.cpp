@@ -85,6 +85,15 @@ machine::AxisState SimulatedPort::state() const {
   return s;
 }
 
+bool SimulatedPort::read_load(machine::LoadReading& reading) const {
+  if (!options_.load_encoders || !options_.load_encoders->present()) return false;
+  AxisVector near = plant_.displacement();
+  for (std::size_t i = 0; i < near.size(); ++i) near[i] += drive_zero_[i];
+  if (!options_.load_encoders->read(plant_.tool_pose(), near, reading.position)) return false;
+  reading.sampled_at = plant_.time();
+  return true;
+}
+
 Status SimulatedPort::submit(std::span<const Setpoint> setpoints, double deadline) {
   if (fault_ != Fault::none) return Status::faulted;
   if (plant_.time() > deadline) return Status::deadline_exceeded;

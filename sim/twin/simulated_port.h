@@ -3,15 +3,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "machine/description.h"
+#include "machine/load_reading.h"
 #include "machine/setpoint_queue.h"
 #include "sim/exposure.h"
 #include "sim/faults/camera_faults.h"
 #include "sim/faults/faults.h"
 #include "sim/observer.h"
+#include "sim/plant/load_encoders.h"
 #include "sim/plant/plant.h"
 
 namespace understudy::sim {
@@ -26,11 +29,13 @@ struct TwinOptions {
   std::vector<FaultEvent> faults;
   std::vector<CameraFaultEvent> camera_faults;
   std::uint64_t seed = 0;  ///< of what the camera's faults draw
+  /// Of the true machine; nothing, or not present(): the port answers that it has none.
+  std::optional<LoadEncoders> load_encoders = {};
 };
 
 /// Converts strut lengths of the controller's geometry to drive displacements (length minus nominal l_i0):
 /// the as-built errors stay on the other side. Time advances inside wait_until() and capture() only.
-class SimulatedPort : public machine::MachinePort {
+class SimulatedPort : public machine::MachinePort, public machine::LoadSide {
  public:
   /// The description, plant and observers must outlive the port; the machine starts at rest at home.
   SimulatedPort(const machine::MachineDescription& machine, Plant& plant, Exposure exposure,
@@ -40,6 +45,7 @@ class SimulatedPort : public machine::MachinePort {
   int axis_count() const override;
   double now() const override;
   machine::AxisState state() const override;
+  bool read_load(machine::LoadReading& reading) const override;
   machine::Status submit(std::span<const machine::Setpoint> setpoints, double deadline) override;
   machine::Status wait_until(double time) override;
   machine::Status urgent(machine::UrgentCommand command) override;

@@ -69,6 +69,19 @@ TEST_F(CalibratedParametersFile, PlayComesBackWithItsCovariance) {
     EXPECT_NEAR((*read.play)[i], (*written.play)[i], 1e-12);
 }
 
+TEST_F(CalibratedParametersFile, LeadsComeBackWithTheirCovariance) {
+  const MachineDescription m = calibrated("hexapod");
+  CalibratedParameters written;
+  written.play.emplace().fill(80e-6);
+  written.lead = {0.2e-3, -0.17e-3, 0, 0.31e-3, -0.28e-3, 1e-3};
+  written.covariance = Eigen::VectorXd::LinSpaced(55, 1e-12, 55e-12).asDiagonal();
+  const CalibratedParameters read = back(m, written);
+  expect_same(read.covariance, written.covariance);
+  ASSERT_TRUE(read.lead);
+  for (std::size_t i = 0; i < kinematics::kStruts; ++i)
+    EXPECT_NEAR((*read.lead)[i], (*written.lead)[i], 1e-9);
+}
+
 TEST_F(CalibratedParametersFile, AnArmsCovarianceComesBack) {
   const MachineDescription m = calibrated("arm");
   const CalibratedParameters written{{}, some_covariance(m, false)};

@@ -41,6 +41,7 @@ struct Copy {
   void operator()(const RecordedNote& e) { writer.note(e.text); }
   void operator()(const RecordedSubmit& e) { writer.submit(e.now, e.deadline, e.setpoints, e.answer); }
   void operator()(const AxisState& e) { writer.state(e); }
+  void operator()(const LoadReading& e) { writer.load(e); }
   void operator()(const RecordedWait& e) { writer.wait(e.now, e.until, e.ended, e.answer); }
   void operator()(const RecordedUrgent& e) { writer.urgent(e.now, e.command, e.answer); }
   void operator()(const RecordedOutputs& e) { writer.outputs(e.now, e.outputs, e.deadline, e.answer); }

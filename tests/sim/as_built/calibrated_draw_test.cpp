@@ -123,7 +123,7 @@ TEST(CalibratedDraw, PlayThatWasFoundTakesThePlaceOfTheDescribedOne) {
   const machine::Play& described = open.machine.hexapod().play;
   for (std::size_t i = 0; i < kinematics::kStruts; ++i) {
     const double found = std::max(0.0, (*open.parameters.play)[i]);
-    EXPECT_NEAR(built.nut_play[i] + 2 * built.ball_play[i], found, 1e-18);
+    EXPECT_NEAR(built.nut_play[i] + built.ball_play[i], found, 1e-18);
     EXPECT_NEAR(built.nut_play[i] * described.ball_joint, built.ball_play[i] * described.screw_nut, 1e-18);
   }
 }
