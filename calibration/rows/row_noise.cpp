@@ -136,7 +136,10 @@ std::array<PartScatter, kNoiseParts> scatter(const RowProblem& problem, const Ei
     PartScatter& s = found[part];
     ++s.equations;
     s.degrees += 1 - std::min(1.0, fitted[row] / (told[row] + square(std::max(kLeast, added[part]))));
-    s.told += told[row] > 0 ? square(error[row]) / told[row] : kNever;
+    if (told[row] > 0)
+      s.told += square(error[row]) / told[row];
+    else
+      s.told = kNever;
     s.all_told = s.all_told && is_told[i];
   }
   return found;

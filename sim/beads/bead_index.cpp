@@ -70,7 +70,8 @@ double entry_of_box(const BeadTree::Box& box, const Ray& ray) {
     first = std::max(first, middle - half);
     last = std::min(last, middle + half);
   }
-  return first <= last ? first : kInfinity;
+  if (first > last) return kInfinity;
+  return first;
 }
 
 struct Around {

@@ -56,7 +56,7 @@ BodySet::BodySet(const machine::MachineDescription& machine, const AsBuilt& as_b
   if (part) {
     part_ = std::make_unique<MeshClearance>(part);
     part_body_ = bodies_.size();
-    add_body({"part", geometry::MeshShape{part}, Pose::Identity()}, Owner::world, 0);
+    add_body({"part", geometry::MeshShape{std::move(part)}, Pose::Identity()}, Owner::world, 0);
   }
   geometry::Shape table = machine.table;
   table.name = "table";

@@ -229,11 +229,11 @@ void FaultyCamera::hide(Fault& fault, const Shot& shot, const Exposure& exposure
     edge = *centre + fault.event.offset_px * side;
     if (strip) fault.strip_px = edge;
   }
-  const double width = strip ? kStripWidth : kInfinity;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
       const double beyond = (Vec2(image.region.x + x, image.region.y + y) - *edge).dot(side);
-      if (beyond > 0 && beyond < width) image.pixels[index(image, x, y)] = unlit.pixels[index(image, x, y)];
+      if (beyond > 0 && (!strip || beyond < kStripWidth))
+        image.pixels[index(image, x, y)] = unlit.pixels[index(image, x, y)];
     }
 }
 

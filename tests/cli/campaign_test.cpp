@@ -248,7 +248,9 @@ TEST_F(Campaign, VariesTheGainsOfTheController) {
 }
 
 TEST_F(Campaign, WithoutSlurmSaysWhatIsMissing) {
-  const std::string path = std::getenv("PATH");
+  const char* path_now = std::getenv("PATH");
+  ASSERT_NE(path_now, nullptr);
+  const std::string path = path_now;
   ::setenv("PATH", at("empty").c_str(), 1);
   const Outcome none = run(at("c.yaml") + " --slurm --out " + at("out"));
   ::setenv("PATH", path.c_str(), 1);

@@ -35,7 +35,7 @@ class WithoutEffect : public testing::Test {
                          replaced(read_file(kSource + "/models/" + name + "/machine.yaml"), all));
   }
   /// The shipped scenario with replacements, its files where they are.
-  std::string run(const std::string& name, std::vector<Replacement> all) {
+  std::string run(const std::string& name, const std::vector<Replacement>& all) {
     std::string text = read_file(kSource + "/scenarios/" + name + ".yaml");
     // Words of files beside the scenario.
     text = std::regex_replace(text, std::regex("program: "), "program: " + kSource + "/scenarios/");

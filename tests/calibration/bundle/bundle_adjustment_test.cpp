@@ -11,7 +11,7 @@
 #include "calibration/registered_errors.h"
 #include "calibration/strut_model.h"
 #include "core/units.h"
-#include "drawn_bundle.h"
+#include "tests/calibration/bundle/drawn_bundle.h"
 
 namespace understudy::calibration {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
-#include "drawn_bundle.h"
+#include "tests/calibration/bundle/drawn_bundle.h"
 #include "vision/boards/rig_file.h"
 
 namespace understudy::calibration {

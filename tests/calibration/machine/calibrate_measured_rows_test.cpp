@@ -311,7 +311,7 @@ TEST(Sockets, AreMetAsByAnIndependentFitOfTheConstraint) {
         plain_forward(kPanda, x, holes[static_cast<std::size_t>(hole)][0].data()) * Vec3(x.segment<3>(42));
   const Eigen::VectorXd left = error(plain_lm(error, x, 60));
   const double rms =
-      std::sqrt(left.head(left.size() - 1).squaredNorm() / static_cast<double>(left.size() / 3));
+      std::sqrt(3 * left.head(left.size() - 1).squaredNorm() / static_cast<double>(left.size() - 1));
   EXPECT_NEAR(ours.parts[0].after, rms, 0.05 * rms);
   EXPECT_LT(ours.parts[0].after, 0.1 * ours.parts[0].before);
 }

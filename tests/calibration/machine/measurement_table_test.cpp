@@ -144,7 +144,7 @@ TEST_F(MeasurementTable, NamesMissingAndUnknownColumns) {
                                "j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg")),
               HasSubstr("unknown column 'j1_deg'"));
   EXPECT_THAT(refusal(""), HasSubstr("is empty"));
-  EXPECT_THAT(refusal(text.substr(0, text.find("\n", 10) + 1)), HasSubstr("no poses"));
+  EXPECT_THAT(refusal(text.substr(0, text.find('\n', 10) + 1)), HasSubstr("no poses"));
 }
 
 TEST_F(MeasurementTable, RefusesNumbersThatAreNone) {
