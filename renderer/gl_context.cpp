@@ -164,11 +164,15 @@ void GlTarget::bind() const {
   gl_.Viewport(0, 0, width_, height_);
 }
 
+namespace {
+constexpr int kSamples = 4;  // all that llvmpipe offers
+}
+
 GlSmoothTarget::GlSmoothTarget(const GlFunctions& gl, int width, int height)
     : gl_(gl), width_(width), height_(height) {
-  constexpr int kSamples = 4;  // all that llvmpipe offers
   gl.GenFramebuffers(2, framebuffers_);
-  gl.GenRenderbuffers(3, buffers_);
+  gl.GenRenderbuffers(2, buffers_);
+  gl.GenTextures(1, &depth_);
   const auto attach = [&](int framebuffer, int buffer, int samples, GLenum format, GLenum place) {
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[framebuffer]);
     gl.BindRenderbuffer(GL_RENDERBUFFER, buffers_[buffer]);
@@ -176,8 +180,11 @@ GlSmoothTarget::GlSmoothTarget(const GlFunctions& gl, int width, int height)
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffers_[buffer]);
   };
   attach(0, 0, kSamples, GL_RGBA8, GL_COLOR_ATTACHMENT0);
-  attach(0, 1, kSamples, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT);
-  attach(1, 2, 0, GL_RGBA8, GL_COLOR_ATTACHMENT0);
+  gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, depth_);
+  gl.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, kSamples, GL_DEPTH_COMPONENT32F, width, height,
+                           GL_TRUE);
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D_MULTISAMPLE, depth_, 0);
+  attach(1, 1, 0, GL_RGBA8, GL_COLOR_ATTACHMENT0);
   for (const GLuint framebuffer : framebuffers_) {
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
@@ -189,8 +196,11 @@ GlSmoothTarget::GlSmoothTarget(const GlFunctions& gl, int width, int height)
 
 GlSmoothTarget::~GlSmoothTarget() {
   gl_.DeleteFramebuffers(2, framebuffers_);
-  gl_.DeleteRenderbuffers(3, buffers_);
+  gl_.DeleteRenderbuffers(2, buffers_);
+  gl_.DeleteTextures(1, &depth_);
 }
+
+int GlSmoothTarget::samples() const { return kSamples; }
 
 void GlSmoothTarget::bind() const {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[0]);

@@ -23,7 +23,8 @@ namespace understudy::renderer {
   X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) \
   X(GenTextures) X(GenVertexArrays) X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) \
   X(GetShaderiv) X(GetString) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(PolygonOffset) \
-  X(ReadPixels) X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) \
+  X(ReadPixels) X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) \
+  X(TexImage2DMultisample) X(TexParameteri) \
   X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform2i) X(Uniform3f) X(Uniform3fv) X(Uniform4f) \
   X(UniformMatrix3fv) X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
 // clang-format on
@@ -94,7 +95,7 @@ class GlTarget {
   int width_, height_;
 };
 
-/// 8-bit colour and depth with four samples in a pixel; read through resolve().
+/// 8-bit colour and depth with several samples in a pixel; read through resolve().
 class GlSmoothTarget {
  public:
   GlSmoothTarget(const GlFunctions& gl, int width, int height);
@@ -103,13 +104,17 @@ class GlSmoothTarget {
   GlSmoothTarget& operator=(const GlSmoothTarget&) = delete;
 
   void bind() const;
+  int samples() const;
+  /// A texture of several samples.
+  GLuint depth() const { return depth_; }
   /// RGBA, bottom row first.
   std::vector<unsigned char> resolve() const;
 
  private:
   const GlFunctions& gl_;
   GLuint framebuffers_[2] = {0, 0};  // drawn, resolved
-  GLuint buffers_[3] = {0, 0, 0};    // drawn colour, drawn depth, resolved colour
+  GLuint buffers_[2] = {0, 0};       // drawn colour, resolved colour
+  GLuint depth_ = 0;                 // drawn
   int width_, height_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "renderer/gl_context.h"
+#include "renderer/hidden_triangles.h"
 #include "renderer/scene_geometry.h"
 #include "renderer/shaders.h"
 
@@ -174,6 +175,30 @@ void draw_sky(const GlFunctions& gl, const Drawing& drawing, const GlTarget& atl
   gl.DepthFunc(GL_LESS);
 }
 
+/// What each pixel shows of the bound target at its farthest sample, when only depth is drawn.
+FarthestSeen draw_farthest(const GlFunctions& gl, const Drawing& drawing, const GlSmoothTarget& target) {
+  const PictureScene& scene = drawing.scene;
+  FarthestSeen seen{scene.width, scene.height, {}};
+  draw_depth(gl, eye_clip(scene, drawing.geometry), drawing);
+  gl.DepthFunc(GL_LESS);
+  const GlTarget farthest(gl, GL_R32F, scene.width, scene.height);
+  GlVertices all(gl, {3});
+  all.fill({-1, -1, 0, 3, -1, 0, -1, 3, 0});
+  const GlProgram program(gl, "farthest", shader_source("corner.vert"), shader_source("farthest.frag"));
+  program.use();
+  gl.ActiveTexture(GL_TEXTURE0);
+  gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, target.depth());
+  gl.Uniform1i(program.uniform("depth"), 0);
+  gl.Uniform1i(program.uniform("samples"), target.samples());
+  farthest.bind();
+  gl.Disable(GL_DEPTH_TEST);
+  all.draw(GL_TRIANGLES);
+  gl.Enable(GL_DEPTH_TEST);
+  seen.depth.resize(static_cast<std::size_t>(seen.width) * static_cast<std::size_t>(seen.height));
+  gl.ReadPixels(0, 0, seen.width, seen.height, GL_RED, GL_FLOAT, seen.depth.data());
+  return seen;
+}
+
 void draw_picture(const GlFunctions& gl, const Drawing& drawing, const GlTarget& sky, const GlTarget& lamp) {
   const auto& [scene, g, lights, solids, ground, creases] = drawing;
   const GlProgram program(gl, "scene", shader_source("scene.vert"), shader_source("scene.frag"));
@@ -228,6 +253,9 @@ Picture render_picture(const PictureScene& scene) {
   const auto& b = scene.background;
   const float behind[] = {encoded(b[0]), encoded(b[1]), encoded(b[2]), 1};
   gl.ClearBufferfv(GL_COLOR, 0, behind);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  solids.fill(without_hidden(geometry.solids, eye_clip(scene, geometry), draw_farthest(gl, drawing, target)));
+  target.bind();
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_picture(gl, drawing, half_size, lamp);
   const std::vector<unsigned char> rgba = target.resolve();

@@ -1,0 +1,83 @@
+#include "renderer/hidden_triangles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace understudy::renderer {
+namespace {
+
+constexpr std::size_t kVertex = 9, kTriangle = 3 * kVertex;  // floats
+// A hundred roundings of a float next to 1: the rasteriser interpolates what is projected here.
+constexpr float kRounding = 6e-6f;
+constexpr float kPixelsMost = 4096;  // that a triangle is looked for in; a larger one is drawn without a look
+
+/// Of a triangle in the picture: columns, rows and the least depth.
+struct Extent {
+  float left = HUGE_VALF, right = -HUGE_VALF, bottom = HUGE_VALF, top = -HUGE_VALF, nearest = HUGE_VALF;
+};
+
+/// Nothing where a corner is not before the eye.
+std::optional<Extent> extent_of(const float* triangle, const Eigen::Matrix4f& clip,
+                                const FarthestSeen& seen) {
+  Extent extent;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* p = triangle + k * kVertex;
+    const Eigen::Vector4f at = clip * Eigen::Vector4f(p[0], p[1], p[2], 1);
+    if (!(at.w() > 0) || at.z() < -at.w()) return std::nullopt;
+    const float x = 0.5f * (at.x() / at.w() + 1) * static_cast<float>(seen.width);
+    const float y = 0.5f * (at.y() / at.w() + 1) * static_cast<float>(seen.height);
+    extent.left = std::min(extent.left, x);
+    extent.right = std::max(extent.right, x);
+    extent.bottom = std::min(extent.bottom, y);
+    extent.top = std::max(extent.top, y);
+    extent.nearest = std::min(extent.nearest, 0.5f * (at.z() / at.w() + 1));
+  }
+  return extent;
+}
+
+/// Pixels from the first to the last that lie within [from, to] or touch it, of `count`.
+std::array<int, 2> pixels(float from, float to, int count) {
+  const auto most = static_cast<float>(count - 1);
+  return {static_cast<int>(std::max(0.0f, std::floor(from) - 1)),
+          static_cast<int>(std::min(most, std::floor(to) + 1))};
+}
+
+bool is_hidden(const Extent& extent, const FarthestSeen& seen) {
+  const auto [first_column, last_column] = pixels(extent.left, extent.right, seen.width);
+  const auto [first_row, last_row] = pixels(extent.bottom, extent.top, seen.height);
+  for (int row = first_row; row <= last_row; ++row)
+    for (int column = first_column; column <= last_column; ++column) {
+      const std::size_t at = static_cast<std::size_t>(row) * static_cast<std::size_t>(seen.width) +
+                             static_cast<std::size_t>(column);
+      if (extent.nearest <= seen.depth[at] + kRounding) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+std::vector<float> without_hidden(const std::vector<float>& vertices, const Eigen::Matrix4f& clip,
+                                  const FarthestSeen& seen) {
+  const Extent picture{0, static_cast<float>(seen.width), 0, static_cast<float>(seen.height), 0};
+  const auto inside = [&](const Extent& extent) {
+    return Extent{std::max(extent.left, picture.left), std::min(extent.right, picture.right),
+                  std::max(extent.bottom, picture.bottom), std::min(extent.top, picture.top), extent.nearest};
+  };
+  std::vector<float> kept;
+  for (std::size_t i = 0; i + kTriangle <= vertices.size(); i += kTriangle) {
+    const auto extent = extent_of(&vertices[i], clip, seen);
+    if (extent) {
+      const Extent in = inside(*extent);
+      const float area = std::max(0.0f, in.right - in.left) * std::max(0.0f, in.top - in.bottom);
+      if (area <= kPixelsMost && is_hidden(in, seen)) continue;
+    }
+    const auto begin = vertices.begin() + static_cast<std::ptrdiff_t>(i);
+    kept.insert(kept.end(), begin, begin + static_cast<std::ptrdiff_t>(kTriangle));
+  }
+  return kept;
+}
+
+}  // namespace understudy::renderer

@@ -1,0 +1,22 @@
+// Which triangles of a picture are seen: llvmpipe shades what lies behind, too, where a pixel has samples.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace understudy::renderer {
+
+/// What a pixel shows at its farthest sample, as depth buffers count: 0 near, 1 far. Bottom row first.
+struct FarthestSeen {
+  int width = 0, height = 0;  ///< [px]
+  std::vector<float> depth;   ///< one a pixel
+};
+
+/// The triangles, in order, that may reach a sample of a pixel. `vertices`: nine floats each, the first three
+/// the position that `clip` takes to clip coordinates. Left out are only those that lie behind all samples of
+/// every pixel about them, or beside the picture; a triangle that passes the eye stays.
+std::vector<float> without_hidden(const std::vector<float>& vertices, const Eigen::Matrix4f& clip,
+                                  const FarthestSeen& seen);
+
+}  // namespace understudy::renderer
