@@ -1,5 +1,7 @@
 #include "geometry/mesh.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -23,6 +25,14 @@ void check_mesh(const std::vector<Vec3>& vertices, const std::vector<std::array<
     const auto& [a, b, c] = triangles[t];
     if (a == b || b == c || c == a) throw InputError(fmt::format("triangle {} uses a vertex twice", t));
   }
+  const auto has_area = [&](const std::array<int, 3>& triangle) {
+    const auto at = [&](std::size_t k) -> const Vec3& {
+      return vertices[static_cast<std::size_t>(triangle[k])];
+    };
+    return !face_normal(at(0), at(1), at(2)).isZero(0);
+  };
+  if (std::none_of(triangles.begin(), triangles.end(), has_area))
+    throw InputError("the mesh has no triangle with an area");
 }
 
 }  // namespace
@@ -49,7 +59,6 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<std::array<int, 3>> triangles
       upper_ = upper_.cwiseMax(vertices_[v]);
     }
   }
-  tree_ = make_tree(*this);
 }
 
 Mesh::~Mesh() = default;

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,6 +64,8 @@ class Mesh {
  private:
   struct Tree;
   static std::shared_ptr<const Tree> make_tree(const Mesh& mesh);
+  /// Made when it is asked for first: what is only drawn needs none.
+  const Tree& tree() const;
   SurfacePoint surface_point(int triangle, const Vec3& barycentric) const;
 
   std::vector<Vec3> vertices_;
@@ -73,7 +76,8 @@ class Mesh {
   Vec3 lower_, upper_;
   int open_edges_ = 0;
   int flipped_edges_ = 0;
-  std::shared_ptr<const Tree> tree_;
+  mutable std::once_flag tree_made_;
+  mutable std::shared_ptr<const Tree> tree_;
 };
 
 struct MeshCheck {

@@ -108,10 +108,14 @@ std::shared_ptr<const Mesh::Tree> Mesh::make_tree(const Mesh& mesh) {
     // A triangle without area covers nothing that its neighbours' edges do not, and has no normal.
     if (!face_normal(a, b, c).isZero(0)) facets.push_back({a, b, c, static_cast<int>(t)});
   }
-  if (facets.empty()) throw InputError("the mesh has no triangle with an area");
   auto tree = std::make_shared<Tree>();
   tree->facets.init(facets.begin(), facets.end());
   return tree;
+}
+
+const Mesh::Tree& Mesh::tree() const {
+  std::call_once(tree_made_, [&] { tree_ = make_tree(*this); });
+  return *tree_;
 }
 
 SurfacePoint Mesh::surface_point(int triangle, const Vec3& barycentric) const {
@@ -130,7 +134,7 @@ SurfacePoint Mesh::surface_point(int triangle, const Vec3& barycentric) const {
 
 SurfacePoint Mesh::nearest(const Vec3& p) const {
   assert(p.allFinite());
-  const Nearest found = find_nearest(tree_->facets, p);
+  const Nearest found = find_nearest(tree().facets, p);
   SurfacePoint point = surface_point(found.triangle, found.point.barycentric);
   point.distance = (point.position - p).norm();
   return point;
@@ -144,7 +148,7 @@ std::optional<SurfacePoint> Mesh::ray_hit(const Vec3& origin, const Vec3& direct
   int triangle = -1;
   Vec3 barycentric;
   walk(
-      tree_->facets, best,
+      tree().facets, best,
       [&](const Eigen::AlignedBox3f& box) {
         return ray.entry(box.min().cast<double>(), box.max().cast<double>(), best);
       },
@@ -162,7 +166,7 @@ std::optional<SurfacePoint> Mesh::ray_hit(const Vec3& origin, const Vec3& direct
 }
 
 double Mesh::signed_distance(const Vec3& p) const {
-  const Nearest found = find_nearest(tree_->facets, p);
+  const Nearest found = find_nearest(tree().facets, p);
   const auto t = static_cast<std::size_t>(found.triangle);
   const auto normal_of = [&](std::size_t triangle) {
     const auto& [i, j, k] = triangles_[triangle];
