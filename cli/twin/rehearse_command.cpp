@@ -13,11 +13,14 @@
 
 #include "cli/command.h"
 #include "cli/progress.h"
+#include "cli/twin/export_video.h"
 #include "cli/twin/registration_options.h"
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
-#include "cli/watch/live_server.h"
 #include "cli/twin/replay_option.h"
+#include "cli/watch/live_server.h"
+#include "core/error.h"
+#include "core/file/output_file.h"
 #include "core/file/output_folder.h"
 #include "core/file/read_file.h"
 #include "core/interrupt.h"
@@ -174,9 +177,21 @@ struct Watched {
   LiveServer server;
 };
 
+/// What lies in the folder of results is one of them, and a film is none: it is made from them.
+void check_film(const RehearseOptions& asked) {
+  if (asked.video.empty()) return;
+  if (!asked.request.keep_scene)
+    throw InputError("--video needs the drawings that --no-pictures leaves out: leave one of them out");
+  if (among_results(asked.video, asked.folder, "elsewhere") != asked.video)
+    throw InputError(fmt::format("--video {} lies in the folder of results {}: name a place outside of it",
+                                 asked.video, asked.folder));
+  check_video(asked.video);
+}
+
 int rehearse(const RehearseOptions& asked) {
   rehearsal::RehearsalRequest request = asked.with_faults();
   request.command = command_line();
+  check_film(asked);
   OutputFolder out(asked.folder);
   request.surface.as_printed = among_results(request.surface.as_printed, asked.folder, out.path());
   std::optional<Watched> watched;
@@ -184,6 +199,9 @@ int rehearse(const RehearseOptions& asked) {
   const rehearsal::Record record =
       rehearse_into(request, out.path(), asked.output.quiet, watched ? &watched->record : nullptr);
   stop_if_interrupted();
+  const std::string film =
+      asked.video.empty() ? "" : video_of(out.path(), report::VideoSettings{}, asked.output.quiet).bytes;
+  if (!asked.video.empty()) write_file(asked.video, film);
   out.commit();
   if (watched)
     watched->server.finish(read_file((std::filesystem::path(asked.folder) / "report.html").string()));

@@ -134,9 +134,9 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
 }
 
 /// Say what is written and where, or stand in the provenance of a record themselves.
-constexpr std::array<std::string_view, 9> kOptionsLeftOut{"--out",         "--record", "--as-printed",
-                                                          "--no-pictures", "--quiet",  "--json",
-                                                          "--seed",        "--watch",  "--watch-port"};
+constexpr std::array<std::string_view, 10> kOptionsLeftOut{
+    "--out",   "--video", "--record", "--as-printed", "--no-pictures",
+    "--quiet", "--json",  "--seed",   "--watch",      "--watch-port"};
 
 /// Throws InputError where it is no command of `rehearse`, whose options `app` has.
 void parse_command(CLI::App& app, const std::string& command_line) {
@@ -162,6 +162,8 @@ void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
                   "for_s: 0.4}'; may be given several times (docs/faults.md)")
       ->allow_extra_args(false);
   command.add_option("--out", options.folder, "folder of results")->capture_default_str();
+  command.add_option("--video", options.video,
+                     "FILE.mp4, outside of --out: also a film of the run (understudy export video)");
   auto* watch = command.add_flag("--watch", options.watch,
                                  "serve the growing report to a browser of this computer (docs/watch.md)");
   command.add_option("--watch-port", options.watch_port, "port of --watch; 0: any free one")

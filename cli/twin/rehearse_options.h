@@ -16,6 +16,7 @@ struct RehearseOptions {
   rehearsal::RehearsalRequest request;
   std::vector<std::string> faults;   ///< in the words of scenarios
   std::string folder = "rehearsal";  ///< of results
+  std::string video;                 ///< a film of the run; empty: none
   bool watch = false;                ///< show the growing report in a browser
   int watch_port = 0;                ///< of HTTP; 0: any free one
   OutputOptions output;
