@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "drivers/linuxcnc/pose_words.h"
 
 namespace understudy::drivers {
 namespace {
@@ -37,6 +38,15 @@ std::string header(const Figures& f, const char* what) {
                      f.settings.machine, what);
 }
 
+/// Where genhexkins begins to look for the pose of its joints: elsewhere it finds none.
+std::string home_words(const Figures& f) {
+  const machine::AxisVector words = pose_words(f.machine.X_BT_home);
+  std::string text;
+  for (std::size_t i = 0; i < kPoseWords; ++i)
+    text += fmt::format("{}{:.9g}", i == 0 ? "" : " ", i < 3 ? to_mm(words[i]) : to_deg(words[i]));
+  return text;
+}
+
 std::string trajectory(const Figures& f) {
   const HalAxis& strut = f.strut(0);
   const double speed = kTipPerStrut * strut.velocity, acceleration = strut.acceleration;
@@ -45,11 +55,12 @@ std::string trajectory(const Figures& f) {
       to_deg(acceleration / to_mm(f.machine.hexapod().geometry.platform_joint[0].norm()));
   std::string text = fmt::format(
       "[TRAJ]\nCOORDINATES = X Y Z A B C\nLINEAR_UNITS = mm\nANGULAR_UNITS = degree\nNO_FORCE_HOMING = 1\n"
+      "HOME = {4}\n"
       "DEFAULT_LINEAR_VELOCITY = {0:.6g}\nMAX_LINEAR_VELOCITY = {0:.6g}\n"
       "DEFAULT_LINEAR_ACCELERATION = {1:.6g}\nMAX_LINEAR_ACCELERATION = {1:.6g}\n"
       "DEFAULT_ANGULAR_VELOCITY = {2:.6g}\nMAX_ANGULAR_VELOCITY = {2:.6g}\n"
       "DEFAULT_ANGULAR_ACCELERATION = {3:.6g}\nMAX_ANGULAR_ACCELERATION = {3:.6g}\n\n",
-      speed, acceleration, turn, turn_acceleration);
+      speed, acceleration, turn, turn_acceleration, home_words(f));
   for (const char axis : std::string("XYZABC"))
     text += fmt::format(
         "[AXIS_{}]\nMIN_LIMIT = -1e6\nMAX_LIMIT = 1e6\nMAX_VELOCITY = {:.6g}\nMAX_ACCELERATION = {:.6g}\n\n",
@@ -76,7 +87,7 @@ std::string ini_file(const Figures& f) {
                "MIN_LIMIT = {2:.9g}\nMAX_LIMIT = {3:.9g}\nMAX_VELOCITY = {4:.6g}\nMAX_ACCELERATION = "
                "{5:.6g}\n"
                "FERROR = {6:.6g}\nMIN_FERROR = {6:.6g}\n"
-               "HOME = {7:.9g}\nHOME_OFFSET = 0\nHOME_ABSOLUTE_ENCODER = 2\nHOME_SEQUENCE = 0\n\n",
+               "HOME = {7:.12g}\nHOME_OFFSET = {7:.12g}\nHOME_SEQUENCE = 0\n\n",
                a.name, i, f.joint(a.lower), f.joint(a.upper), a.velocity, a.acceleration, a.following,
                f.joint(a.home));
          });
@@ -106,7 +117,8 @@ std::string curve(const Figures& f, const HalAxis& a) {
   std::string text;
   const double first = a.lower - kCurveRoom, width = a.upper - a.lower + 2 * kCurveRoom;
   for (int k = 0; k < kCurvePoints; ++k) {
-    const double length = first + width * k / (kCurvePoints - 1), joint = f.joint(length);
+    const double length = first + width * k / (kCurvePoints - 1);
+    const double joint = f.joint(length) - f.joint(a.home);  // as motors count: from home
     text += fmt::format(
         "setp length.{0}.x-val-{1:02} {3:.12g}\nsetp length.{0}.y-val-{1:02} {2:.12g}\n"
         "setp back.{0}.x-val-{1:02} {2:.12g}\nsetp back.{0}.y-val-{1:02} {3:.12g}\n",
@@ -192,14 +204,14 @@ std::string pins_file(const Figures& f) {
   return header(f, "drives, emergency stop, heater and fan: simulated") +
          "# A real machine replaces all lines below (README.md): step generators or other drives take\n"
          "# STRUT-command and give STRUT-drive, both counted from home.\n"
-         "loadrt mux2 names=" +
+         "loadrt mux4 names=" +
          names(f, "drive") + "\n" +
          each_strut(f,
                     [](const HalAxis& a, std::size_t) {
                       return fmt::format(
                           "addf drive.{0} servo-thread\n"
                           "net {0}-command => drive.{0}.in1\nnet {0}-drive drive.{0}.out => drive.{0}.in0\n"
-                          "net {0}-enable => drive.{0}.sel\n",
+                          "net {0}-enable => drive.{0}.sel0\n",
                           a.name);
                     }) +
          "sets nozzle-is-hot 1\n"

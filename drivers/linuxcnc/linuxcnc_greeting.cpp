@@ -83,14 +83,17 @@ void LinuxcncSession::switch_on() {
   }
 }
 
+/// What is homed stays so: homing counts from where the machine stands.
 void LinuxcncSession::home() {
-  if (options_.home) {
-    exchange("set mode manual\r\n", "SET MODE", options_.reply_time);
-    exchange("set home -1\r\n", "SET HOME", options_.reply_time);
-  }
-  for (const double until = link_.now() + kHomeTime;
-       exchange("get joint_homed\r\n", "JOINT_HOMED", options_.reply_time).find("NO") != std::string::npos;) {
-    if (!options_.home) throw MachineError("the machine is not homed: home it, or say home=yes in the URI");
+  const auto homed = [this] {
+    return exchange("get joint_homed\r\n", "JOINT_HOMED", options_.reply_time).find("NO") ==
+           std::string::npos;
+  };
+  if (homed()) return;
+  if (!options_.home) throw MachineError("the machine is not homed: home it, or say home=yes in the URI");
+  exchange("set mode manual\r\n", "SET MODE", options_.reply_time);
+  exchange("set home -1\r\n", "SET HOME", options_.reply_time);
+  for (const double until = link_.now() + kHomeTime; !homed();) {
     if (link_.now() > until) throw MachineError(fmt::format("it is not homed within {:g} s", kHomeTime));
     link_.wait(link_.now() + kAgain);
   }
