@@ -39,6 +39,7 @@ void add_export_mjcf(CLI::App& command, Action& action);
 void add_export_trace(CLI::App& command, Action& action);
 void add_export_glb(CLI::App& command, Action& action);
 void add_export_hal(CLI::App& command, Action& action);
+void add_export_linuxcnc(CLI::App& command, Action& action);
 void add_benchmark(CLI::App& app, Action& action);  ///< calibration, gap, faults
 void add_benchmark_calibration(CLI::App& benchmark, Action& action);
 void add_benchmark_gap(CLI::App& benchmark, Action& action);

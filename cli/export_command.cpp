@@ -35,6 +35,7 @@ void add_export(CLI::App& app, Action& action) {
   add_export_glb(*command, action);
   add_export_video(*command, action);
   add_export_hal(*command, action);
+  add_export_linuxcnc(*command, action);
   auto* urdf =
       command->add_subcommand("urdf", "URDF of an open chain: links \"work\" and \"tool\" at its ends");
   add_machine_option(*urdf, request->machine)->required();

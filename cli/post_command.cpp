@@ -64,6 +64,10 @@ int post(PostOptions options) {
   if (!options.axes.empty()) words.options["axes"] = options.axes;
   if (!options.extruder.empty()) words.options["extruder"] = options.extruder;
   const drivers::GcodeFamily family = drivers::gcode_family(options.family);
+  if (family == drivers::GcodeFamily::linuxcnc)
+    throw InputError(
+        "--for linuxcnc: it is driven (--port tcp://host:5007?family=linuxcnc), and no file is written for "
+        "it");
   const drivers::GcodeAxes axes = drivers::gcode_axes(family, print.machine, words);
 
   std::string text = header(options, print);

@@ -17,6 +17,7 @@ std::unique_ptr<machine::LoopbackPort> open_loopback(const PortUri& uri,
   machine::LoopbackPort::Options options;
   options.axis_count = mechanism->axis_count();
   options.history = false;
+  options.drive_zero = machine.drive_zero();
   options.clock_step = 1e-3 * uri.number("clock_ms", kClockStep, 0.01, 10);
   for (int i = 0; i < options.axis_count; ++i) options.ranges.push_back(mechanism->axis_range(i));
   const auto axes = std::span(options.start).first(static_cast<std::size_t>(options.axis_count));

@@ -32,6 +32,8 @@ AxisState LoopbackPort::state() const {
   AxisState s;
   s.time = s.sampled_at = time_;
   s.position = queue_.target().position;
+  for (std::size_t i = 0; i < s.position.size(); ++i)
+    s.position[i] = (s.position[i] - options_.drive_zero[i]) + options_.drive_zero[i];
   s.accepted = queue_.accepted();
   s.executed = queue_.executed();
   s.free_slots = queue_.free_slots();

@@ -16,6 +16,7 @@ class LoopbackPort : public MachinePort {
     int axis_count = 6;
     std::size_t queue_capacity = 4096;
     AxisVector start{};
+    AxisVector drive_zero{};  ///< [m or rad], from where the drives count: what they read is rounded by that
     std::vector<kinematics::AxisRange> ranges;  ///< one an axis; empty: without end
     double frame_time = 0.02;                   ///< [s], exposure plus transfer
     bool history = true;                        ///< keep every executed setpoint, which allocates

@@ -17,19 +17,26 @@ namespace {
 constexpr double kTick = 4e-3;       // [s], between two looks at the link
 constexpr double kSlip = 0.02;       // [s], by which our clock catches up; beyond, it is put back
 constexpr double kBacklogMax = 1.0;  // [s], of blocks that the controller does not take
-constexpr double kHeatTime = 600;    // [s], to any temperature
 constexpr double kSettleTime = 10;   // [s], for what a fault leaves on its way
 constexpr double kBlockTime = 0.1;   // [s], at most: what a stop waits for
+constexpr double kPoseTime = 0.2;    // [s], likewise on LinuxCNC, which takes few blocks
 
-FitTolerance driving(FitTolerance tolerance) {
-  tolerance.block_time_max = std::min(tolerance.block_time_max, kBlockTime);
+FitTolerance driving(const GcodeSetup& setup) {
+  FitTolerance tolerance = setup.tolerance;
+  tolerance.block_time_max =
+      std::min(tolerance.block_time_max, setup.family == GcodeFamily::linuxcnc ? kPoseTime : kBlockTime);
   return tolerance;
 }
 
-/// The session is connected before the queue is made of where the machine stands.
-GcodeSession& connected(GcodeSession& session) {
-  session.connect();
-  return session;
+/// Connected before the queue is made of where the machine stands.
+std::unique_ptr<Controller> connected(ByteLink& link, const GcodeSetup& setup, PoseWords* words) {
+  std::unique_ptr<Controller> controller;
+  if (words != nullptr)
+    controller = std::make_unique<LinuxcncSession>(link, *words, setup.session, setup.another);
+  else
+    controller = std::make_unique<GcodeSession>(link, GcodeWriter(setup.family, setup.axes), setup.session);
+  controller->connect();
+  return controller;
 }
 
 }  // namespace
@@ -38,22 +45,22 @@ GcodePort::GcodePort(std::unique_ptr<ByteLink> link, const GcodeSetup& setup,
                      const machine::MachineDescription& machine)
     : setup_(setup),
       link_(std::move(link)),
-      writer_(setup.family, setup.axes),
-      session_(*link_, writer_, setup.session),
-      path_(machine, setup.queue_capacity, connected(session_).position()),
-      fitter_(driving(setup.tolerance), setup.axes.grid, setup.axes.turns),
+      words_(setup.family == GcodeFamily::linuxcnc ? std::make_unique<PoseWords>(machine) : nullptr),
+      controller_(connected(*link_, setup, words_.get())),
+      path_(machine, setup.queue_capacity, controller_->position(), words_.get()),
+      fitter_(driving(setup), setup.axes.grid, setup.axes.turns),
       anchor_(link_->now()) {
-  fitter_.begin(path_.last());
-  writer_.begin(path_.last());
+  fitter_.begin(path_.last_in_words());
+  controller_->begin(path_.last_in_words());
 }
 
 machine::AxisState GcodePort::state() const {
   machine::AxisState s;
   s.time = now_;
-  s.sampled_at = std::min(now_, session_.position_time() - anchor_);
-  s.position = session_.position();
+  s.sampled_at = std::min(now_, controller_->position_time() - anchor_);
+  s.position = controller_->position();
   s.accepted = path_.queue().accepted();
-  s.executed = session_.executed();
+  s.executed = controller_->executed();
   s.free_slots = path_.queue().free_slots();
   s.moving = fault_ == Fault::none &&
              (path_.queue().moving() || path_.queue().rate_changes() || path_.in_motion() || streaming_);
@@ -76,7 +83,7 @@ void GcodePort::raise(Fault fault, const std::string& why) {
   path_.queue().clear(now_);
 }
 
-bool GcodePort::time_stands() const { return heating_ || session_.backlog() > kBacklogMax; }
+bool GcodePort::time_stands() const { return heating_ || controller_->backlog() > kBacklogMax; }
 
 /// Blocks that are settled; to the controller once it has enough ahead, or `all`.
 void GcodePort::hand_over(bool all) {
@@ -85,7 +92,7 @@ void GcodePort::hand_over(bool all) {
     held_time_ += block->duration;
   }
   if (!all && !streaming_ && held_time_ + fitter_.pending() < setup_.latency) return;
-  for (const Block& block : held_) session_.push(writer_.block(block), block.duration, block.executed);
+  for (const Block& block : held_) controller_->push(block);
   streaming_ = streaming_ || !held_.empty();
   held_.clear();
   held_time_ = 0;
@@ -95,7 +102,7 @@ void GcodePort::hand_over(bool all) {
 void GcodePort::end_of_motion() {
   fitter_.finish();
   hand_over(true);
-  session_.push_rest(path_.last().position);
+  controller_->push_rest(path_.last().position);
   streaming_ = true;
 }
 
@@ -119,16 +126,18 @@ bool GcodePort::step(double until) {
   try {
     link_->wait(time_stands() ? link_->now() + kTick : anchor_ + next);
   } catch (const MachineError& error) {
-    session_.fail(Fault::power, error.what());
+    controller_->fail(Fault::power, error.what());
   }
-  session_.pump();
-  if (session_.settled()) {
+  controller_->pump();
+  if (words_ != nullptr && words_->lost())
+    controller_->fail(Fault::drive, "these axis positions belong to no pose: the kinematics has no answer");
+  if (controller_->settled()) {
     streaming_ = false;
     heating_ = false;
   }
-  if (session_.fault() != Fault::none) {
-    raise(session_.fault(), session_.fault_text());
-    session_.last_words(writer_.outputs(outputs_, {}));
+  if (controller_->fault() != Fault::none) {
+    raise(controller_->fault(), controller_->fault_text());
+    if (!outputs_.off()) controller_->outputs_off();
     return false;
   }
   if (time_stands()) {
@@ -141,7 +150,7 @@ bool GcodePort::step(double until) {
   stood_from_ = anchor_;
   if (link_->now() < anchor_ + next) return true;  // bytes came first
   release(next);
-  session_.pump();
+  controller_->pump();
   return fault_ == Fault::none;
 }
 
@@ -150,9 +159,9 @@ Status GcodePort::wait_until(double time) {
   if (fault_ == Fault::underrun) {
     // The controller goes on to where the queue ended, on its own time.
     const double deadline = link_->now() + kSettleTime;
-    while (!session_.settled() && session_.fault() == Fault::none && link_->now() < deadline) {
+    while (!controller_->settled() && controller_->fault() == Fault::none && link_->now() < deadline) {
       link_->wait(link_->now() + kTick);
-      session_.pump();
+      controller_->pump();
     }
     streaming_ = false;
   }
@@ -171,7 +180,7 @@ Status GcodePort::urgent(machine::UrgentCommand command) {
       path_.queue().stop(now_);
       return Status::ok;
     case machine::UrgentCommand::clear_fault:
-      if (fault_ != Fault::none && session_.fault() != Fault::none) return Status::faulted;
+      if (fault_ != Fault::none && controller_->fault() != Fault::none) return Status::faulted;
       if (fault_ == Fault::emergency_stop) return Status::faulted;
       fault_ = Fault::none;
       fault_text_.clear();
@@ -184,17 +193,14 @@ Status GcodePort::set_outputs(const machine::Outputs& outputs, double deadline) 
   if (fault_ != Fault::none && !outputs.off()) return Status::faulted;
   if (now_ > deadline) return Status::deadline_exceeded;
   if (!setup_.outputs) return outputs.off() ? Status::ok : Status::rejected;
-  const auto lines = writer_.outputs(outputs_, outputs);
-  if (session_.fault() != Fault::none) {
-    session_.last_words(writer_.outputs({1e3, 1}, {}));
+  if (controller_->fault() != Fault::none) {
+    controller_->outputs_off();
   } else {
-    for (const std::string& line : lines) {
-      const bool waits = line.starts_with("M109");
-      session_.push(line, waits ? kHeatTime : 0, 0);
-      heating_ = heating_ || waits;
-    }
-    if (!lines.empty()) session_.push_rest(path_.last().position);
-    session_.pump();
+    heating_ = controller_->push_outputs(outputs_, outputs) || heating_;
+    const bool same =
+        outputs.fan == outputs_.fan && outputs.nozzle_temperature == outputs_.nozzle_temperature;
+    if (!same) controller_->push_rest(path_.last().position);
+    controller_->pump();
   }
   outputs_ = outputs;
   return Status::ok;
@@ -205,12 +211,8 @@ Status GcodePort::capture(const Region& /*region*/, machine::Frame& /*frame*/, d
 }
 
 void GcodePort::emergency_stop() {
-  if (setup_.family == GcodeFamily::grblhal)
-    session_.send_now("\x18");
-  else
-    session_.last_words({"M112"});
-  session_.last_words(writer_.outputs({1e3, 1}, {}));
-  session_.fail(Fault::emergency_stop, "stopped as an emergency");
+  controller_->emergency_stop();
+  controller_->fail(Fault::emergency_stop, "stopped as an emergency");
   raise(Fault::emergency_stop, "stopped as an emergency: home the machine before the next print");
 }
 

@@ -9,9 +9,12 @@
 #include "drivers/driver_port.h"
 #include "drivers/gcode/block_fitter.h"
 #include "drivers/gcode/byte_link.h"
+#include "drivers/gcode/controller.h"
 #include "drivers/gcode/gcode_session.h"
 #include "drivers/gcode/gcode_words.h"
 #include "drivers/gcode/path_sampler.h"
+#include "drivers/linuxcnc/linuxcnc_session.h"
+#include "drivers/linuxcnc/pose_words.h"
 #include "machine/description.h"
 
 namespace understudy::drivers {
@@ -24,6 +27,7 @@ struct GcodeSetup {
   double latency = 0.25;  ///< [s], by which the machine is behind the port's clock: its lookahead
   bool outputs = true;    ///< the controller has a heater and a fan
   std::size_t queue_capacity = 4096;
+  AnotherLink another;  ///< of LinuxCNC
 };
 
 /// Of the options of a URI. Throws InputError for one that is unknown or out of its range.
@@ -59,8 +63,8 @@ class GcodePort : public DriverPort {
 
   GcodeSetup setup_;
   std::unique_ptr<ByteLink> link_;
-  GcodeWriter writer_;
-  GcodeSession session_;
+  std::unique_ptr<PoseWords> words_;  ///< null: the controller's coordinates are the axes
+  std::unique_ptr<Controller> controller_;
   PathSampler path_;
   BlockFitter fitter_;
   std::vector<Block> held_;      ///< until the controller has enough ahead

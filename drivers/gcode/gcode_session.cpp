@@ -26,8 +26,8 @@ constexpr std::string_view kGrblOrder = "XYZABCUVW";
 
 }  // namespace
 
-GcodeSession::GcodeSession(ByteLink& link, const GcodeWriter& writer, const SessionOptions& options)
-    : link_(link), writer_(writer), options_(options), heard_(link.now()) {}
+GcodeSession::GcodeSession(ByteLink& link, GcodeWriter writer, const SessionOptions& options)
+    : link_(link), writer_(std::move(writer)), options_(options), heard_(link.now()) {}
 
 void GcodeSession::fail(Fault fault, const std::string& why) {
   if (fault_ != Fault::none) return;
@@ -58,6 +58,16 @@ void GcodeSession::push_rest(const AxisVector& position) {
     entry.text = "M114";
   }
   entries_.push_back(std::move(entry));
+}
+
+bool GcodeSession::push_outputs(const machine::Outputs& before, const machine::Outputs& after) {
+  bool heats = false;
+  for (const std::string& line : writer_.outputs(before, after)) {
+    const bool waits = line.starts_with("M109");
+    push(line, waits ? kHeatTime : 0, 0);
+    heats = heats || waits;
+  }
+  return heats;
 }
 
 double GcodeSession::backlog() const {
@@ -338,6 +348,7 @@ void GcodeSession::watch_silence() {
   fail(Fault::power, fmt::format("the controller has not answered for {:.1f} s", link_.now() - heard_));
 }
 
+/// Before all that waits to be sent.
 void GcodeSession::send_now(std::string_view bytes) {
   try {
     if (outgoing_.empty() && link_.send(bytes) == bytes.size()) return;
@@ -347,6 +358,16 @@ void GcodeSession::send_now(std::string_view bytes) {
   }
 }
 
+/// At once, past everything.
+void GcodeSession::emergency_stop() {
+  if (counts())
+    send_now("\x18");
+  else
+    last_words({"M112"});
+  outputs_off();
+}
+
+/// After a fault or in an emergency: lines that nothing counts on.
 void GcodeSession::last_words(const std::vector<std::string>& lines) {
   try {
     std::string text = "\n";

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "drivers/gcode/byte_link.h"
+#include "drivers/gcode/controller.h"
 #include "drivers/gcode/gcode_reply.h"
 #include "drivers/gcode/gcode_words.h"
 
@@ -26,37 +27,32 @@ struct SessionOptions {
   machine::AxisVector step{};        ///< [m or rad], by which a position may be off at rest
 };
 
-class GcodeSession {
+class GcodeSession : public Controller {
  public:
   /// The link must outlive the session.
-  GcodeSession(ByteLink& link, const GcodeWriter& writer, const SessionOptions& options);
+  GcodeSession(ByteLink& link, GcodeWriter writer, const SessionOptions& options);
 
-  /// Waits for the controller, makes sure what it is, homes it where that is asked for, and reads where it
-  /// stands. Throws MachineError where it does not answer, is another one, or has a fault.
-  void connect();
-
+  void connect() override;
+  void begin(const PathSample& at) override { writer_.begin(at); }
+  void push(const Block& block) override { push(writer_.block(block), block.duration, block.executed); }
+  void push_rest(const machine::AxisVector& position) override;
+  bool push_outputs(const machine::Outputs& before, const machine::Outputs& after) override;
+  void pump() override;
+  void outputs_off() override { last_words(writer_.outputs({1e3, 1}, {})); }
+  void emergency_stop() override;
   /// A line to be sent; `duration` [s] it runs, `executed` setpoints once it is done, or as many as before.
   void push(std::string line, double duration, std::uint64_t executed);
-  /// What was pushed ends at rest there. Later lines wait until the controller says so.
-  void push_rest(const machine::AxisVector& position);
-  /// Reads and sends what can be read and sent now. Does not throw: a link that is gone is a fault.
-  void pump();
-  /// At once, past everything.
-  void send_now(std::string_view bytes);
-  /// After a fault or in an emergency: lines that nothing counts on.
-  void last_words(const std::vector<std::string>& lines);
 
-  /// All that was pushed is done.
-  bool settled() const { return entries_.empty(); }
-  /// [s], of what was pushed and not accepted yet.
-  double backlog() const;
-  std::uint64_t executed() const { return executed_; }
-  const machine::AxisVector& position() const { return position_; }  ///< [m or rad], as it was reported last
-  double position_time() const { return position_time_; }            ///< [s], clock of the link
+  bool settled() const override { return entries_.empty(); }
+  /// Of what was pushed and not accepted yet.
+  double backlog() const override;
+  std::uint64_t executed() const override { return executed_; }
+  const machine::AxisVector& position() const override { return position_; }
+  double position_time() const override { return position_time_; }
 
-  machine::Fault fault() const { return fault_; }
-  const std::string& fault_text() const { return fault_text_; }
-  void fail(machine::Fault fault, const std::string& why);
+  machine::Fault fault() const override { return fault_; }
+  const std::string& fault_text() const override { return fault_text_; }
+  void fail(machine::Fault fault, const std::string& why) override;
 
  private:
   enum class Role { line, wait, ask, rest };  ///< rest: of grblHAL, nothing is sent
@@ -89,10 +85,12 @@ class GcodeSession {
   std::string framed(const Entry& entry) const;
   void write_out();
   void watch_silence();
+  void send_now(std::string_view bytes);
+  void last_words(const std::vector<std::string>& lines);
   double patience() const;
 
   ByteLink& link_;
-  const GcodeWriter& writer_;
+  GcodeWriter writer_;
   SessionOptions options_;
   std::deque<Entry> entries_;     ///< not confirmed, oldest first
   std::size_t sent_ = 0;          ///< of them

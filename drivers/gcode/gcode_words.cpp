@@ -15,10 +15,11 @@
 namespace understudy::drivers {
 namespace {
 
-constexpr std::array<std::pair<GcodeFamily, const char*>, 3> kFamilies{
+constexpr std::array<std::pair<GcodeFamily, const char*>, 4> kFamilies{
     {{GcodeFamily::grblhal, "grblhal"},
      {GcodeFamily::marlin, "marlin"},
-     {GcodeFamily::reprapfirmware, "reprapfirmware"}}};
+     {GcodeFamily::reprapfirmware, "reprapfirmware"},
+     {GcodeFamily::linuxcnc, "linuxcnc"}}};
 constexpr double kLengthGrid = 1e-7;           // [m], four decimals of a millimetre
 constexpr double kAngleGrid = kDegree * 1e-5;  // [rad], five of a degree
 constexpr double kFilamentGrid = 1e-8;         // [m], five of a millimetre
@@ -66,6 +67,22 @@ std::string upper(std::string word) {
   return word;
 }
 
+/// Words of a pose, whatever the machine's axes.
+GcodeAxes pose_axes(const PortUri& options) {
+  for (const char* key : {"axes", "extruder"})
+    if (!options.option(key).empty())
+      throw InputError(fmt::format("{}: {}: LinuxCNC is sent poses, X Y Z A B C, and has no such letters",
+                                   options.text, key));
+  GcodeAxes axes;
+  axes.letters = "XYZABC";
+  axes.extruder = '\0';
+  axes.turns = {false, false, false, true, true, true};
+  for (std::size_t i = 0; i < axes.turns.size(); ++i)
+    axes.grid.axes[i] = axes.turns[i] ? kAngleGrid : kLengthGrid;
+  axes.grid.filament = kFilamentGrid;
+  return axes;
+}
+
 }  // namespace
 
 const char* to_string(GcodeFamily family) {
@@ -86,6 +103,7 @@ GcodeFamily gcode_family(const std::string& word) {
 double GcodeAxes::unit(int axis) const { return turns[static_cast<std::size_t>(axis)] ? kDegree : 1e-3; }
 
 GcodeAxes gcode_axes(GcodeFamily family, const machine::MachineDescription& machine, const PortUri& options) {
+  if (family == GcodeFamily::linuxcnc) return pose_axes(options);
   const auto mechanism = machine.make_mechanism();
   GcodeAxes axes;
   for (int i = 0; i < mechanism->axis_count(); ++i) {

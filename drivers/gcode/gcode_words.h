@@ -11,7 +11,7 @@
 
 namespace understudy::drivers {
 
-enum class GcodeFamily { grblhal, marlin, reprapfirmware };
+enum class GcodeFamily { grblhal, marlin, reprapfirmware, linuxcnc };
 const char* to_string(GcodeFamily family);
 /// Throws InputError for another word, naming the nearest family.
 GcodeFamily gcode_family(const std::string& word);

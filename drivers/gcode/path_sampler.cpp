@@ -18,9 +18,15 @@ machine::SetpointQueueOptions queue_options(const machine::MachineDescription& m
 }  // namespace
 
 PathSampler::PathSampler(const machine::MachineDescription& machine, std::size_t capacity,
-                         const machine::AxisVector& start)
-    : queue_(queue_options(machine, capacity), start, 0) {
+                         const machine::AxisVector& start, PoseWords* words)
+    : queue_(queue_options(machine, capacity), start, 0), words_(words) {
   last_.position = start;
+}
+
+PathSample PathSampler::last_in_words() {
+  PathSample sample = last_;
+  if (words_ != nullptr) sample.position = words_->of_axes(last_.position);
+  return sample;
 }
 
 PathSampler::Passed PathSampler::pass(double now, double next, BlockFitter& fitter) {
@@ -28,12 +34,12 @@ PathSampler::Passed PathSampler::pass(double now, double next, BlockFitter& fitt
     if (!in_motion_) {
       last_.time = now;
       last_.executed = queue_.executed();
-      fitter.begin(last_);
+      fitter.begin(last_in_words());
       in_motion_ = true;
     }
     const auto& target = queue_.advance_to(next);
     last_ = {next, target.position, target.filament, target.line, queue_.executed()};
-    fitter.add(last_);
+    fitter.add(last_in_words());
     if (queue_.ran_dry()) {
       in_motion_ = false;
       return Passed::ran_dry;

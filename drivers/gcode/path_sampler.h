@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/gcode/block_fitter.h"
+#include "drivers/linuxcnc/pose_words.h"
 #include "machine/description.h"
 #include "machine/setpoint_queue.h"
 
@@ -15,9 +16,10 @@ class PathSampler {
     ran_dry,  ///< or in motion: an underrun
   };
 
-  /// The axes rest at `start`, at time 0.
+  /// The axes rest at `start`, at time 0. `words`, which must outlive this object: what blocks are written
+  /// in; null: in axis positions.
   PathSampler(const machine::MachineDescription& machine, std::size_t capacity,
-              const machine::AxisVector& start);
+              const machine::AxisVector& start, PoseWords* words = nullptr);
 
   machine::SetpointQueue& queue() { return queue_; }
   const machine::SetpointQueue& queue() const { return queue_; }
@@ -26,9 +28,11 @@ class PathSampler {
   Passed pass(double now, double next, BlockFitter& fitter);
   bool in_motion() const { return in_motion_; }  ///< samples were taken since it rested
   const PathSample& last() const { return last_; }
+  PathSample last_in_words();  ///< as blocks are written
 
  private:
   machine::SetpointQueue queue_;
+  PoseWords* words_;
   PathSample last_;
   bool in_motion_ = false;
 };

@@ -1,0 +1,114 @@
+// The print loop of the rehearsal on LinuxCNC's own planner and hexapod kinematics.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "control/print.h"
+#include "drivers/gcode/gcode_port.h"
+#include "tests/drivers/linuxcnc/linuxcnc_machine.h"
+
+namespace understudy::drivers {
+namespace {
+
+using machine::Fault;
+
+constexpr int kMovesInAPiece = 20;
+
+/// A helix of beads, the tool tilted towards where it goes; the fan changes every 20 moves, for which the
+/// machine comes to rest.
+toolpath::Program helix(const machine::MachineDescription& machine, int moves) {
+  toolpath::Program program;
+  program.file = "helix.gcode";
+  const Pose X_WT_home = machine.X_WB * machine.X_BT_home;
+  for (int i = 0; i <= moves; ++i) {
+    const double turn = 0.06 * i;
+    toolpath::Step step;
+    step.kind = i == 0 ? toolpath::StepKind::travel : toolpath::StepKind::print;
+    step.X_WT = X_WT_home;
+    step.X_WT.translation() += Vec3(15e-3 * std::cos(turn), 15e-3 * std::sin(turn), -10e-6 * i);
+    step.X_WT.linear() = exp_rotation(0.1 * Vec3(-std::sin(turn), std::cos(turn), 0.3)) * X_WT_home.linear();
+    step.feed = 10e-3;
+    step.filament = i == 0 ? 0 : 40e-6;
+    step.line = i + 1;
+    program.steps.push_back(step);
+    if (i % kMovesInAPiece != 0) continue;
+    toolpath::Step fan;
+    fan.kind = toolpath::StepKind::fan;
+    fan.fan = i / kMovesInAPiece % 2 == 0 ? 0.5 : 1;
+    fan.line = i + 1;
+    program.steps.push_back(fan);
+  }
+  return program;
+}
+
+/// At every rest of a print: drives behind LinuxCNC's kinematics against our inverse kinematics of the pose.
+class RestWatch : public control::PrintObserver {
+ public:
+  RestWatch(const GcodePort& port, const machine::MachineDescription& machine,
+            const toolpath::Program& program)
+      : port_(port), machine_(machine), program_(program), mechanism_(machine.make_mechanism()) {}
+
+  void progress(std::size_t done, std::size_t, double) override {
+    const machine::AxisState s = port_.state();
+    if (s.moving || s.executed < s.accepted || s.executed == executed_ || done == 0) return;
+    executed_ = s.executed;
+    std::size_t last = done - 1;
+    while (last > 0 && program_.steps[last].kind == toolpath::StepKind::fan) --last;
+    std::array<double, 6> ours{};
+    const Pose X_BT = machine_.X_WB.inverse() * program_.steps[last].X_WT;
+    ASSERT_EQ(mechanism_->inverse(X_BT, {}, ours), kinematics::SolveStatus::ok);
+    const std::vector<double> drives = RunningLinuxcnc::strut_lengths();
+    for (std::size_t i = 0; i < 6; ++i) {
+      worst_joint = std::max(worst_joint, std::abs(s.position[i] - ours[i]));
+      worst_drive = std::max(worst_drive, std::abs(drives[i] - ours[i]));
+    }
+    ++rests;
+  }
+  int rests = 0;
+  double worst_joint = 0, worst_drive = 0;  // [m]
+
+ private:
+  const GcodePort& port_;
+  const machine::MachineDescription& machine_;
+  const toolpath::Program& program_;
+  std::unique_ptr<kinematics::Mechanism> mechanism_;
+  std::uint64_t executed_ = 0;
+};
+
+void print_helix(int moves) {
+  const RunningLinuxcnc linuxcnc;
+  const auto port = open_gcode(parse_port_uri(linuxcnc.uri("&home=yes")), linuxcnc.machine());
+  const toolpath::Program program = helix(linuxcnc.machine(), moves);
+  RestWatch watch(*port, linuxcnc.machine(), program);
+  control::PrintOptions options;
+  options.gap_control = control::GapControl::off;
+  const auto begin = std::chrono::steady_clock::now();
+  const control::PrintResult result = control::print(program, linuxcnc.machine(), *port, options, &watch);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  ASSERT_TRUE(result.completed) << result.stop.why << port->fault_text();
+  EXPECT_GE(result.moves, moves);
+  EXPECT_GE(watch.rests, moves / kMovesInAPiece);
+  EXPECT_LE(watch.worst_joint, 1e-6);
+  EXPECT_LE(watch.worst_drive, 1e-6);
+  const double fed = 1e-3 * std::atof(RunningLinuxcnc::hal({"gets", "filament-command"}).c_str());
+  EXPECT_NEAR(fed, result.extruded, 1e-7);
+  std::printf(
+      "%d moves in %.1f s as planned, %.1f s here; %d rests: joints %.2f um, drives %.2f um from ours\n",
+      result.moves, result.duration, taken.count(), watch.rests, 1e6 * watch.worst_joint,
+      1e6 * watch.worst_drive);
+}
+
+TEST(LinuxcncPrint, RestsWhereOurInverseKinematicsSays) {
+  SKIP_WITHOUT_LINUXCNC();
+  print_helix(40);
+}
+
+TEST(SlowLinuxcncPrint, RestsWhereOurInverseKinematicsSaysInThreeHundredMoves) {
+  SKIP_WITHOUT_LINUXCNC();
+  print_helix(320);
+}
+
+}  // namespace
+}  // namespace understudy::drivers
