@@ -9,6 +9,7 @@
 
 #include "calibration/bundle/bundle_tables.h"
 #include "calibration/bundle/picture_pose.h"
+#include "calibration/bundle/sides_by_loads.h"
 #include "calibration/calibrated.h"
 #include "calibration/machine/calibrate_hexapod.h"
 #include "calibration/strut_model.h"
@@ -137,9 +138,9 @@ MachineCalibration calibrate_bundle(const BundleRequest& request) {
   if (nominal.is_chain())
     throw InputError(fmt::format("{}: pictures are adjusted with a hexapod only", nominal.name));
   const Measurements commanded = read_measurements(request.commanded, nominal, kReferenceNoise);
-  const BundleProblem problem = problem_of(request, nominal, commanded, result.warnings);
+  BundleProblem problem = problem_of(request, nominal, commanded, result.warnings);
   result.estimator = problem.unknowns.play ? kWithPlay : kWithoutPlay;
-  const BundleAdjustment adjusted = adjust_bundle(problem);
+  const BundleAdjustment adjusted = adjust_bundle_by_loads(nominal, problem);
   if (!adjusted.ok()) throw InputError({request.targets, 0, 0}, adjusted.message);
   Problem poses;
   const Calibration found = as_calibration(problem, adjusted, poses);

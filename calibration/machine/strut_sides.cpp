@@ -10,8 +10,8 @@ namespace {
 
 using machine::HexapodModel;
 
-// Joints that are off by 0.5 mm change loads of some 3 N by a hundredth; the rest is for cables.
-constexpr double kLoadKnown = 0.1;  // [N]
+constexpr double kCables = 0.1;  // [N] that cables pull, and other loads that the description does not have
+constexpr double kSure = 3;      // sigma
 
 /// Of a motor, which stands off by dev from its universal joint, when the ball joint is at d_B from there.
 /// Its first axis is `tangent_B`.
@@ -34,7 +34,45 @@ Vec3 motor_force(const Vec3& d_B, const Vec3& tangent_B, double deviation, const
   return force;
 }
 
+/// The loads where the drives stand as for X_BT on `geometry`, and the machine is `off`.
+bool loads_when_off(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                    const kinematics::HexapodGeometry& off, const Pose& X_BT, StrutLengths& load) {
+  StrutLengths lengths;
+  if (kinematics::inverse(geometry, X_BT, lengths) != kinematics::SolveStatus::ok) return false;
+  for (std::size_t i = 0; i < kStruts; ++i) lengths[i] += off.length_offset[i] - geometry.length_offset[i];
+  const auto stands = kinematics::forward(off, lengths, X_BT);
+  return stands.status == kinematics::SolveStatus::ok && strut_loads(machine, off, stands.X_BT, load);
+}
+
 }  // namespace
+
+bool load_sigmas(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                 const machine::ToleranceSet& tolerances, const Pose& X_BT, StrutLengths& sigma) {
+  constexpr double kStep = 1e-5;  // [m]: loads are smooth over millimetres
+  StrutLengths at;
+  if (!strut_loads(machine, geometry, X_BT, at)) return false;
+  StrutLengths variance{};
+  const auto add = [&](const kinematics::HexapodGeometry& off, double tolerance) {
+    StrutLengths load;
+    if (!loads_when_off(machine, geometry, off, X_BT, load)) return false;
+    for (std::size_t i = 0; i < kStruts; ++i)
+      variance[i] += std::pow((load[i] - at[i]) / kStep * tolerance, 2);
+    return true;
+  };
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      kinematics::HexapodGeometry base = geometry, platform = geometry;
+      base.base_joint[i][k] += kStep;
+      platform.platform_joint[i][k] += kStep;
+      if (!add(base, tolerances.joint_position) || !add(platform, tolerances.joint_position)) return false;
+    }
+    kinematics::HexapodGeometry off = geometry;
+    off.length_offset[i] += kStep;
+    if (!add(off, tolerances.length_offset)) return false;
+  }
+  for (std::size_t i = 0; i < kStruts; ++i) sigma[i] = std::sqrt(variance[i]);
+  return true;
+}
 
 bool strut_loads(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
                  const Pose& X_BT, StrutLengths& load) {
@@ -77,13 +115,16 @@ kinematics::PerStrut<double> probable_sides(const machine::MachineDescription& m
 }
 
 kinematics::PerStrut<Approach> resting_sides(const machine::MachineDescription& machine,
-                                             const kinematics::HexapodGeometry& geometry, const Pose& X_BT) {
+                                             const kinematics::HexapodGeometry& geometry,
+                                             const machine::ToleranceSet& tolerances, const Pose& X_BT) {
   kinematics::PerStrut<Approach> sides{};
-  StrutLengths load;
-  if (!strut_loads(machine, geometry, X_BT, load)) return sides;
+  StrutLengths load, sigma;
+  if (!strut_loads(machine, geometry, X_BT, load) || !load_sigmas(machine, geometry, tolerances, X_BT, sigma))
+    return sides;
   const HexapodModel& hexapod = machine.hexapod();
-  const double margin = hexapod.play.friction + kLoadKnown, nut = kGravity * hexapod.masses.nut;
+  const double nut = kGravity * hexapod.masses.nut;
   for (std::size_t i = 0; i < kStruts; ++i) {
+    const double margin = hexapod.play.friction + kCables + kSure * sigma[i];
     if (load[i] > margin) sides[i] = Approach::lengthening;
     if (load[i] < -nut - margin) sides[i] = Approach::shortening;
   }

@@ -12,6 +12,11 @@ namespace understudy::calibration {
 bool strut_loads(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
                  const Pose& X_BT, StrutLengths& load);
 
+/// 1 sigma of these loads on a machine whose geometry is off by `tolerances`, to first order. False where
+/// strut_loads() is.
+bool load_sigmas(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                 const machine::ToleranceSet& tolerances, const Pose& X_BT, StrutLengths& sigma);
+
 /// Where each play most probably rests: 1 as if the strut had come by lengthening (it pushes), -1 as by
 /// shortening (it pulls), between them where the nut's own weight keeps one play on either side.
 kinematics::PerStrut<double> probable_sides(const machine::MachineDescription& machine,
@@ -19,8 +24,9 @@ kinematics::PerStrut<double> probable_sides(const machine::MachineDescription& m
 
 /// A strut that pushes rests as if it had come by lengthening, one that pulls as by shortening. `unknown`
 /// within friction of the joints, between the sides (where the nut's own weight keeps one play on either),
-/// and nearer to that than a machine before calibration tells (0.1 N).
+/// and nearer to that than three sigma of the load, for a geometry that is off by `tolerances`, and 0.1 N.
 kinematics::PerStrut<Approach> resting_sides(const machine::MachineDescription& machine,
-                                             const kinematics::HexapodGeometry& geometry, const Pose& X_BT);
+                                             const kinematics::HexapodGeometry& geometry,
+                                             const machine::ToleranceSet& tolerances, const Pose& X_BT);
 
 }  // namespace understudy::calibration

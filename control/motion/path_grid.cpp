@@ -82,8 +82,12 @@ ChannelArray corner_jump(const PathSegment& before, const PathSegment& after, in
 
 void append_pieces(const PathSegment& segment, const SegmentPlace& place, const PathKinematics& kinematics,
                    const PlannerLimits& limits, kinematics::AxisVector& position, std::deque<Piece>& pieces) {
-  const auto& [motion, channels] = limits;
+  const MotionLimits& motion = limits.motion;
+  ChannelLimits channels = limits.channels;
+  double& tip_acceleration = channels.acceleration[channels.count - 1];
+  tip_acceleration = std::min(tip_acceleration, segment.acceleration);
   Piece piece;
+  piece.tip_acceleration = segment.acceleration;
   piece.segment = place.number;
   piece.rest = segment.rest;
   piece.jump = place.jump;

@@ -26,6 +26,8 @@ void require_pose(const toolpath::Step& step) {
 void require_figures(const toolpath::Step& step) {
   if (!std::isfinite(step.duration) || step.duration < 0)
     refuse(step.line, "duration is " + std::to_string(step.duration) + " s, must be 0 or more");
+  if (!(step.acceleration > 0))
+    refuse(step.line, "acceleration is " + std::to_string(step.acceleration) + " m/s^2, must be above 0");
   if (!std::isfinite(step.filament)) refuse(step.line, "the filament's length is not finite");
 }
 
@@ -71,6 +73,7 @@ PathSegment make_segment(const toolpath::Step& step, const Pose& X_WT_begin,
   segment.line = step.line;
   segment.X_WT_begin = segment.X_WT_end = X_WT_begin;
   segment.filament_end = step.filament;
+  segment.acceleration = step.acceleration;
   segment.rotary = rotary;
   if (toolpath::moves(step)) {
     segment.travel = step.X_WT.translation() - X_WT_begin.translation();

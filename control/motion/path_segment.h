@@ -25,12 +25,13 @@ constexpr double kShortestPath = 1e-9;  // [m]
 struct PathSegment {
   Pose X_WT_begin = Pose::Identity();
   Pose X_WT_end = Pose::Identity();
-  Vec3 travel{0, 0, 0};     ///< [m], p_end - p_begin in W
-  Vec3 turn_axis{0, 0, 1};  ///< unit, in T at the beginning
-  double turn = 0;          ///< [rad]
-  double length = 0;        ///< [m] of s
-  double speed = 0;         ///< [m/s] of s, programmed
-  double rest = 0;          ///< [s], for a segment of no length: a dwell, or filament fed at rest
+  Vec3 travel{0, 0, 0};                        ///< [m], p_end - p_begin in W
+  Vec3 turn_axis{0, 0, 1};                     ///< unit, in T at the beginning
+  double turn = 0;                             ///< [rad]
+  double length = 0;                           ///< [m] of s
+  double speed = 0;                            ///< [m/s] of s, programmed
+  double acceleration = toolpath::kUnlimited;  ///< [m/s^2] of the tip, programmed
+  double rest = 0;  ///< [s], for a segment of no length: a dwell, or filament fed at rest
   double filament_begin = 0, filament_end = 0;  ///< [m], absolute
   int line = 0;
   std::size_t step = 0;

@@ -31,7 +31,8 @@ Bounds bounds_of(const Piece& piece, const ChannelLimits& limits) {
   Bounds bounds;
   for (int i = 0; i < limits.count; ++i) {
     const double curvature = (piece.slope_end[i] - piece.slope_begin[i]) / piece.length;
-    const double C = limits.acceleration[i] * (1 - piece.used[i]);
+    double C = limits.acceleration[i] * (1 - piece.used[i]);
+    if (i == limits.count - 1) C = std::min(C, piece.tip_acceleration);
     bounds.add(piece.slope_begin[i], curvature, C);
     // At the end x has become x + 2 length u.
     bounds.add(piece.slope_end[i] + 2 * piece.length * curvature, curvature, C);

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 
 #include "control/motion/path_segment.h"
 
@@ -16,11 +17,13 @@ namespace understudy::control {
 
 /// A piece of a segment, with the node at its beginning.
 struct Piece {
-  std::size_t segment = 0;                  ///< running number
-  double begin = 0;                         ///< [m], s in its segment
-  double length = 0;                        ///< [m]; 0 for a rest
-  double rest = 0;                          ///< [s]
-  double speed_max = 0;                     ///< [m/s]
+  std::size_t segment = 0;  ///< running number
+  double begin = 0;         ///< [m], s in its segment
+  double length = 0;        ///< [m]; 0 for a rest
+  double rest = 0;          ///< [s]
+  double speed_max = 0;     ///< [m/s]
+  /// [m/s^2] of the last channel, the tip, besides its limit. Not at corners.
+  double tip_acceleration = std::numeric_limits<double>::infinity();
   ChannelArray slope_begin{}, slope_end{};  ///< dq/ds
   ChannelArray used{};  ///< part of each acceleration limit that jumps at corners near by may take
 

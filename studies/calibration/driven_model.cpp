@@ -43,7 +43,8 @@ ErrorModel tip_errors_of(const BundleProblem& problem, const DrivenModel& model,
     for (Index i = 0; i < leads; ++i)
       rows.col(own + i) = by_length.col(i).head<3>() * sample.displacement[static_cast<std::size_t>(i)];
     Twist variance = Twist::Constant(std::pow(problem.drives.length, 2));
-    const auto sure = resting_sides(machine, model.parameters.geometry, X_BT[k]);
+    const auto sure =
+        resting_sides(machine, model.parameters.geometry, machine.tolerances.after_calibration, X_BT[k]);
     for (std::size_t i = 0; i < kStruts; ++i)
       if (sure[i] == Approach::unknown)
         variance[static_cast<Index>(i)] += std::pow(problem.drives.side_unknown, 2);

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "calibration/bundle/calibrate_bundle.h"
+#include "calibration/bundle/sides_by_loads.h"
 #include "calibration/machine/strut_sides.h"
 #include "calibration/pose_choice.h"
 #include "studies/calibration/calibration_trial.h"
@@ -173,7 +174,7 @@ PlantTrials::Measured PlantTrials::measure(const Condition& condition, int machi
     own.number = static_cast<int>(j) + 1;
     own.time = session->now();
     own.X_BT = asked[j];
-    own.approach = resting_sides(machine_, nominal_, asked[j]);
+    own.approach = resting_sides(machine_, nominal_, machine_.tolerances.manufactured, asked[j]);
     for (std::size_t i = 0; i < kStruts; ++i) own.displacement[i] = stops[j][i] - nominal_.length_offset[i];
     for (std::size_t c = 0; c < 2; ++c)
       for (std::size_t k = 0; k < 3; ++k)
@@ -270,7 +271,7 @@ Answer PlantTrials::answer(const Method& method, const Measured& measured, Plant
     model = {found.parameters, {}, method.estimator->unknowns().play};
   } else {
     problem = bundle_for(method, measured.bundle);
-    adjusted = adjust_bundle(problem);
+    adjusted = adjust_bundle_by_loads(machine_, problem);
     if (!adjusted.ok()) result.failure = to_string(adjusted.status);
     result.misfit = std::sqrt(adjusted.chi_square / static_cast<double>(adjusted.degrees_of_freedom));
     model = {adjusted.state.machine, adjusted.state.lead, method.with_play};

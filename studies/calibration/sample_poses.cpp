@@ -216,7 +216,9 @@ std::vector<MeasuredPose> asked_poses(const SamplePosesRequest& request, const M
     if (mechanism->inverse(X_BT, {}, pose.axes) != kinematics::SolveStatus::ok) continue;
     pose.X_WT = machine.X_WB * X_BT;
     if (!request.engine.empty() && !machine.is_chain())
-      pose.approach = resting_sides(machine, machine.hexapod().geometry, X_BT);
+      pose.approach = resting_sides(
+          machine, machine.hexapod().geometry,
+          machine.calibration ? machine.tolerances.after_calibration : machine.tolerances.manufactured, X_BT);
     asked.push_back(std::move(pose));
   }
   return asked;

@@ -78,7 +78,7 @@ std::string bent(const Folder& folder, const std::string& file, const std::strin
 TEST(ScenarioRun, APlanStandsForTheProgramThatItMakes) {
   const Folder folder;
   std::filesystem::copy_file(kSource + "/models/parts/bent_bar.stl", folder / "bar.stl");
-  const std::string words = "support-free bar.stl --layer 0.5 --layer-range 0.2,0.8 --width 1";
+  const std::string words = "support-free bar.stl --layer 0.8 --layer-range 0.4,1.0 --width 2";
   const auto file = bent(folder, "bar.yaml", "plan: " + words, "metric: print.duration_s, min: 60, unit: s");
   const Outcome planned = understudy("scenario run " + file + " --out " + (folder / "out"));
   ASSERT_EQ(planned.status, 0) << planned.out << planned.err;
@@ -87,7 +87,7 @@ TEST(ScenarioRun, APlanStandsForTheProgramThatItMakes) {
   EXPECT_THAT(program, ::testing::StartsWith("; planned by: understudy plan " + words));
   const auto lines_after_first = [](const std::string& text) { return text.substr(text.find('\n')); };
   ASSERT_EQ(understudy("plan support-free " + (folder / "bar.stl") +
-                       " --layer 0.5 --layer-range 0.2,0.8 --width 1 --machine five-axis -o " +
+                       " --layer 0.8 --layer-range 0.4,1.0 --width 2 --machine five-axis -o " +
                        (folder / "direct.gcode"))
                 .status,
             0);

@@ -108,6 +108,7 @@ Step GcodeState::chord(Block& block) {
   Step chord = step(StepKind::move, block.line());
   chord.filament = fed_filament(block);
   if (chord.filament > 0) chord.kind = StepKind::print;
+  chord.acceleration = acceleration_of(chord);
   set_pace(block, chord);
   return chord;
 }

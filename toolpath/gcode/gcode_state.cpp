@@ -114,6 +114,7 @@ void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
   set_nozzle(block, steps);
   set_fan(block, steps);
   set_retraction(block);
+  set_acceleration(block);
   if (block.find(Command::flow) != nullptr)
     if (const auto flow = percent(block, "flow")) flow_ = *flow / 100;
   if (block.find(Command::speed) != nullptr)
@@ -177,6 +178,23 @@ std::optional<double> GcodeState::percent(Block& block, const char* what) const 
     block.fail(
         *s, fmt::format("'{}': the {} is outside {} to {} %", s->text, what, kLeastPercent, kLargestPercent));
   return s->value;
+}
+
+/// M204: P of moves that feed filament, T of the others, S of both. R is of retractions, which no move is.
+void GcodeState::set_acceleration(Block& block) {
+  if (block.find(Command::acceleration) == nullptr) return;
+  block.take('R');
+  const auto set = [&](char letter, double& acceleration) {
+    const Word* word = block.take(letter);
+    if (word == nullptr) return;
+    acceleration = length_of(block, *word, unit_);
+    if (!(acceleration > 0))
+      block.fail(*word, fmt::format("'{}': an acceleration is in mm/s^2, above 0", word->text));
+  };
+  set('S', acceleration_);
+  if (block.find('S') != nullptr) travel_acceleration_ = acceleration_;
+  set('P', acceleration_);
+  set('T', travel_acceleration_);
 }
 
 /// M207: what the firmware does at G10.
@@ -294,6 +312,7 @@ void GcodeState::move(Block& block, std::vector<Step>& steps) {
   Step next = step(paced ? StepKind::move : StepKind::travel, block.line());
   next.filament = fed_filament(block);
   if (next.filament > 0) next.kind = StepKind::print;
+  next.acceleration = acceleration_of(next);
   if (paced) set_pace(block, next);
   if (next.filament != 0 && next.duration == 0 && !tip_moves(from, position_.X_WT())) {
     next.duration = std::abs(next.filament) / next.feed;

@@ -75,6 +75,7 @@ class GcodeState {
   std::optional<double> percent(Block& block, const char* what) const;
   void select_tool(Block& block);
   void set_retraction(Block& block);
+  void set_acceleration(Block& block);
   void retract(Block& block, std::vector<Step>& steps);
   void set_position(Block& block);
   void move(Block& block, std::vector<Step>& steps);
@@ -84,6 +85,9 @@ class GcodeState {
   bool is_arc() const { return motion_ == Motion::clockwise_arc || motion_ == Motion::counterclockwise_arc; }
   bool is_curve() const { return is_arc() || motion_ == Motion::spline; }
   void set_pace(const Block& block, Step& step) const;
+  double acceleration_of(const Step& step) const {
+    return step.kind == StepKind::print ? acceleration_ : travel_acceleration_;
+  }
 
   struct Saved {
     GcodePosition position;
@@ -97,16 +101,18 @@ class GcodeState {
   Step step(StepKind kind, int line) const;
 
   GcodePosition position_;
-  double extruder_ = 0;               // [m], reading of E
-  double fed_ = 0, most_fed_ = 0;     // [m]
-  double flow_ = 1;                   // filament fed for one that is programmed (M221)
-  double speed_ = 1;                  // of feeds, for what is programmed (M220)
-  std::optional<double> retraction_;  // [m], of G10 (M207)
-  double retraction_feed_ = 0;        // [m/s]
-  bool retracted_ = false;            // by G10
-  int plane_normal_ = 2;              // of arcs (G17, G18, G19)
-  std::optional<double> tool_;        // number of the only extruder, once a line has said it
-  double unit_ = kMillimetre;         // [m]
+  double extruder_ = 0;                      // [m], reading of E
+  double fed_ = 0, most_fed_ = 0;            // [m]
+  double flow_ = 1;                          // filament fed for one that is programmed (M221)
+  double speed_ = 1;                         // of feeds, for what is programmed (M220)
+  std::optional<double> retraction_;         // [m], of G10 (M207)
+  double retraction_feed_ = 0;               // [m/s]
+  double acceleration_ = kUnlimited;         // [m/s^2], of moves that feed filament (M204)
+  double travel_acceleration_ = kUnlimited;  // of the others
+  bool retracted_ = false;                   // by G10
+  int plane_normal_ = 2;                     // of arcs (G17, G18, G19)
+  std::optional<double> tool_;               // number of the only extruder, once a line has said it
+  double unit_ = kMillimetre;                // [m]
   bool relative_ = false;
   bool relative_extrusion_ = false;
   bool inverse_time_ = false;

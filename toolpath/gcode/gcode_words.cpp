@@ -50,6 +50,7 @@ constexpr Meaning kMeanings[] = {
     {'M', 109, Command::heat_and_wait, Group::process},
     {'M', 106, Command::fan_on, Group::process},
     {'M', 107, Command::fan_off, Group::process},
+    {'M', 204, Command::acceleration, Group::process},
     {'M', 207, Command::retraction, Group::process},
     {'M', 220, Command::speed, Group::process},
     {'M', 221, Command::flow, Group::process},
@@ -87,7 +88,6 @@ constexpr WithoutEffect kWithoutEffect[] = {
     {'M', 191, "SR"},            // chamber temperature, and wait
     {'M', 201, "XYZETFPS"},      // largest accelerations
     {'M', 203, "XYZET"},         // largest feeds
-    {'M', 204, "SPRT"},          // accelerations
     {'M', 205, "XYZEBSTJ"},      // jerk, junction deviation, least feeds
     {'M', 300, "SP"},            // a beep
     {'M', 302, "SP"},            // cold extrusion

@@ -38,6 +38,7 @@ enum class Command {
   heat_and_wait,         // M109
   fan_on,                // M106
   fan_off,               // M107
+  acceleration,          // M204
   retraction,            // M207
   speed,                 // M220
   flow,                  // M221

@@ -2,9 +2,11 @@
 // and from forward kinematics alone.
 #pragma once
 
+#include <cmath>
 #include <stdexcept>
 
 #include "calibration/bundle/bundle_problem.h"
+#include "calibration/machine/strut_sides.h"
 #include "calibration/pose_choice.h"
 #include "calibration/synthetic.h"
 #include "core/random_vector.h"
@@ -25,6 +27,7 @@ struct DrawnSetting {
   DriveTolerance drives{.length = 3.5e-6, .lead = 0.17e-3};
   std::size_t poses = 24;
   bool noise = true;
+  double play = 0;  ///< [m], of each strut: gravity decides where it rests
 };
 
 /// What was measured, and the truth behind it.
@@ -103,6 +106,10 @@ inline DrawnBundle draw_bundle(const DrawnSetting& setting, std::uint64_t seed) 
       lengths[i] = drawn.truth.machine.geometry.length_offset[i] +
                    (1 + drawn.truth.lead[i]) * pose.displacement[i] +
                    noise * setting.drives.length * random.normal();
+    StrutLengths load;
+    if (!strut_loads(hexapod(), drawn.truth.machine.geometry, X_BT, load))
+      throw std::logic_error("a reachable pose is singular");
+    for (std::size_t i = 0; i < kStruts; ++i) lengths[i] -= std::copysign(0.5 * setting.play, load[i]);
     const auto reached = kinematics::forward(drawn.truth.machine.geometry, lengths, X_BT);
     if (reached.status != kinematics::SolveStatus::ok) throw std::logic_error("a true pose is out of reach");
     drawn.truth.poses.push_back(reached.X_BT);

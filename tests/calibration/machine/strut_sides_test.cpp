@@ -43,7 +43,7 @@ TEST(StrutSides, LoadsCarryThePlatformAndItsNuts) {
 
 TEST(StrutSides, APulledStrutRestsAsIfItHadShortened) {
   const auto machine = hexapod();
-  for (const Approach side : resting_sides(machine, machine.hexapod().geometry, machine.X_BT_home))
+  for (const Approach side : resting_sides(machine, machine.hexapod().geometry, {}, machine.X_BT_home))
     EXPECT_EQ(side, Approach::shortening);
 }
 
@@ -51,14 +51,14 @@ TEST(StrutSides, APulledStrutRestsAsIfItHadShortened) {
 TEST(StrutSides, AMachineThatStandsPushes) {
   auto machine = hexapod();
   machine.X_WB = machine.X_WB * make_pose(exp_rotation(Vec3(std::numbers::pi, 0, 0)), Vec3(0, 0, 0));
-  for (const Approach side : resting_sides(machine, machine.hexapod().geometry, machine.X_BT_home))
+  for (const Approach side : resting_sides(machine, machine.hexapod().geometry, {}, machine.X_BT_home))
     EXPECT_EQ(side, Approach::lengthening);
 }
 
 TEST(StrutSides, FrictionAboveTheLoadLeavesTheSideUnknown) {
   auto machine = hexapod();
   machine.hexapod().play.friction = 10;
-  for (const Approach side : resting_sides(machine, machine.hexapod().geometry, machine.X_BT_home))
+  for (const Approach side : resting_sides(machine, machine.hexapod().geometry, {}, machine.X_BT_home))
     EXPECT_EQ(side, Approach::unknown);
 }
 

@@ -46,6 +46,19 @@ TEST(MotionPlanner, StraightMoveTakesTheTimeOfTheTrapezoid) {
   expect_at_rest_at(points.back(), X_WT);
 }
 
+// A fifth of the machine's 1 m/s^2, and ten times as much, which the machine does not have.
+TEST(MotionPlanner, TheAccelerationOfAStepCountsWhereItIsBelowTheMachines) {
+  const HexapodForTest hexapod;
+  const double d = 0.010, v = 0.020, a = hexapod.limits.tip_acceleration;
+  for (const double programmed : {a / 5, 10 * a}) {
+    MotionPlanner planner = hexapod.planner();
+    Step step = hexapod.print_to(hexapod.at({0, 0, -d}), v, 1);
+    step.acceleration = programmed;
+    const double expected = d / v + v / std::min(a, programmed);
+    expect_duration(stream(planner, {step}), expected, hexapod.limits.cycle_time, 3);
+  }
+}
+
 TEST(MotionPlanner, ShortMoveTakesTheTimeOfTheTriangle) {
   const HexapodForTest hexapod;
   MotionPlanner planner = hexapod.planner();

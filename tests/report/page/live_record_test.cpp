@@ -9,7 +9,8 @@ namespace understudy::report {
 namespace {
 
 rehearsal::TracePoint at(double time) {
-  rehearsal::TracePoint point = sample_go().trace.front();
+  static const rehearsal::TracePoint first = sample_go().trace.front();
+  rehearsal::TracePoint point = first;
   point.time = time;
   return point;
 }

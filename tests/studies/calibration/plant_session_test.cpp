@@ -152,7 +152,7 @@ TEST(PlantSession, PlaysRestWhereTheControllerSaysTheyDo) {
   const auto& geometry = machine.hexapod().geometry;
   int told = 0, pushed = 0;
   for (const Pose& X_BT : some_poses(machine, 40)) {
-    const auto sides = calibration::resting_sides(machine, geometry, X_BT);
+    const auto sides = calibration::resting_sides(machine, geometry, {}, X_BT);
     StrutLengths longer;
     bool known = true;
     for (std::size_t i = 0; i < 6; ++i) {
