@@ -44,13 +44,14 @@ from ._core import (  # noqa: E402
     read_gap,
     sample_poses,
 )
+from ._campaign import Campaign, campaign, read_campaign  # noqa: E402
 from ._planning import Program, plan  # noqa: E402
 from ._rehearsal import rehearse  # noqa: E402
 from ._twin import Twin  # noqa: E402
 
 __all__ = [
-    "SOLVE_STATUS", "Calibration", "Frame", "InputError", "Machine", "MachineError", "Part", "Problem", "Program",
-    "Record", "State", "Status", "Twin", "UrgentCommand", "__version__", "benchmark_calibration", "benchmark_gap",
-    "calibrate", "estimator_names", "laser", "machine_names", "measure_dot", "microscope", "models_folder", "plan",
-    "read_gap", "rehearse", "sample_poses",
+    "SOLVE_STATUS", "Calibration", "Campaign", "Frame", "InputError", "Machine", "MachineError", "Part", "Problem",
+    "Program", "Record", "State", "Status", "Twin", "UrgentCommand", "__version__", "benchmark_calibration",
+    "benchmark_gap", "calibrate", "campaign", "estimator_names", "laser", "machine_names", "measure_dot",
+    "microscope", "models_folder", "plan", "read_campaign", "read_gap", "rehearse", "sample_poses",
 ]

@@ -2,7 +2,7 @@
 import os
 import sys
 
-from ._planning import command
+from ._command import command
 
 
 def main() -> None:

@@ -1,17 +1,14 @@
 """plan(): the planners, as `understudy plan` has them."""
 from __future__ import annotations
 
-import functools
 import os
-import shutil
-import subprocess
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Union
 
-from . import _core
+from ._command import run
 
 Value = Union[str, "os.PathLike[str]", bool, int, float, Sequence[float], Sequence[str]]
 
@@ -28,27 +25,6 @@ class Program:
         """Writes the text there; returns the path."""
         Path(path).write_text(self.text)
         return Path(path)
-
-
-def command() -> str:
-    """The command `understudy` that belongs to this module: $UNDERSTUDY_COMMAND, in the package, in the build tree,
-    or on the PATH; of the module's version."""
-    here = Path(__file__).parent
-    places = [os.environ.get("UNDERSTUDY_COMMAND"), here / "bin/understudy", here / "../../cli/understudy",
-              shutil.which("understudy")]
-    found = next((str(place) for place in places if place and os.access(place, os.X_OK)), None)
-    if not found:
-        raise _core.InputError("plan() runs the command `understudy`, which is not on the PATH; UNDERSTUDY_COMMAND "
-                               "may name it")
-    _check_version(found)
-    return found
-
-
-@functools.lru_cache(maxsize=None)
-def _check_version(found: str) -> None:
-    answer = subprocess.run([found, "--version"], capture_output=True, text=True, check=False).stdout.strip()
-    if answer != f"understudy {_core.__version__}":
-        raise _core.InputError(f"{found} is '{answer}', this module is of version {_core.__version__}")
 
 
 def _words(key: str, value: Value) -> list[str]:
@@ -83,14 +59,8 @@ def plan(kind: str, part: str | os.PathLike[str] | None = None, /, **options: Va
     """
     name = f"{kind}.gcode"
     with tempfile.TemporaryDirectory(prefix="understudy-") as folder:
-        words = [command(), "plan", kind, *([_path(part)] if part is not None else [])]
+        words = ["plan", kind, *([_path(part)] if part is not None else [])]
         for key, value in options.items():
             words += _words(key, value)
-        run = subprocess.run([*words, "-o", name], cwd=folder, capture_output=True, text=True, check=False)
-        told = (run.stdout + run.stderr).strip()
-        if run.returncode == 2:
-            raise _core.InputError(run.stderr.strip().removeprefix("understudy: "))
-        if run.returncode != 0:
-            raise _core.MachineError(run.stderr.strip().removeprefix("understudy: ") or
-                                     f"{words[0]} ended with status {run.returncode}")
+        told = run([*words, "-o", name], folder)
         return Program((Path(folder) / name).read_text(), name, told)

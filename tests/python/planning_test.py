@@ -46,13 +46,13 @@ class ThePlanners(unittest.TestCase):
                 understudy.plan(kind, part, **options)
 
     def test_a_command_of_another_version_is_refused(self):
-        from understudy import _planning
+        from understudy import _command
         with tempfile.TemporaryDirectory() as folder:
             other = Path(folder) / "understudy"
             other.write_text("#!/bin/sh\necho understudy 0.0.1\n")
             other.chmod(0o755)
             with self.assertRaisesRegex(InputError, "is 'understudy 0.0.1', this module is of version"):
-                _planning._check_version(str(other))
+                _command._check_version(str(other))
 
 
 if __name__ == "__main__":
