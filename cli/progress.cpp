@@ -36,8 +36,12 @@ ProgressLine::ProgressLine(bool wanted, ProgressUnit unit) : terminal_(::isatty(
                   std::move(unit));
 }
 
-ProgressLine::~ProgressLine() {
+ProgressLine::~ProgressLine() { clear(); }
+
+void ProgressLine::clear() {
+  const std::scoped_lock lock(mutex_);
   if (terminal_ && shown_) fmt::print(stderr, "\r\033[K");
+  shown_ = false;
 }
 
 void ProgressLine::show(double share, const std::string& what) {

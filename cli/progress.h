@@ -19,6 +19,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(double share, const std::string& what);
+  /// Off the terminal, so that other text may be printed; the next show() brings it back.
+  void clear();
   /// show(), for who takes a function; not to be called after the line's end.
   Progress teller();
 

@@ -182,10 +182,21 @@ void check_film(const RehearseOptions& asked) {
   if (asked.video.empty()) return;
   if (!asked.request.keep_scene)
     throw InputError("--video needs the drawings that --no-pictures leaves out: leave one of them out");
-  if (among_results(asked.video, asked.folder, "elsewhere") != asked.video)
+  if (is_among(asked.video, asked.folder))
     throw InputError(fmt::format("--video {} lies in the folder of results {}: name a place outside of it",
                                  asked.video, asked.folder));
   check_video(asked.video);
+}
+
+/// Of results that are there: an interrupt costs the film alone.
+void write_film(const rehearsal::Record& record, const RehearseOptions& asked) {
+  if (record.trace.empty()) {
+    fmt::print(stderr, "understudy: note: nothing was simulated: {} is not written\n", asked.video);
+    return;
+  }
+  const report::Video film = video_of(asked.folder, {}, asked.output.quiet);
+  write_file(asked.video, film.bytes);
+  if (!asked.output.quiet && !asked.output.json) fmt::print("video: {} ({})\n", asked.video, film.codec);
 }
 
 int rehearse(const RehearseOptions& asked) {
@@ -199,13 +210,11 @@ int rehearse(const RehearseOptions& asked) {
   const rehearsal::Record record =
       rehearse_into(request, out.path(), asked.output.quiet, watched ? &watched->record : nullptr);
   stop_if_interrupted();
-  const std::string film =
-      asked.video.empty() ? "" : video_of(out.path(), report::VideoSettings{}, asked.output.quiet).bytes;
-  if (!asked.video.empty()) write_file(asked.video, film);
   out.commit();
   if (watched)
     watched->server.finish(read_file((std::filesystem::path(asked.folder) / "report.html").string()));
   tell(record, asked, request.program);
+  if (!asked.video.empty()) write_film(record, asked);
   return record.go ? kGood : kNo;
 }
 

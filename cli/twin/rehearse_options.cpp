@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 
 namespace understudy::cli {
 namespace {
+namespace fs = std::filesystem;
 
 void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
   command
@@ -152,6 +154,14 @@ void parse_command(CLI::App& app, const std::string& command_line) {
   }
 }
 
+/// Its name from the folder on, where it lies in it.
+std::optional<fs::path> place_among(const std::string& file, const std::string& folder) {
+  const auto whole = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
+  fs::path name = whole(file).lexically_relative(whole(fs::path(folder) / "."));
+  if (name.empty() || *name.begin() == "..") return std::nullopt;
+  return name;
+}
+
 }  // namespace
 
 void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
@@ -201,12 +211,15 @@ std::map<std::string, std::string> rehearse_option_words(const std::string& comm
   return given;
 }
 
+bool is_among(const std::string& file, const std::string& folder) {
+  return place_among(file, folder).has_value();
+}
+
 std::string among_results(const std::string& file, const std::string& folder, const std::string& working) {
-  namespace fs = std::filesystem;
   if (file.empty()) return file;
-  const auto whole = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
-  const fs::path name = whole(file).lexically_relative(whole(fs::path(folder) / "."));
-  if (name.empty() || *name.begin() == "..") return file;
+  const auto among = place_among(file, folder);
+  if (!among) return file;
+  const fs::path name = *among;
   fs::create_directories((working / name).parent_path());
   return (working / name).string();
 }

@@ -37,6 +37,9 @@ RehearseOptions read_rehearse_command(const std::string& command_line);
 /// "--gap-control". Throws as read_rehearse_command().
 std::map<std::string, std::string> rehearse_option_words(const std::string& command_line);
 
+/// Whether `file` lies in `folder` or below it; neither need be there.
+bool is_among(const std::string& file, const std::string& folder);
+
 /// `file` where it lies outside of `folder`; else its place in `working`, where that folder is being made.
 std::string among_results(const std::string& file, const std::string& folder, const std::string& working);
 
