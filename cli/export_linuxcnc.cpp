@@ -7,7 +7,7 @@
 #include "cli/machine_option.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
-#include "drivers/linuxcnc/linuxcnc_files.h"
+#include "drivers/hal/linuxcnc_files.h"
 #include "machine/description.h"
 
 namespace understudy::cli {

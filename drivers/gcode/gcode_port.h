@@ -13,8 +13,8 @@
 #include "drivers/gcode/gcode_session.h"
 #include "drivers/gcode/gcode_words.h"
 #include "drivers/gcode/path_sampler.h"
-#include "drivers/linuxcnc/linuxcnc_session.h"
-#include "drivers/linuxcnc/pose_words.h"
+#include "drivers/gcode/linuxcnc_session.h"
+#include "drivers/pose_words.h"
 #include "machine/description.h"
 
 namespace understudy::drivers {

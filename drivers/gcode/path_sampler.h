@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/gcode/block_fitter.h"
-#include "drivers/linuxcnc/pose_words.h"
+#include "drivers/pose_words.h"
 #include "machine/description.h"
 #include "machine/setpoint_queue.h"
 

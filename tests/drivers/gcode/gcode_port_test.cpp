@@ -215,11 +215,13 @@ TEST(GcodePort, SaysWhichOptionIsWrong) {
     return std::string("not refused");
   };
   using testing::HasSubstr;
-  EXPECT_THAT(refusal("serial:///d"), HasSubstr("family=grblhal, marlin or reprapfirmware"));
+  EXPECT_THAT(refusal("serial:///d"), HasSubstr("family=grblhal, marlin, reprapfirmware or linuxcnc"));
   EXPECT_THAT(refusal("serial:///d?family=marlyn"), HasSubstr("did you mean 'marlin'"));
   EXPECT_THAT(refusal("serial:///d?family=marlin&axes=XYZ"), HasSubstr("names 3 axes, and hexapod has 6"));
   EXPECT_THAT(refusal("serial:///d?family=marlin&axes=XYZUVV"), HasSubstr("and once"));
   EXPECT_THAT(refusal("serial:///d?family=marlin&latency_ms=1"), HasSubstr("no number from 50 to 2000"));
+  EXPECT_THAT(refusal("serial:///d?family=linuxcnc"), HasSubstr("tcp://host:port"));
+  EXPECT_THAT(refusal("tcp://h:5007?family=linuxcnc&axes=XYZUVW"), HasSubstr("has no such letters"));
   EXPECT_THAT(refusal("serial:///d?family=marlin&home=maybe"), HasSubstr("yes or no"));
 }
 

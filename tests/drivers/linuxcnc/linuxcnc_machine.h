@@ -19,7 +19,7 @@
 #include "core/error.h"
 #include "drivers/gcode/byte_link.h"
 #include "drivers/hal/child_process.h"
-#include "drivers/linuxcnc/linuxcnc_files.h"
+#include "drivers/hal/linuxcnc_files.h"
 #include "machine/description.h"
 
 #define SKIP_WITHOUT_LINUXCNC()                         \

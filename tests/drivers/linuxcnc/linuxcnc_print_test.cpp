@@ -79,7 +79,7 @@ class RestWatch : public control::PrintObserver {
 
 void print_helix(int moves) {
   const RunningLinuxcnc linuxcnc;
-  const auto port = open_gcode(parse_port_uri(linuxcnc.uri("&home=yes")), linuxcnc.machine());
+  const auto port = open_gcode(parse_port_uri(linuxcnc.uri("&home=yes&reply_s=20")), linuxcnc.machine());
   const toolpath::Program program = helix(linuxcnc.machine(), moves);
   RestWatch watch(*port, linuxcnc.machine(), program);
   control::PrintOptions options;

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "drivers/linuxcnc/linuxcnc_session.h"
+#include "drivers/gcode/linuxcnc_session.h"
 
 namespace understudy::drivers {
 
@@ -67,7 +67,8 @@ std::string LinuxcncSession::exchange(const std::string& lines, const std::strin
       last = *line;
     }
   }
-  throw MachineError(fmt::format("no linuxcncrsh answers within {:g} s{}", seconds,
+  throw MachineError(fmt::format("no linuxcncrsh answers '{}' within {:g} s{}",
+                                 lines.substr(0, lines.find('\r')), seconds,
                                  last.empty() ? "" : ": it says '" + last.substr(0, 80) + "'"));
 }
 

@@ -1,4 +1,4 @@
-#include "drivers/linuxcnc/linuxcnc_session.h"
+#include "drivers/gcode/linuxcnc_session.h"
 
 #include <algorithm>
 #include <array>
@@ -141,8 +141,11 @@ std::optional<std::string> LinuxcncSession::next_line() {
 void LinuxcncSession::handle(const std::string& line) {
   heard_ = link_.now();
   if (line.starts_with("SET ")) {
-    if (line.ends_with(" NAK"))
-      return fail(Fault::drive, fmt::format("LinuxCNC refuses a line: it says '{}'", line));
+    if (line.ends_with(" NAK")) {
+      refused_ = line;
+      polled_ = 0;  // the error that it has for it is asked for first
+      accept();
+    }
     if (line.ends_with(" ACK")) accept();
     return;
   }
@@ -153,6 +156,8 @@ void LinuxcncSession::handle(const std::string& line) {
   if (line == "MACHINE OFF") return fail(Fault::drive, "LinuxCNC has switched the machine off");
   if (line.starts_with("MACHINE ")) {
     questions_ = 0;  // the last of a round
+    if (!refused_.empty())
+      return fail(Fault::drive, fmt::format("LinuxCNC refuses a line: it says '{}'", refused_));
     settle_position();
   }
 }

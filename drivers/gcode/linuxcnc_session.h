@@ -16,7 +16,7 @@
 #include "drivers/gcode/byte_link.h"
 #include "drivers/gcode/controller.h"
 #include "drivers/gcode/gcode_session.h"
-#include "drivers/linuxcnc/pose_words.h"
+#include "drivers/pose_words.h"
 
 namespace understudy::drivers {
 
@@ -84,7 +84,7 @@ class LinuxcncSession : public Controller {
   int questions_ = 0;          ///< that were asked and not answered
   double polled_ = 0, heard_ = 0;
   Block last_;
-  std::string outgoing_, incoming_;
+  std::string outgoing_, incoming_, refused_;
   std::uint64_t executed_ = 0;
   machine::AxisVector position_{};
   double position_time_ = 0;

@@ -1,4 +1,4 @@
-#include "drivers/linuxcnc/pose_words.h"
+#include "drivers/pose_words.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "drivers/linuxcnc/linuxcnc_files.h"
+#include "drivers/hal/linuxcnc_files.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "drivers/linuxcnc/pose_words.h"
+#include "drivers/pose_words.h"
 
 namespace understudy::drivers {
 namespace {
