@@ -162,7 +162,7 @@ struct BeadIndex::State {
 
   template <typename Core>
   std::optional<Near> nearest(const Core& core, double radius, const Pose& X_WS, double cutoff,
-                              std::size_t before) const;
+                              std::size_t before, std::size_t likely) const;
 };
 
 BeadIndex::BeadIndex() : state_(std::make_unique<State>()) {}
@@ -180,7 +180,8 @@ std::size_t BeadIndex::bytes() const { return sizeof(*this) + state_->tree.bytes
 
 template <typename Core>
 std::optional<BeadIndex::Near> BeadIndex::State::nearest(const Core& core, double radius, const Pose& X_WS,
-                                                         double cutoff, std::size_t before) const {
+                                                         double cutoff, std::size_t before,
+                                                         std::size_t likely) const {
   Closest closest(cutoff);
   const auto bound = [&](const BeadTree::Box& box) {
     return bound_of_box(core, X_WS, box, closest.limit() + radius) - radius;
@@ -191,6 +192,7 @@ std::optional<BeadIndex::Near> BeadIndex::State::nearest(const Core& core, doubl
     const Separation s = separation(core, radius, X_WS, core_of(bead), closest.limit() + kTie);
     closest.offer(s.distance, index);
   };
+  if (likely < tree.size()) visit(likely, tree.bead(likely));
   const BeadTree::Bounds here = bounds_of(core, X_WS);
   const auto region = [&] {
     const Vec3 reach = Vec3::Constant(std::max(0.0, radius + closest.limit()));
@@ -204,15 +206,15 @@ std::optional<BeadIndex::Near> BeadIndex::State::nearest(const Core& core, doubl
 }
 
 std::optional<BeadIndex::Near> BeadIndex::nearest(const ConvexSolid& solid, const Pose& X_WS, double cutoff,
-                                                  std::size_t before) const {
+                                                  std::size_t before, std::size_t likely) const {
   require_finite(X_WS.matrix().allFinite() && !std::isnan(cutoff));
   return std::visit(
-      [&](const auto& core) { return state_->nearest(core, solid.radius, X_WS, cutoff, before); },
+      [&](const auto& core) { return state_->nearest(core, solid.radius, X_WS, cutoff, before, likely); },
       solid.core);
 }
 
 std::optional<BeadIndex::Hit> BeadIndex::ray_hit(const Vec3& origin_W, const Vec3& direction_W, double reach,
-                                                 std::size_t before) const {
+                                                 std::size_t before, std::size_t likely) const {
   require_finite(origin_W.allFinite() && direction_W.allFinite() && !std::isnan(reach));
   const BeadTree& tree = state_->tree;
   const Ray ray{origin_W, direction_W};
@@ -222,6 +224,7 @@ std::optional<BeadIndex::Hit> BeadIndex::ray_hit(const Vec3& origin_W, const Vec
     const auto t = entry(core_of(bead), origin_W, direction_W, closest.limit());
     if (t) closest.offer(*t, index);
   };
+  if (likely < tree.size()) visit(likely, tree.bead(likely));
   tree.search([&] { return along(ray, closest.limit()); },
               [&](const BeadTree::Box& box) { return entry_of_box(box, ray); },
               [&] { return closest.limit(); }, visit);

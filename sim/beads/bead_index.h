@@ -37,9 +37,10 @@ class BeadIndex {
     std::size_t bead = 0;
   };
   /// The nearest of the first `before` beads to a convex solid at X_WS, the deepest where it overlaps some;
-  /// nothing where none is within `cutoff` [m].
+  /// nothing where none is within `cutoff` [m]. `likely`: a bead that may be it, such as that of the pose
+  /// before; it is looked at first, which changes the time alone.
   std::optional<Near> nearest(const ConvexSolid& solid, const Pose& X_WS, double cutoff,
-                              std::size_t before = kAll) const;
+                              std::size_t before = kAll, std::size_t likely = kAll) const;
 
   struct Hit {
     double distance = 0;                       ///< [m], along the ray or from the point (negative inside)
@@ -47,9 +48,9 @@ class BeadIndex {
     std::size_t bead = 0;
   };
   /// Where a ray from `origin` along the unit vector `direction` first enters a bead, at most `reach` away;
-  /// the origin itself where it lies in one.
+  /// the origin itself where it lies in one. `likely` as in nearest().
   std::optional<Hit> ray_hit(const Vec3& origin_W, const Vec3& direction_W, double reach,
-                             std::size_t before = kAll) const;
+                             std::size_t before = kAll, std::size_t likely = kAll) const;
   /// Nearest surface to a point, within `cutoff`. Outside exact; inside, the surface of the bead in which the
   /// point is deepest, which other beads may cover.
   std::optional<Hit> nearest_surface(const Vec3& p_W, double cutoff, std::size_t before = kAll) const;

@@ -190,12 +190,12 @@ Separation BodySet::separation(const BodyPair& pair, const Configuration& config
 }
 
 std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const Configuration& configuration,
-                                                     std::size_t before) {
+                                                     std::size_t before, std::size_t likely) {
   Body& body = bodies_[pair.body];
   if (body.owner == Owner::link) links_.pose(configuration.axes);
   const Pose X_WS = place(body, configuration.X_WT);
   if (body.hull) return sim::nearest_bead(*beads_, *body.hull, X_WS, kBeadReach, before);
-  return beads_->nearest(*body.solid, X_WS, kBeadReach, before);
+  return beads_->nearest(*body.solid, X_WS, kBeadReach, before, likely);
 }
 
 double BodySet::bead_clearance(const BodyPair& pair, const Configuration& configuration, const Bead& bead) {

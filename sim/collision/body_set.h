@@ -55,9 +55,10 @@ class BodySet {
   /// also finds a body that lies wholly inside a closed part, which no surface shows.
   Separation separation(const BodyPair& pair, const Configuration& configuration, bool check_inside);
 
-  /// The nearest of the first `before` beads; nothing within kBeadReach.
+  /// The nearest of the first `before` beads; nothing within kBeadReach. `likely`: one that may be it, see
+  /// BeadIndex.
   std::optional<BeadIndex::Near> nearest_bead(const BodyPair& pair, const Configuration& configuration,
-                                              std::size_t before);
+                                              std::size_t before, std::size_t likely = BeadIndex::kAll);
   /// [m], at least, between the pair's body and one bead.
   double bead_clearance(const BodyPair& pair, const Configuration& configuration, const Bead& bead);
 

@@ -42,6 +42,7 @@ struct CollisionObserver::State {
     double clearance = kInfinity;  // [m], at the last look
     double budget = 0;             // [m], motion left until the next
     std::size_t beads = 0;         // that it counted with, of a printed pair
+    std::size_t nearest_bead = BeadIndex::kAll;
   };
 
   BodySet bodies;
@@ -81,7 +82,8 @@ struct CollisionObserver::State {
     Look& at = looks[index];
     at.clearance = kBeadReach;
     ++checks;
-    if (const auto found = bodies.nearest_bead(pair, configuration, beads_for(pair))) {
+    if (const auto found = bodies.nearest_bead(pair, configuration, beads_for(pair), at.nearest_bead)) {
+      at.nearest_bead = found->bead;
       at.clearance = found->separation.distance;
       if (at.clearance <= near_level(pair) || at.clearance < closest.clearance) {
         const std::string name = "bead of line " + std::to_string(options.beads->bead(found->bead).line);

@@ -37,6 +37,7 @@ struct Ground {
   bool printed = false;                      // it is a bead
   double interface_temperature = kInfinity;  // [K]
   double carrier = kInfinity;                // [m], see lone_strand.h
+  std::size_t bead = BeadIndex::kAll;        // its number
 };
 
 Bead shape_of(const Element& element) {
@@ -156,10 +157,11 @@ struct DepositionObserver::State {
 
   Ground look(const Pose& X_WT, double time, double fan, double temperature) const {
     Ground seen;
-    const auto hit = workpiece->below(X_WT, fresh_from);
+    const auto hit = workpiece->below(X_WT, fresh_from, ground.bead);
     if (!hit) return seen;
     seen.gap = hit->distance;
     seen.printed = hit->body == Workpiece::Body::bead;
+    if (seen.printed) seen.bead = hit->bead;
     // Also a little above the band: the interval that leads there is cut at its upper end.
     if (seen.printed && hit->bead < in_air.size() && in_air[hit->bead] && seen.gap <= band.high + kGapJump)
       seen.carrier = carrier_width(*workpiece, X_WT, *hit, fresh_from);

@@ -1,5 +1,6 @@
 #include "sim/deposition/workpiece.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,7 +12,8 @@ namespace {
 // [m]: air that separates nothing. A bead's chord over a bottle's curve leaves some micrometres, rounding
 // less than one; a layer is ten times as high.
 constexpr double kSlack = 20e-6;
-constexpr double kRounding = 1e-9;  // [m], by which a further step up must lead on
+constexpr double kBeyondTies = 1e-8;  // [m]: beads that answer alike do so within 2 nm
+constexpr double kRounding = 1e-9;    // [m], by which a further step up must lead on
 
 using Body = Workpiece::Body;
 using Hit = Workpiece::Hit;
@@ -91,20 +93,23 @@ std::optional<Hit> Workpiece::top_of_heap(const Vec3& tip_W, const Vec3& axis_W,
   }
 }
 
-std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before) const {
+std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before, std::size_t likely) const {
   require_finite(X_WT.matrix().allFinite());
   const Vec3 tip = X_WT.translation(), axis = tool_axis(X_WT);
   if (const auto top = top_of_heap(tip, axis, before)) return top;
   std::optional<Hit> best;
-  if (const auto hit = beads_.ray_hit(tip, -axis, kGapReach, before)) best = of_bead(*hit);
   if (insert_) {
     const SurfaceGap part = part_gap(*insert_, tip, axis);
-    if (std::isfinite(part.gap))
-      keep_nearer(best, {Body::insert, part.gap, tip - part.gap * axis, part.normal_W, 0});
+    if (std::isfinite(part.gap)) best = Hit{Body::insert, part.gap, tip - part.gap * axis, part.normal_W, 0};
   }
   const SurfaceGap table = table_gap(table_, tip, axis);
   if (std::isfinite(table.gap))
     keep_nearer(best, {Body::table, table.gap, tip - table.gap * axis, table.normal_W, 0});
+  // Beads last: they are many, and what lies below the others is of no interest.
+  const double reach = best ? std::min(kGapReach, best->distance + kBeyondTies) : kGapReach;
+  if (const auto hit = beads_.ray_hit(tip, -axis, reach, before, likely);
+      hit && (!best || hit->distance <= best->distance))
+    best = of_bead(*hit);
   return best;
 }
 

@@ -42,8 +42,9 @@ class Workpiece {
   /// What lies below the tip along the tool axis: `distance` is the true gap, negative where the tip is
   /// inside: then it is the distance up through everything that lies on one another there, to the top of the
   /// heap. Nothing within kGapReach: none. A roof above the tip is no surface to print on. An open insert is
-  /// met from its outside only.
-  std::optional<Hit> below(const Pose& X_WT, std::size_t before = BeadIndex::kAll) const;
+  /// met from its outside only. `likely`: a bead that may lie there, see BeadIndex.
+  std::optional<Hit> below(const Pose& X_WT, std::size_t before = BeadIndex::kAll,
+                           std::size_t likely = BeadIndex::kAll) const;
 
  private:
   std::optional<Hit> top_of_heap(const Vec3& tip_W, const Vec3& axis_W, std::size_t before) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace understudy::sim {
 
@@ -35,6 +36,13 @@ struct BacklashDynamics::Row {
     }
     return edge[3];
   }
+};
+
+/// What all steps of an interval share.
+struct BacklashDynamics::Interval {
+  const AxisMatrix& mass;
+  double h;      // [s], of a step
+  AxisMatrix A;  // of the implicit step: mass / h^2, and the damping / h on the diagonal
 };
 
 BacklashDynamics::BacklashDynamics(int axes) : axes_(axes) {}
@@ -88,15 +96,13 @@ double BacklashDynamics::resting_gap(int axis, const AxisLoad& load) const {
   return gap;
 }
 
-void BacklashDynamics::substep(const AxisMatrix& mass, const AxisLoad& load, double h,
-                               AxisVector& drive_force) {
-  AxisMatrix A = mass / (h * h);
+void BacklashDynamics::substep(const Interval& interval, const AxisLoad& load, AxisVector& drive_force) {
+  const auto& [mass, h, A] = interval;
   const AxisColumn momentum = mass * (column(gap_, axes_) + h * column(rate_, axes_)) / (h * h);
   kinematics::PerAxis<Row> rows;
   AxisVector fixed{};
   for (int i = 0; i < axes_; ++i) {
     const double drag = play(i).damping / h;
-    A(i, i) += drag;
     fixed[i] = momentum[i] + drag * gap_[i] - (load.drive[i] - load.between[i]);
     rows[i] = row(i, load.between[i], gap_[i]);
   }
@@ -104,7 +110,9 @@ void BacklashDynamics::substep(const AxisMatrix& mass, const AxisLoad& load, dou
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0;
     for (int i = 0; i < axes_; ++i) {
-      const double others = fixed[i] - A.row(i).dot(column(next, axes_)) + A(i, i) * next[i];
+      double all = A(i, 0) * next[0];  // in the order of the axes
+      for (int k = 1; k < axes_; ++k) all += A(i, k) * next[k];
+      const double others = fixed[i] - all + A(i, i) * next[i];
       const double g = rows[i].solve(A(i, i), others / A(i, i));
       change = std::max(change, std::abs(g - next[i]));
       next[i] = g;
@@ -116,14 +124,22 @@ void BacklashDynamics::substep(const AxisMatrix& mass, const AxisLoad& load, dou
   gap_ = next;
 }
 
+BacklashDynamics::Interval BacklashDynamics::implicit_step(const AxisMatrix& mass, double h) const {
+  Interval interval{mass, h, mass / (h * h)};
+  for (int i = 0; i < axes_; ++i) interval.A(i, i) += play(i).damping / h;
+  return interval;
+}
+
 AxisVector BacklashDynamics::advance(const AxisMatrix& mass, const AxisLoad& load, double duration) {
   const int count = std::max(1, static_cast<int>(std::ceil(duration / kSubstep - 1e-9)));
   AxisVector sum{}, force{};
+  std::optional<Interval> interval;
   for (int k = 0; k < count; ++k) {
     if (rests(load)) {
       elements(sum) += elements(load.drive);
     } else {
-      substep(mass, load, duration / count, force);
+      if (!interval) interval.emplace(implicit_step(mass, duration / count));
+      substep(*interval, load, force);
       elements(sum) += elements(force);
     }
   }

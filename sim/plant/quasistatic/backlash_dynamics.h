@@ -63,8 +63,10 @@ class BacklashDynamics {
 
  private:
   struct Row;
+  struct Interval;
+  Interval implicit_step(const AxisMatrix& mass, double h) const;
   Row row(int axis, double between, double gap) const;
-  void substep(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& drive_force);
+  void substep(const Interval& interval, const AxisLoad& load, AxisVector& drive_force);
 
   int axes_;
   kinematics::PerAxis<SeriesPlay> plays_{};

@@ -91,13 +91,15 @@ void same(const std::vector<double>& distances, double cutoff, bool found, doubl
 /// The index' answers about the first `before` beads against those of every single one.
 void compare(const BeadIndex& index, const std::vector<Bead>& beads, const ConvexSolid& solid, const Pose& X,
              double cutoff, std::size_t before) {
-  RC_LOG() << "beads " << beads.size() << ", before " << before << "\n";
+  // What is looked at first may be far off, not asked about, or not there.
+  const auto likely = static_cast<std::size_t>(*whole(0, 240));
+  RC_LOG() << "beads " << beads.size() << ", before " << before << ", likely " << likely << "\n";
   const BruteForce all = look_at_all(beads, std::min(before, beads.size()), solid, X);
-  const auto near = index.nearest(solid, X, cutoff, before);
+  const auto near = index.nearest(solid, X, cutoff, before, likely);
   same(all.solid, cutoff, near.has_value(), near ? near->separation.distance : 0, near ? near->bead : 0);
   const auto surface = index.nearest_surface(X.translation(), cutoff, before);
   same(all.point, cutoff, surface.has_value(), surface ? surface->distance : 0, surface ? surface->bead : 0);
-  const auto hit = index.ray_hit(X.translation(), X.linear().col(2), cutoff, before);
+  const auto hit = index.ray_hit(X.translation(), X.linear().col(2), cutoff, before, likely);
   same(all.ray, cutoff, hit.has_value(), hit ? hit->distance : 0, hit ? hit->bead : 0);
 }
 
