@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "calibration/calibrated.h"
+#include "calibration/machine/calibrate_by_loads.h"
 #include "calibration/machine/estimation_report.h"
 #include "calibration/machine/stored_parameters.h"
 #include "calibration/machine/tip_map.h"
@@ -87,8 +88,8 @@ void calibrate_hexapod(const Measurements& measurements, const machine::MachineD
     throw InputError(
         {measurements.file, 0, 0},
         fmt::format("{} needs the columns a1..a6: the side that each strut came from", result.estimator));
-  const Problem problem = hexapod_problem(measurements, nominal);
-  const Calibration found = estimator.calibrate(problem);
+  Problem problem = hexapod_problem(measurements, nominal);
+  const Calibration found = calibrate_by_loads(nominal, estimator, problem);
   check_found(found, measurements, result.estimator);
   report_hexapod(problem, found, unknowns, measurements, nominal, result);
 }

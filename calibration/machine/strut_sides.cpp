@@ -131,4 +131,16 @@ kinematics::PerStrut<Approach> resting_sides(const machine::MachineDescription& 
   return sides;
 }
 
+int note_sides(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+               const Pose& X_BT, kinematics::PerStrut<Approach>& sides) {
+  const auto told = resting_sides(machine, geometry, machine.tolerances.after_calibration, X_BT);
+  int noted = 0;
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    if (sides[i] != Approach::unknown || told[i] == Approach::unknown) continue;
+    sides[i] = told[i];
+    ++noted;
+  }
+  return noted;
+}
+
 }  // namespace understudy::calibration

@@ -29,4 +29,9 @@ kinematics::PerStrut<Approach> resting_sides(const machine::MachineDescription& 
                                              const kinematics::HexapodGeometry& geometry,
                                              const machine::ToleranceSet& tolerances, const Pose& X_BT);
 
+/// Sides that are unknown become those that the loads on a calibrated `geometry` tell; others stay. The
+/// number of those that were unknown and are known now.
+int note_sides(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+               const Pose& X_BT, kinematics::PerStrut<Approach>& sides);
+
 }  // namespace understudy::calibration

@@ -9,6 +9,7 @@
 
 #include "calibration/bundle/calibrate_bundle.h"
 #include "calibration/bundle/sides_by_loads.h"
+#include "calibration/machine/calibrate_by_loads.h"
 #include "calibration/machine/strut_sides.h"
 #include "calibration/pose_choice.h"
 #include "studies/calibration/calibration_trial.h"
@@ -266,7 +267,8 @@ Answer PlantTrials::answer(const Method& method, const Measured& measured, Plant
   BundleAdjustment adjusted;
   const auto start = std::chrono::steady_clock::now();
   if (method.estimator) {
-    const Calibration found = method.estimator->calibrate(measured.poses);
+    Problem poses = measured.poses;
+    const Calibration found = calibrate_by_loads(machine_, *method.estimator, poses);
     result.failure = failure_of(found);
     model = {found.parameters, {}, method.estimator->unknowns().play};
   } else {
