@@ -11,6 +11,7 @@
 
 #include "calibration/identify/identify.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/staged_file.h"
@@ -29,6 +30,7 @@ struct IdentifyCall {
   calibration::IdentifyRequest request;
   std::vector<double> noise;  ///< um and, for turns, arcmin
   std::string output, as_built, summary;
+  OutputOptions told;
 };
 
 bool measured_behind_play(const calibration::Identification& found) {
@@ -82,12 +84,10 @@ int run_identify(const IdentifyCall& call) {
     if (*file) (*file)->commit();
   for (const auto& file : companions) file->commit();
   if (machine) machine->commit();
-  fmt::print("{}", report::identify_text(found));
-  if (machine) {
-    fmt::print("machine: {}\n", call.output);
-  } else {
-    fmt::print("no machine file is written: the record tells none of its parameters (docs/identify.md)\n");
-  }
+  const std::string end =
+      machine ? fmt::format("machine: {}\n", call.output)
+              : "no machine file is written: the record tells none of its parameters (docs/identify.md)\n";
+  print_answer(call.told, {report::identify_text(found) + end, end, report::identify_json(found)});
   return machine ? kGood : kNo;
 }
 
@@ -113,6 +113,7 @@ void add_identify(CLI::App& app, Action& action) {
   command->add_option("--as-built-out", call->as_built,
                       "also an as-built file, by which a twin follows the record");
   command->add_option("--summary", call->summary, "also all figures with their covariance, JSON");
+  add_output_options(*command, call->told, "the name of the machine file alone", "the summary");
   command->footer(
       "understudy identify drive.record --machine M -o found/machine.yaml --as-built-out found/built.yaml\n"
       "understudy rehearse --replay drive.record --machine M --as-built found/built.yaml");

@@ -1,21 +1,33 @@
-// A progress line on a terminal; nothing at all in a pipe.
+// One line on a terminal that is rewritten; in a pipe a plain line every ten seconds.
 #pragma once
 
+#include <mutex>
+#include <optional>
 #include <string>
+
+#include "core/progress.h"
+#include "core/progress_meter.h"
 
 namespace understudy::cli {
 
 class ProgressLine {
  public:
-  /// Shows nothing anywhere unless `wanted`.
-  explicit ProgressLine(bool wanted = true);
+  /// Shows nothing anywhere unless `wanted`. With a `unit` the rate counts it, else per cent.
+  explicit ProgressLine(bool wanted = true, ProgressUnit unit = {});
   ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
   void show(double share, const std::string& what);
+  /// Off the terminal, so that other text may be printed; the next show() brings it back.
+  void clear();
+  /// show(), for who takes a function; not to be called after the line's end.
+  Progress teller();
 
  private:
-  bool terminal_;
-  int last_percent_ = -1;
-  std::string last_what_;
+  bool terminal_, shown_ = false;
+  std::optional<ProgressPace> pace_;  ///< none: silent
+  std::mutex mutex_;                  ///< threads of a work pool tell how far each is
 };
 
 }  // namespace understudy::cli

@@ -153,10 +153,13 @@ std::string sweep_table(const std::vector<SweepRow>& rows, double low, double hi
   }
   table += fmt::format("touches before the print begins, with gap control: {}\n", approach_touches);
   table += fmt::format("stopped before anything was printed: {}\n", stopped);
-  table += fmt::format("verdict go: {} of {}\n",
-                       std::count_if(rows.begin(), rows.end(), [](const SweepRow& r) { return r.go; }),
-                       rows.size());
-  return table;
+  return table + sweep_verdict(rows);
+}
+
+std::string sweep_verdict(const std::vector<SweepRow>& rows) {
+  return fmt::format("verdict go: {} of {}\n",
+                     std::count_if(rows.begin(), rows.end(), [](const SweepRow& r) { return r.go; }),
+                     rows.size());
 }
 
 std::string sweep_csv(const std::vector<SweepRow>& rows) {

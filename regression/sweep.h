@@ -35,6 +35,8 @@ std::vector<SweepRow> sweep(const rehearsal::RehearsalRequest& request, std::uin
 
 /// The table of a sweep, for people: distribution of the start gap with and without gap control, touches.
 std::string sweep_table(const std::vector<SweepRow>& rows, double band_min_mm, double band_max_mm);
+/// "verdict go: 12 of 200", the last line of the table.
+std::string sweep_verdict(const std::vector<SweepRow>& rows);
 /// One line a machine.
 std::string sweep_csv(const std::vector<SweepRow>& rows);
 

@@ -1,20 +1,29 @@
 #include "report/gap_sensor_summary.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "control/gap/gap_reading.h"
 #include "control/gap/sensor_uncertainty.h"
 #include "core/units.h"
+#include "core/version.h"
 #include "machine/optics_mounting.h"
+#include "report/json_text.h"
 
 namespace understudy::report {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using calibration::GapSensorResult;
+
+std::array<double, 4> shown_gaps(const machine::GapLimits& limits) {
+  return {limits.accepted_min, limits.aim, limits.accepted_max, limits.standoff};
+}
 
 machine::MachineDescription as_drawn(const GapSensorResult& result) {
   machine::MachineDescription drawn = result.machine;
@@ -64,7 +73,7 @@ std::string beam(const GapSensorResult& result) {
 std::string readings(const GapSensorResult& result) {
   const machine::GapLimits& limits = result.machine.gap;
   std::string out = "\nover a flat    read as drawn    1 sigma as drawn    1 sigma calibrated\n";
-  for (const double gap : {limits.accepted_min, limits.aim, limits.accepted_max, limits.standoff}) {
+  for (const double gap : shown_gaps(limits)) {
     const GapReadingChange change = gap_reading_change(result, gap);
     out += fmt::format("  {:.3f} mm   {:>10.3f} mm       {:>10.1f} um         {:>10.1f} um\n", to_mm(gap),
                        to_mm(change.drawn), to_um(change.drawn_sigma), to_um(change.sigma));
@@ -90,6 +99,46 @@ GapReadingChange gap_reading_change(const GapSensorResult& result, double gap) {
       control::read_gap(drawn, {}, dot, reading))
     change.drawn = reading.gap;
   return change;
+}
+
+std::string gap_sensor_json(const GapSensorResult& result, const std::string& command) {
+  const auto& fit = result.fit;
+  Json document{{"schema", "understudy.gap-sensor/1"},
+                {"machine", result.machine.name},
+                {"table", result.file},
+                {"pictures", result.pictures.size()},
+                {"pictures_used", fit.residual_sigmas.size()},
+                {"known_gaps", result.known.size()},
+                {"chi_square", fit.chi_square},
+                {"degrees_of_freedom", fit.degrees_of_freedom},
+                {"mounting", Json::array()}};
+  for (int i = 0; i < machine::kMountingFreedoms; ++i) {
+    double si = 1;
+    const char* unit = machine::mounting_report_unit(i, si);
+    const double sigma = std::sqrt(fit.covariance(i, i));
+    document["mounting"].push_back({{"freedom", machine::mounting_freedom(i)},
+                                    {"unit", unit},
+                                    {"off_the_drawing", fit.error[i] / si},
+                                    {"sigma", sigma / si},
+                                    {"tolerance", result.tolerance[i] / si},
+                                    {"shown", sigma <= calibration::kUnshown * result.tolerance[i]}});
+  }
+  if (const auto& waist = result.machine.gap_sensor->waist)
+    document["beam"] = {{"width_um", to_um(result.machine.laser.waist_diameter)},
+                        {"sigma_um", to_um(waist->sigma)},
+                        {"drawn_um", to_um(waist->drawn)}};
+  document["readings"] = Json::array();
+  for (const double gap : shown_gaps(result.machine.gap)) {
+    const GapReadingChange change = gap_reading_change(result, gap);
+    Json reading{{"gap_mm", to_mm(gap)}};
+    if (std::isfinite(change.drawn)) reading["read_as_drawn_mm"] = to_mm(change.drawn);
+    reading["sigma_as_drawn_um"] = to_um(change.drawn_sigma);
+    reading["sigma_um"] = to_um(change.sigma);
+    document["readings"].push_back(reading);
+  }
+  document["warnings"] = result.warnings;
+  document["provenance"] = {{"version", kVersion}, {"command", command}};
+  return to_text(document, 2) + "\n";
 }
 
 std::string gap_sensor_text(const GapSensorResult& result) {

@@ -17,5 +17,7 @@ struct GapReadingChange {
 GapReadingChange gap_reading_change(const calibration::GapSensorResult& result, double gap);
 
 std::string gap_sensor_text(const calibration::GapSensorResult& result);
+/// "understudy.gap-sensor/1" (docs/gap-sensor-calibration.md); what does not exist is left out.
+std::string gap_sensor_json(const calibration::GapSensorResult& result, const std::string& command);
 
 }  // namespace understudy::report

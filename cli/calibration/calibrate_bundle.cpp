@@ -7,6 +7,7 @@
 #include "cli/calibration/calibrate_bundle.h"
 #include "cli/calibration/calibration_output.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "core/units.h"
 
 namespace understudy::cli {
@@ -16,6 +17,7 @@ struct BundleCall {
   calibration::BundleRequest request;
   double warming_um = 0;
   std::string output, report;
+  OutputOptions told;
 };
 
 int run_bundle(const BundleCall& call) {
@@ -23,7 +25,7 @@ int run_bundle(const BundleCall& call) {
   calibration::BundleRequest request = call.request;
   request.warming = kMicrometre * call.warming_um;
   request.command = command_line();
-  return output.write(calibration::calibrate_bundle(request));
+  return output.write(calibration::calibrate_bundle(request), call.told);
 }
 
 }  // namespace
@@ -46,6 +48,7 @@ CLI::App* add_calibrate_bundle(CLI::App& calibrate, Action& action) {
       ->capture_default_str();
   command->add_option("-o,--output", call->output, "calibrated machine file, a .yaml")->required();
   command->add_option("--report", call->report, "folder for report.html and summary.json");
+  add_output_options(*command, call->told, "the name of the calibrated machine file alone", "the summary");
   command->footer(
       "Boards may be off their places within the tolerances of the rig's file. The plays of the struts are "
       "found "

@@ -7,6 +7,7 @@
 #include "calibration/gap_sensor/calibrate_gap_sensor.h"
 #include "cli/command.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "core/interrupt.h"
 #include "machine/default_machine.h"
 #include "machine/file/gap_sensor_section.h"
@@ -19,6 +20,7 @@ namespace {
 struct GapSensorCall {
   std::string table, output;
   std::string machine = machine::kDefaultMachine;
+  OutputOptions told;
 };
 
 int run_gap_sensor(const GapSensorCall& call) {
@@ -30,7 +32,9 @@ int run_gap_sensor(const GapSensorCall& call) {
                  to_string(picture.dot.status));
   stop_if_interrupted();
   machine::write_with_section(result.machine.file, machine::gap_sensor_section(result.machine), call.output);
-  fmt::print("{}machine: {}\n", report::gap_sensor_text(result), call.output);
+  const std::string file = "machine: " + call.output + "\n";
+  print_answer(call.told, {report::gap_sensor_text(result) + file, file,
+                           report::gap_sensor_json(result, command_line())});
   return kGood;
 }
 
@@ -46,6 +50,7 @@ CLI::App* add_calibrate_gap_sensor(CLI::App& calibrate, Action& action) {
       ->required();
   add_machine_option(*command, call->machine);
   command->add_option("-o,--output", call->output, "calibrated machine file, a .yaml")->required();
+  add_output_options(*command, call->told, "the name of the calibrated machine file alone", "the answer");
   command->footer(
       "The table has the columns height_mm, picture, gap_mm and gap_sigma_um; pictures are named relative to "
       "it.\nExample: understudy calibrate gap-sensor gaps/table.csv --machine hexapod -o calibrated.yaml\n"

@@ -44,7 +44,7 @@ int run_board(const MeasureCall& call) {
   const auto pictures = vision::board_pictures(rig, call.pictures);
   std::vector<vision::MeasuredBoardPicture> boards;
   {
-    ProgressLine line;
+    ProgressLine line(!call.told.quiet, {"pictures", static_cast<double>(pictures.size())});
     boards = vision::measure_boards(rig, pictures, [&](std::size_t done) {
       stop_if_interrupted();
       line.show(static_cast<double>(done) / static_cast<double>(pictures.size()), "measuring boards");

@@ -15,6 +15,7 @@ void add_measure_options(CLI::App& command, const std::shared_ptr<MeasureCall>& 
                   "rig.yaml: the two cameras, boards and targets (docs/measuring-pictures.md)")
       ->required();
   command.add_option("-o,--output", call->output, "CSV to write; without it, standard output");
+  add_quiet_option(command, call->told, "no progress");
 }
 
 void add_commanded_options(CLI::App& command, const std::shared_ptr<MeasureCall>& call) {

@@ -9,6 +9,7 @@
 
 #include "calibration/machine/measurement_table.h"
 #include "cli/command.h"
+#include "cli/output_options.h"
 #include "machine/default_machine.h"
 #include "vision/boards/rig_file.h"
 
@@ -20,6 +21,7 @@ struct MeasureCall {
   std::string commanded;                           ///< of targets and pose
   std::string machine = machine::kDefaultMachine;  ///< likewise
   std::uint64_t seed = 1;                          ///< of pose
+  OutputOptions told;
 };
 
 /// The options that all have.

@@ -66,7 +66,7 @@ int run_pose(const MeasureCall& call) {
     rows.poses.push_back(row_of_pose(commanded, pair[0].pose, pair[0].file));
   std::vector<calibration::CameraPose> poses;
   {
-    ProgressLine line;
+    ProgressLine line(!call.told.quiet);
     const vision::StereoModel model = calibrate_cameras(rig, call.seed, line);
     for (const PicturePair& pair : pairs) {
       stop_if_interrupted();

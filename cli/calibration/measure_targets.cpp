@@ -24,7 +24,7 @@ int run_targets(const MeasureCall& call) {
   std::string table = "picture,pose,camera,target,u_px,v_px,c11_px2,c12_px2,c22_px2,radius_px\n";
   std::size_t rows = 0, done = 0;
   {
-    ProgressLine line;
+    ProgressLine line(!call.told.quiet, {"pictures", static_cast<double>(pictures.size())});
     for (const vision::PosePicture& picture : pictures) {
       stop_if_interrupted();
       const Image image = vision::read_rig_picture(rig, picture.camera, picture.file);

@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/dialect_options.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/twin/compensation_commands.h"
 #include "cli/twin/rehearse_options.h"
@@ -23,6 +24,7 @@ namespace {
 struct CompensateCall {
   rehearsal::CompensationRequest request;
   std::string output, play_from = "middle";
+  OutputOptions told;
 };
 
 void print_answer(const CompensateCall& call, const rehearsal::Compensation& done) {
@@ -30,6 +32,7 @@ void print_answer(const CompensateCall& call, const rehearsal::Compensation& don
       "{}: {} lines go elsewhere, by {:.3f} mm at most; {} lines added, so that the tip keeps within {:g} "
       "um\n",
       call.output, done.lines, to_mm(done.largest_move), done.added_lines, call.request.tolerance_um);
+  if (call.told.quiet) return;
   if (done.kept_moves > 0)
     fmt::print("  {} moves stay as they are: homing and macros say no place of their own\n", done.kept_moves);
   fmt::print(
@@ -56,9 +59,8 @@ int run_compensate(const CompensateCall& call) {
       call.play_from == "rest" ? rehearsal::PlayReference::rest : rehearsal::PlayReference::middle;
   rehearsal::Compensation done;
   {
-    ProgressLine line;
-    done = rehearsal::compensate(request,
-                                 [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!call.told.quiet);
+    done = rehearsal::compensate(request, line.teller());
   }
   stop_if_interrupted();
   StagedFile(call.output, done.text).commit();
@@ -98,6 +100,7 @@ void add_compensate(CLI::App& app, Action& action) {
           "that were measured on a machine with play)")
       ->check(CLI::IsMember({"middle", "rest"}))
       ->capture_default_str();
+  add_quiet_option(*command, call->told, "no progress, and the first line of the answer alone");
   add_dialect_options(*command, call->request.dialect);
   command->footer(
       "Example:\n"

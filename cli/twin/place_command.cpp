@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/dialect_options.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
@@ -28,6 +29,7 @@ struct PlaceCall {
   rehearsal::RehearsalRequest request;
   std::string picture, json;
   bool no_turn = false;
+  OutputOptions told;
   int grid = rehearsal::PlacementOptions{}.grid;
 };
 
@@ -62,12 +64,16 @@ int run_place(const PlaceCall& call) {
   options.grid = call.grid;
   rehearsal::Placement placement;
   {
-    ProgressLine line;
-    placement = rehearsal::find_placement(
-        call.request, options, [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!call.told.quiet);
+    placement = rehearsal::find_placement(call.request, options, line.teller());
   }
   write_outputs(call, placement, title);
-  fmt::print("{}", report::placement_text(placement, title));
+  const std::string text = report::placement_text(placement, title);
+  if (call.told.quiet) {
+    fmt::print("{}", text.substr(0, text.find('\n') + 1));
+    return placement.possible ? kGood : kNo;
+  }
+  fmt::print("{}", text);
   if (placement.possible)
     fmt::print("to rehearse it: {}\n",
                rehearsal::rehearse_command(rehearsal::placed(call.request, placement.place),
@@ -94,6 +100,7 @@ void add_place(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("-o,--output", call->picture, "IMAGE.png: the margin over the table");
   command->add_option("--json", call->json, "FILE.json of the answer and the map");
+  add_quiet_option(*command, call->told, "no progress, and the first line of the answer alone");
   add_dialect_options(*command, call->request.dialect);
   command->footer(
       "The margin is 0 at a limit and 1 in the middle of a range (docs/placement.md). Exit status 1: no "

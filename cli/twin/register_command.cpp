@@ -8,6 +8,7 @@
 
 #include "cli/command.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
@@ -19,6 +20,7 @@
 #include "core/interrupt.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/rehearse.h"
+#include "report/summary_json.h"
 
 namespace understudy::cli {
 namespace {
@@ -26,6 +28,7 @@ namespace {
 struct RegisterCall {
   rehearsal::RehearsalRequest request;
   std::string output;
+  OutputOptions told;
 };
 
 control::PartPose pose_of(const RegisterCall& call, const rehearsal::Record& record) {
@@ -40,6 +43,20 @@ control::PartPose pose_of(const RegisterCall& call, const rehearsal::Record& rec
           fit.reference_W,
           fit.covariance,
           figures.unseen};
+}
+
+void tell(const RegisterCall& call, const rehearsal::Record& record, bool found) {
+  if (call.told.json) {
+    fmt::print("{}", report::summary_json(record));
+    return;
+  }
+  fmt::print("{} on {}: {}\n", record.fixture_name, record.machine_name, found ? "found" : "not found");
+  if (call.told.quiet) return;
+  for (const auto& finding : record.findings)
+    if (finding.severity == rehearsal::Severity::error)
+      fmt::print("  {}: {}\n", finding.kind, finding.message);
+  print_registration(*record.registration);
+  if (found) fmt::print("pose: {}\n", call.output);
 }
 
 int run_register(const RegisterCall& call) {
@@ -60,15 +77,9 @@ int run_register(const RegisterCall& call) {
   if (!record.registration) throw MachineError("the machine was not run");
   const rehearsal::RegistrationFigures& figures = *record.registration;
   const bool found = figures.fit && record.go;
-  fmt::print("{} on {}: {}\n", record.fixture_name, record.machine_name, found ? "found" : "not found");
-  for (const auto& finding : record.findings)
-    if (finding.severity == rehearsal::Severity::error)
-      fmt::print("  {}: {}\n", finding.kind, finding.message);
-  print_registration(figures);
-  if (!found) return kNo;
-  write_file(call.output, control::write_part_pose(pose_of(call, record), command_line()));
-  fmt::print("pose: {}\n", call.output);
-  return kGood;
+  if (found) write_file(call.output, control::write_part_pose(pose_of(call, record), command_line()));
+  tell(call, record, found);
+  return found ? kGood : kNo;
 }
 
 }  // namespace
@@ -92,6 +103,8 @@ void add_register(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("-o,--output", call->output, "pose of the part with its covariance, a .yaml")
       ->required();
+  add_output_options(*command, call->told, "whether the part was found, in one line",
+                     "the summary of the run");
   command->footer(
       "Example: understudy register --fixture bottle --as-built manufactured --seed 4 -o pose.yaml\n"
       "`understudy rehearse --part-pose pose.yaml` prints where it stands; `rehearse --register` finds the "

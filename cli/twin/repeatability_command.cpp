@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/seed_option.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
@@ -21,6 +22,7 @@ struct RepeatabilityCall {
   std::vector<double> centre_mm{0, 0, 100};
   double edge_mm = 250, lean_deg = 0;
   studies::RepeatabilityOptions options;
+  OutputOptions told;
 };
 
 int run_repeatability(const RepeatabilityCall& call) {
@@ -34,9 +36,11 @@ int run_repeatability(const RepeatabilityCall& call) {
       call.folder.empty() ? "out/repeatability-" + machine.name : call.folder;
   OutputFolder out(folder);
   const studies::Repeatability study = studies::repeatability(machine, options);
-  write_file(out.path() / "repeatability.json", report::repeatability_json(study));
+  const std::string json = report::repeatability_json(study);
+  write_file(out.path() / "repeatability.json", json);
   out.commit();
-  fmt::print("{}\n\n{}\n", report::repeatability_table(study), (folder / "repeatability.json").string());
+  const std::string file = (folder / "repeatability.json").string() + "\n";
+  print_answer(call.told, {report::repeatability_table(study) + "\n\n" + file, file, json});
   return kGood;
 }
 
@@ -62,6 +66,7 @@ void add_repeatability(CLI::App& app, Action& action) {
       ->check(seed_check())
       ->capture_default_str();
   command->add_option("--out", call->folder, "folder of results; else out/repeatability-<machine>");
+  add_output_options(*command, call->told, "the name of the file alone", "repeatability.json");
   command->footer(
       "Five poses: the centre of the cube and four corners of a diagonal plane, 0.4 edges from the centre.\n"
       "Only the play of the axes scatters. Writes repeatability.json.");

@@ -22,8 +22,9 @@
 namespace understudy::cli {
 namespace {
 
-constexpr std::array<std::string_view, 7> kOfReplays{"--replay", "--agree-within", "--machine", "--as-built",
-                                                     "--engine", "--seed",         "--out"};
+constexpr std::array<std::string_view, 9> kOfReplays{"--replay",   "--agree-within", "--machine",
+                                                     "--as-built", "--engine",       "--seed",
+                                                     "--out",      "--quiet",        "--json"};
 
 void refuse_others(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options())
@@ -65,17 +66,20 @@ int run_replay(const CLI::App& command, const RehearseOptions& rehearsal, const 
   OutputFolder out(rehearsal.folder);
   rehearsal::ReplayedRecord replay;
   {
-    ProgressLine line;
-    replay = rehearsal::replay_record(request,
-                                      [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!rehearsal.output.quiet);
+    replay = rehearsal::replay_record(request, line.teller());
   }
-  write_file(out.path() / "replay.json", report::replay_json(replay));
+  const std::string json = report::replay_json(replay);
+  write_file(out.path() / "replay.json", json);
   write_file(out.path() / "replay.csv", report::replay_csv(replay));
   write_file(out.path() / "report.html", report::replay_html(replay));
   stop_if_interrupted();
   out.commit();
-  fmt::print("{}report: {}\n", report::replay_text(replay),
-             (std::filesystem::path(rehearsal.folder) / "report.html").string());
+  const std::string text = report::replay_text(replay);
+  print_answer(rehearsal.output,
+               {fmt::format("{}report: {}\n", text,
+                            (std::filesystem::path(rehearsal.folder) / "report.html").string()),
+                text.substr(0, text.find('\n') + 1), json});
   return replay.agrees() ? kGood : kNo;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/machine_option.h"
 #include "cli/noise_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "core/error.h"
@@ -29,6 +30,7 @@ struct SampleCall {
   std::vector<double> noise;
   std::string as_built, output, pictures, from = "noise";
   double board_offset_mm = 0.02, board_rotation_mrad = 0.2, board_print_permille = 0, board_flatness_um = 0;
+  OutputOptions told;
 };
 
 /// The pictures, what is believed, and under truth/ what is.
@@ -67,7 +69,7 @@ int run_sample(const SampleCall& call) {
   }
   calibration::Measurements sample;
   {
-    ProgressLine line;
+    ProgressLine line(!call.told.quiet);
     sample = studies::sample_poses(
         request, machine, [&](double share) { line.show(share, "photographing boards"); }, &record);
   }
@@ -143,6 +145,7 @@ void add_sample_poses(CLI::App& app, Action& action) {
       ->check(seed_check())
       ->capture_default_str();
   command->add_option("-o,--output", call->output, "CSV (docs/calibration-data.md)")->required();
+  add_quiet_option(*command, call->told, "no progress");
   command->callback([=, &action] { action = [=] { return run_sample(*call); }; });
 }
 

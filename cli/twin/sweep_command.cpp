@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/jobs_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "cli/twin/planned_program.h"
@@ -21,6 +22,7 @@
 #include "regression/sweep.h"
 #include "report/error_budget_report.h"
 #include "report/page/error_budget_page.h"
+#include "report/sweep_json.h"
 #include "studies/budget/error_budget.h"
 
 namespace understudy::cli {
@@ -34,6 +36,7 @@ struct SweepRequest {
   std::optional<int> samples;
   int threads = 0;
   std::uint64_t first_seed = 1;
+  OutputOptions told;
 };
 
 /// Beside the folder of results, which appears when it is whole.
@@ -69,24 +72,26 @@ int run_budget(const SweepRequest& r) {
   check_jobs(r.threads);
   const ScratchFolder scratch("plan");
   request.print = print_of(r, scratch);
-  fmt::print(stderr, "{}\n", report::budget_cost(studies::plan_budget(request), request.samples));
+  const studies::BudgetPlan plan = studies::plan_budget(request);
+  if (!r.told.quiet) fmt::print(stderr, "{}\n", report::budget_cost(plan, request.samples));
   OutputFolder out(r.folder);
   request.journal = journal_of(r);
   studies::ErrorBudget budget;
   {
-    ProgressLine line;
-    budget =
-        studies::run_budget(request, [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!r.told.quiet, {"rehearsals", static_cast<double>(plan.rehearsals)});
+    budget = studies::run_budget(request, line.teller());
   }
-  write_file(out.path() / "budget.json", report::budget_json(budget));
+  const std::string json = report::budget_json(budget);
+  write_file(out.path() / "budget.json", json);
   write_file(out.path() / "budget.csv", report::budget_csv(budget));
   write_file(out.path() / "runs.csv", report::budget_runs_csv(budget));
   write_file(out.path() / "budget.html", report::error_budget_html(budget));
   stop_if_interrupted();
   out.commit();
   const std::filesystem::path written(r.folder);
-  fmt::print("{}\n{}\n{}\n", report::budget_table(budget), (written / "budget.json").string(),
-             (written / "budget.html").string());
+  const std::string files =
+      fmt::format("{}\n{}\n", (written / "budget.json").string(), (written / "budget.html").string());
+  print_answer(r.told, {report::budget_table(budget) + "\n" + files, files, json});
   return kGood;
 }
 
@@ -102,17 +107,19 @@ int run_sweep(const SweepRequest& r) {
   const std::string journal = journal_of(r);
   std::vector<regression::SweepRow> rows;
   {
-    ProgressLine line;
-    const auto progress = [&](double share, const std::string& what) { line.show(share, what); };
-    rows = regression::sweep(request, r.first_seed, samples, r.threads, progress, journal);
+    ProgressLine line(!r.told.quiet, {"machines", static_cast<double>(samples)});
+    rows = regression::sweep(request, r.first_seed, samples, r.threads, line.teller(), journal);
   }
-  const auto table =
-      regression::sweep_table(rows, to_mm(machine.gap.accepted_min), to_mm(machine.gap.accepted_max));
+  const double low_mm = to_mm(machine.gap.accepted_min), high_mm = to_mm(machine.gap.accepted_max);
+  const std::string table = regression::sweep_table(rows, low_mm, high_mm);
+  const std::string json = report::sweep_json(rows, low_mm, high_mm);
+  write_file(out.path() / "sweep.json", json);
   write_file(out.path() / "sweep.csv", regression::sweep_csv(rows));
   write_file(out.path() / "table.txt", table);
   stop_if_interrupted();
   out.commit();
-  fmt::print("{}{}\n", table, (std::filesystem::path(r.folder) / "sweep.csv").string());
+  const std::string file = (std::filesystem::path(r.folder) / "sweep.csv").string() + "\n";
+  print_answer(r.told, {table + file, regression::sweep_verdict(rows), json});
   return kGood;
 }
 
@@ -134,6 +141,9 @@ void add_sweep(CLI::App& app, Action& action) {
       ->check(seed_check())
       ->capture_default_str();
   add_jobs(*command, request->threads);
+  add_output_options(*command, request->told,
+                     "the verdict alone, in one line; of a budget the names of the files",
+                     "sweep.json, or budget.json,");
   command->add_option("--out", request->folder, "folder of results")->capture_default_str();
   command->callback([=, &action] {
     action = [=] { return request->budget ? run_budget(*request) : run_sweep(*request); };

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
@@ -31,6 +32,7 @@ struct WorkspaceCall {
   std::vector<double> box_mm;
   bool all_azimuths = false;
   int threads = 0;
+  OutputOptions told;
 };
 
 studies::WorkspaceOptions options_of(const WorkspaceCall& call) {
@@ -54,18 +56,21 @@ int run_workspace(const WorkspaceCall& call) {
   auto study = studies::plan_workspace(machine, options_of(call));
   const std::string folder = call.folder.empty() ? "out/workspace-" + machine.name : call.folder;
   OutputFolder out(folder);
+  std::string json;
   {
-    ProgressLine line;
+    ProgressLine line(!call.told.quiet);
     studies::evaluate(study, [&](double share) { line.show(share, "workspace of " + machine.name); });
     line.show(1, "drawing");
-    write_file(out.path() / "workspace.json", report::workspace_json(study));
+    json = report::workspace_json(study);
+    write_file(out.path() / "workspace.json", json);
     write_file(out.path() / "workspace.png", report::encode_png(report::workspace_picture(study)));
   }
   stop_if_interrupted();
   out.commit();
   const std::filesystem::path written(folder);
-  fmt::print("{}\n{}\n{}\n", report::workspace_table(study), (written / "workspace.json").string(),
-             (written / "workspace.png").string());
+  const std::string files =
+      fmt::format("{}\n{}\n", (written / "workspace.json").string(), (written / "workspace.png").string());
+  print_answer(call.told, {report::workspace_table(study) + "\n" + files, files, json});
   return kGood;
 }
 
@@ -87,6 +92,7 @@ void add_workspace(CLI::App& app, Action& action) {
   command->add_option("--step", call->step_mm,
                       "between points, mm; else a fortieth of the box's longest side");
   add_jobs(*command, call->threads);
+  add_output_options(*command, call->told, "the names of the files alone", "workspace.json");
   command->add_option("--out", call->folder, "folder of results; else out/workspace-<machine>");
   command->footer(
       "Without --box: a hexapod's 100 mm cube about home; else the table's area, as high as the axis that\n"

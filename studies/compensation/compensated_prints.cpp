@@ -1,7 +1,6 @@
 #include "studies/compensation/compensated_prints.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -203,11 +202,14 @@ CompensationStudy run_compensation_study(const CompensationStudyRequest& request
   study.request = request;
   study.machine = drawn.name;
   study.prints.resize(static_cast<std::size_t>(request.machines));
-  std::atomic<int> done{0};
-  in_parallel(study.prints.size(), request.threads, [&](std::size_t i) {
+  const auto run = [&](std::size_t i) {
     stop_if_interrupted();
     study.prints[i] = one_machine(request, drawn, request.first_seed + i);
-    if (progress) progress(static_cast<double>(++done) / request.machines, "machines");
+  };
+  in_parallel(study.prints.size(), request.threads, run, [&](std::size_t, std::size_t done) {
+    if (progress)
+      progress(static_cast<double>(done) / request.machines,
+               fmt::format("machine {} of {}", done, request.machines));
   });
   return study;
 }

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/plugin_box.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
@@ -33,6 +34,7 @@ struct BenchmarkCall {
   std::vector<int> poses{8, 12, 24};
   double board_offset_mm = 0.02, board_rotation_mrad = 0.2, board_print_permille = 0, board_flatness_um = 0;
   bool tables = false;
+  OutputOptions told;
 };
 
 [[noreturn]] void refuse(const std::string& option, const std::string& word, const std::string& known) {
@@ -126,17 +128,18 @@ int run_calibration(const BenchmarkCall& call) {
   warn_of_box(!request.plugins.empty());
   studies::CalibrationBenchmark benchmark;
   {
-    ProgressLine line;
-    benchmark = studies::run_benchmark(
-        request, [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!call.told.quiet);
+    benchmark = studies::run_benchmark(request, line.teller());
   }
-  write_file(out.path() / "benchmark.json", report::benchmark_json(benchmark));
+  const std::string json = report::benchmark_json(benchmark);
+  write_file(out.path() / "benchmark.json", json);
   write_file(out.path() / "report.html", report::benchmark_page(benchmark));
   stop_if_interrupted();
   out.commit();
   const std::filesystem::path written(folder);
-  fmt::print("{}\n{}\n{}\n", report::benchmark_table(benchmark), (written / "benchmark.json").string(),
-             (written / "report.html").string());
+  const std::string files =
+      fmt::format("{}\n{}\n", (written / "benchmark.json").string(), (written / "report.html").string());
+  print_answer(call.told, {report::benchmark_table(benchmark) + "\n" + files, files, json});
   const std::vector<std::string> silent = studies::without_answer(benchmark);
   for (const std::string& name : silent) fmt::print(stderr, "{}: solved no problem at all\n", name);
   return silent.empty() ? kGood : kNo;
@@ -199,6 +202,7 @@ void add_benchmark_calibration(CLI::App& benchmark, Action& action) {
   command->add_option("--out", call->folder, "folder of results; else out/benchmark-calibration");
   command->add_flag("--tables", call->tables,
                     "print the tables of the literature's set-up beside their figures, and no more");
+  add_output_options(*command, call->told, "the names of the files alone", "benchmark.json");
   command->callback([=, &action] { action = [=] { return run_calibration(*call); }; });
 }
 

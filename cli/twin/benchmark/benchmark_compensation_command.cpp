@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "cli/twin/compensation_commands.h"
@@ -22,6 +23,7 @@ namespace {
 struct CompensationCall {
   studies::CompensationStudyRequest request;
   std::string folder = "out/compensation";
+  OutputOptions told;
 };
 
 int run_study(const CompensationCall& call) {
@@ -31,15 +33,15 @@ int run_study(const CompensationCall& call) {
   OutputFolder out(call.folder);
   studies::CompensationStudy study;
   {
-    ProgressLine line;
-    study = studies::run_compensation_study(
-        request, [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!call.told.quiet, {"machines", static_cast<double>(request.machines)});
+    study = studies::run_compensation_study(request, line.teller());
   }
-  write_file(out.path() / "compensation.json", report::compensation_json(study));
+  const std::string json = report::compensation_json(study);
+  write_file(out.path() / "compensation.json", json);
   stop_if_interrupted();
   out.commit();
-  fmt::print("{}{}\n", report::compensation_table(study),
-             (std::filesystem::path(call.folder) / "compensation.json").string());
+  const std::string file = (std::filesystem::path(call.folder) / "compensation.json").string() + "\n";
+  print_answer(call.told, {report::compensation_table(study) + file, file, json});
   return kGood;
 }
 
@@ -60,6 +62,7 @@ void add_benchmark_compensation(CLI::App& benchmark, Action& action) {
   command->add_flag("--driven", request.driven,
                     "calibrate from poses that were measured on the machine with its play in place");
   add_jobs(*command, request.threads);
+  add_output_options(*command, call->told, "the name of the file alone", "compensation.json");
   command->add_option("--out", call->folder, "folder of results")->capture_default_str();
   command->footer(
       "Writes compensation.json (docs/compensation.md).\n"

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/jobs_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "core/file/output_file.h"
@@ -20,6 +21,7 @@ namespace {
 struct FaultsCall {
   studies::FaultedPrintsRequest request;
   std::string folder = "out/faults";
+  OutputOptions told;
 };
 
 int run_faults(const FaultsCall& call) {
@@ -36,16 +38,17 @@ int run_faults(const FaultsCall& call) {
     fmt::print(stderr, "goes on with {}; delete it to begin anew\n", request.journal.string());
   studies::FaultedPrints prints;
   {
-    ProgressLine line;
-    prints = studies::run_faulted_prints(
-        request, [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!call.told.quiet);
+    prints = studies::run_faulted_prints(request, line.teller());
   }
-  write_file(out.path() / "faults.json", report::faulted_prints_json(prints));
+  const std::string json = report::faulted_prints_json(prints);
+  write_file(out.path() / "faults.json", json);
   write_file(out.path() / "runs.csv", report::faulted_prints_csv(prints));
   stop_if_interrupted();
   out.commit();
-  fmt::print("{}{}\n{}\n", report::faulted_prints_table(prints), (named / "faults.json").string(),
-             (named / "runs.csv").string());
+  const std::string files =
+      fmt::format("{}\n{}\n", (named / "faults.json").string(), (named / "runs.csv").string());
+  print_answer(call.told, {report::faulted_prints_table(prints) + files, files, json});
   return prints.good() ? kGood : kNo;
 }
 
@@ -67,6 +70,7 @@ void add_benchmark_faults(CLI::App& benchmark, Action& action) {
                    "a name under models/ or a machine.yaml, may be given again; else all that print")
       ->allow_extra_args(false);
   add_jobs(*command, request.threads);
+  add_output_options(*command, call->told, "the names of the files alone", "faults.json");
   command->add_option("--out", call->folder, "folder of results")->capture_default_str();
   command->footer(
       "Writes faults.json, runs.csv, and the programs and machines (docs/faults.md). Exit status 1: a spoilt "

@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/jobs_option.h"
 #include "cli/machine_option.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/seed_option.h"
 #include "core/file/output_file.h"
@@ -23,6 +24,7 @@ struct GapCall {
   studies::GapBenchmarkRequest request;
   std::string folder = "out/gap-benchmark";
   std::vector<std::string> plants{"quasistatic"};
+  OutputOptions told;
 };
 
 int run_gap(const GapCall& call) {
@@ -36,17 +38,18 @@ int run_gap(const GapCall& call) {
   OutputFolder out(call.folder);
   studies::GapBenchmark benchmark;
   {
-    ProgressLine line;
-    benchmark = studies::run_gap_benchmark(
-        request, [&](double share, const std::string& what) { line.show(share, what); });
+    ProgressLine line(!call.told.quiet);
+    benchmark = studies::run_gap_benchmark(request, line.teller());
   }
-  write_file(out.path() / "gap.json", report::gap_benchmark_json(benchmark));
+  const std::string json = report::gap_benchmark_json(benchmark);
+  write_file(out.path() / "gap.json", json);
   write_file(out.path() / "gap.html", report::gap_benchmark_html(benchmark));
   stop_if_interrupted();
   out.commit();
   const std::filesystem::path written(call.folder);
-  fmt::print("{}\n{}\n{}\n", report::gap_benchmark_table(benchmark), (written / "gap.json").string(),
-             (written / "gap.html").string());
+  const std::string files =
+      fmt::format("{}\n{}\n", (written / "gap.json").string(), (written / "gap.html").string());
+  print_answer(call.told, {report::gap_benchmark_table(benchmark) + "\n" + files, files, json});
   return benchmark.good() ? kGood : kNo;
 }
 
@@ -86,6 +89,7 @@ void add_benchmark_gap(CLI::App& benchmark, Action& action) {
       ->capture_default_str();
   command->add_option("--program", request.program, "of the bottle's line; else scenarios/song-bottle.gcode");
   add_jobs(*command, request.threads);
+  add_output_options(*command, call->told, "the names of the files alone", "gap.json");
   command->add_option("--out", call->folder, "folder of results")->capture_default_str();
   command->footer(
       "Writes gap.json and gap.html (docs/gap-control.md). Exit status 1: a faulted trial touched, or was "

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/output_options.h"
 #include "cli/twin/campaign/campaign_folder.h"
 #include "studies/campaign/campaign.h"
 #include "studies/campaign/run_inputs.h"
@@ -18,6 +19,7 @@ struct CampaignCall {
   int workers = 0;
   bool resume = false;
   std::optional<std::uint64_t> only;  ///< one run as a rehearsal
+  OutputOptions told;
   // Slurm.
   bool slurm = false, detach = false;
   int tasks = 0;                    ///< of an array; 0: four for each processor
@@ -41,8 +43,10 @@ struct OpenCampaign {
   studies::RowSource rows;  ///< of the folder
 };
 
-/// Writes the tables of so many rounds, and prints them unless `quiet`.
-void tell_result(const OpenCampaign& open, std::uint64_t rounds, bool quiet);
+/// Writes the tables of so many rounds.
+void write_result(const OpenCampaign& open, std::uint64_t rounds);
+/// The same, and prints them as `told` asks for.
+void tell_result(const OpenCampaign& open, std::uint64_t rounds, const OutputOptions& told);
 
 /// Of one run, rather too much than too little [bytes].
 double memory_of_a_run(OpenCampaign& open);

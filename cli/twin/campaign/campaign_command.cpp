@@ -17,6 +17,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
+#include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -67,11 +68,15 @@ int run_only(const CampaignCall& call) {
   studies::RunInputs inputs(campaign, tools());
   const std::string folder = call.folder.empty() ? fmt::format("run-{}", *call.only) : call.folder;
   OutputFolder out(folder);
-  const rehearsal::Record record = rehearse_into(inputs.request(plan.run(*call.only)), out.path());
+  const rehearsal::Record record =
+      rehearse_into(inputs.request(plan.run(*call.only)), out.path(), call.told.quiet);
   stop_if_interrupted();
   out.commit();
-  fmt::print("{}: {}\nreport: {}\n", record.title, rehearsal::headline(rehearsal::grade_of(record)),
-             (fs::path(folder) / "report.html").string());
+  const std::string verdict =
+      fmt::format("{}: {}\n", record.title, rehearsal::headline(rehearsal::grade_of(record)));
+  print_answer(call.told,
+               {fmt::format("{}report: {}\n", verdict, (fs::path(folder) / "report.html").string()), verdict,
+                report::summary_json(record)});
   return record.go ? kGood : kNo;
 }
 
@@ -88,14 +93,13 @@ int run_here(const CampaignCall& call, OpenCampaign& open) {
     const std::uint64_t end = look * open.plan.runs_a_round();
     const std::vector<std::uint64_t> missing = open.folder.missing(end);
     if (!missing.empty()) {
-      ProgressLine line;
-      workers.run(missing, open.plan, open.inputs,
-                  [&](double share, const std::string& what) { line.show(share, what); });
+      ProgressLine line(!call.told.quiet, {"runs", static_cast<double>(missing.size())});
+      workers.run(missing, open.plan, open.inputs, line.teller());
     }
     open.folder.merge(end);
     if (studies::narrow_enough(open.campaign, open.plan, look, open.rows)) break;
   }
-  tell_result(open, rounds, false);
+  tell_result(open, rounds, call.told);
   return kGood;
 }
 
@@ -129,17 +133,24 @@ OpenCampaign::OpenCampaign(const CampaignCall& call)
       folder(call.folder, header_of(campaign, inputs)),
       rows([this](std::uint64_t begin, std::uint64_t end) { return folder.rows(begin, end); }) {}
 
-void tell_result(const OpenCampaign& open, std::uint64_t rounds, bool quiet) {
+void write_result(const OpenCampaign& open, std::uint64_t rounds) {
   const studies::CampaignResult result = studies::evaluate(open.campaign, open.plan, rounds, open.rows);
   const fs::path& folder = open.folder.path();
   write_file(folder / "table.csv", report::campaign_csv(open.campaign, result));
   write_file(folder / "campaign.json",
              report::campaign_json(open.campaign, result, open.folder.header().inputs_sha256));
   write_file(folder / "campaign.html", report::campaign_html(open.campaign, result));
-  if (quiet) return;
-  fmt::print("{}", report::campaign_table(open.campaign, result));
+}
+
+void tell_result(const OpenCampaign& open, std::uint64_t rounds, const OutputOptions& told) {
+  write_result(open, rounds);
+  const studies::CampaignResult result = studies::evaluate(open.campaign, open.plan, rounds, open.rows);
+  const fs::path& folder = open.folder.path();
+  std::string files;
   for (const char* name : {"table.csv", "campaign.html", "runs.sqlite"})
-    fmt::print("{}\n", (folder / name).string());
+    files += (folder / name).string() + "\n";
+  print_answer(told, {report::campaign_table(open.campaign, result) + files, files,
+                      read_file(folder / "campaign.json")});
 }
 
 double memory_of_a_run(OpenCampaign& open) {
@@ -167,6 +178,8 @@ void add_campaign(CLI::App& app, Action& action) {
   command->add_flag("--resume", call->resume, "go on with the runs that the folder holds");
   command->add_option("--only", call->only,
                       "rehearse this one run, and write its summary, report and pictures");
+  add_output_options(*command, call->told, "the names of the files alone; with --only the verdict",
+                     "campaign.json, with --only the summary,");
   add_slurm_options(*command, *call);
   for (const auto& [name, word] : {std::pair{"--worker", &call->worker}, std::pair{"--task", &call->task},
                                    std::pair{"--todo", &call->todo}})

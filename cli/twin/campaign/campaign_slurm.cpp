@@ -132,12 +132,13 @@ class Stage {
          fmt::format("--output={}", (folder_ / "merge.out").string()), (folder_ / "merge.sh").string()});
     jobs_.push_back(slurm_.submit(merge));
     write_file(jobs_file(), fmt::format("{}\n", fmt::join(jobs_, "\n")));
-    fmt::print(stderr, "{} runs are Slurm's job {} of {} tasks, merged by job {}\n", runs.size(), jobs_[0],
-               tasks_, jobs_[1]);
+    if (!call_.told.quiet)
+      fmt::print(stderr, "{} runs are Slurm's job {} of {} tasks, merged by job {}\n", runs.size(), jobs_[0],
+                 tasks_, jobs_[1]);
   }
 
   void watch() {
-    ProgressLine line;
+    ProgressLine line(!call_.told.quiet, {"tasks", tasks_ + 1.});
     try {
       for (;;) {
         const std::map<std::string, int> states = slurm_.states(jobs_);
@@ -216,13 +217,14 @@ int run_on_slurm(const CampaignCall& call, OpenCampaign& open) {
   for (const std::uint64_t look : open.plan.looks()) {
     rounds = look;
     if (!Stage(call, open, look).run()) {
-      fmt::print("submitted: `understudy campaign {} --slurm --resume --out {}` watches the jobs\n",
+      fmt::print(call.told.json ? stderr : stdout,
+                 "submitted: `understudy campaign {} --slurm --resume --out {}` watches the jobs\n",
                  call.file, call.folder);
       return kGood;
     }
     if (studies::narrow_enough(open.campaign, open.plan, look, open.rows)) break;
   }
-  tell_result(open, rounds, false);
+  tell_result(open, rounds, call.told);
   return kGood;
 }
 
@@ -259,7 +261,7 @@ int run_slurm_merge(std::uint64_t rounds, OpenCampaign& open) {
   if (const auto missing = open.folder.missing(end); !missing.empty())
     throw MachineError(fmt::format("{} runs are missing: their tasks died", missing.size()));
   if (rounds == open.plan.rounds() || studies::narrow_enough(open.campaign, open.plan, rounds, open.rows))
-    tell_result(open, rounds, true);
+    write_result(open, rounds);
   return kGood;
 }
 

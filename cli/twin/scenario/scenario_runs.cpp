@@ -131,6 +131,11 @@ class Runner {
 
   const std::vector<RunScenario>& run() {
     runs_done_.assign(scenarios_.size(), false);
+    const auto count = static_cast<double>(scenarios_.size());
+    // One at a time tells of itself.
+    ProgressLine line(!request_.output.quiet && request_.processes > 1, {"scenarios", count});
+    line_ = &line;
+    line.show(0, fmt::format("scenario 0 of {}", scenarios_.size()));
     in_parallel(scenarios_.size(), request_.processes, [this](std::size_t i) { run_one(i); });
     return runs_;
   }
@@ -168,7 +173,11 @@ class Runner {
     if (const auto before = baseline_.find(scenario.file.stem().string()); before != baseline_.end())
       runs_[i].changes = regression::changes(before->second, outcome.run);
     runs_done_[i] = true;
+    line_->clear();
     for (; printed_ < runs_.size() && runs_done_[printed_]; ++printed_) tell(runs_[printed_]);
+    const auto done = std::ranges::count(runs_done_, true);
+    line_->show(static_cast<double>(done) / static_cast<double>(runs_.size()),
+                fmt::format("scenario {} of {}", done, runs_.size()));
   }
 
   void tell(const RunScenario& run) const {
@@ -183,6 +192,7 @@ class Runner {
   std::optional<ScratchFolder> scratch_;
   fs::path outcomes_;
   std::size_t printed_ = 0;
+  ProgressLine* line_ = nullptr;  ///< of run()
   std::mutex mutex_;
 };
 
