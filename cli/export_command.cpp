@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/export_video_command.h"
 #include "cli/machine_option.h"
 #include "cli/urdf_of.h"
 #include "core/file/output_file.h"
@@ -32,6 +33,7 @@ void add_export(CLI::App& app, Action& action) {
   add_export_mjcf(*command, action);
   add_export_trace(*command, action);
   add_export_glb(*command, action);
+  add_export_video(*command, action);
   add_export_hal(*command, action);
   auto* urdf =
       command->add_subcommand("urdf", "URDF of an open chain: links \"work\" and \"tool\" at its ends");

@@ -1,9 +1,10 @@
-// Stands for twin_commands.cpp, export_mjcf.cpp and export_glb.cpp in the build without the twin.
+// Stands for twin_commands.cpp, export_mjcf.cpp, export_glb.cpp and export_video.cpp in the build without the twin.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cli/command.h"
 #include "cli/doctor.h"
+#include "cli/export_video_command.h"
 #include "control/library_versions.h"
 
 namespace understudy::cli {
@@ -11,6 +12,7 @@ namespace understudy::cli {
 void add_twin_commands(CLI::App&, Action&) {}
 void add_export_mjcf(CLI::App&, Action&) {}
 void add_export_trace(CLI::App&, Action&) {}
+void add_export_video(CLI::App&, Action&) {}
 void add_export_glb(CLI::App&, Action&) {}
 
 std::vector<std::string> left_out_commands() {

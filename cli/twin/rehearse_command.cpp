@@ -13,11 +13,14 @@
 
 #include "cli/command.h"
 #include "cli/progress.h"
+#include "cli/twin/export_video.h"
 #include "cli/twin/registration_options.h"
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
-#include "cli/watch/live_server.h"
 #include "cli/twin/replay_option.h"
+#include "cli/watch/live_server.h"
+#include "core/error.h"
+#include "core/file/output_file.h"
 #include "core/file/output_folder.h"
 #include "core/file/read_file.h"
 #include "core/interrupt.h"
@@ -174,9 +177,32 @@ struct Watched {
   LiveServer server;
 };
 
+/// What lies in the folder of results is one of them, and a film is none: it is made from them.
+void check_film(const RehearseOptions& asked) {
+  if (asked.video.empty()) return;
+  if (!asked.request.keep_scene)
+    throw InputError("--video needs the drawings that --no-pictures leaves out: leave one of them out");
+  if (is_among(asked.video, asked.folder))
+    throw InputError(fmt::format("--video {} lies in the folder of results {}: name a place outside of it",
+                                 asked.video, asked.folder));
+  check_video(asked.video);
+}
+
+/// Of results that are there: an interrupt costs the film alone.
+void write_film(const rehearsal::Record& record, const RehearseOptions& asked) {
+  if (record.trace.empty()) {
+    fmt::print(stderr, "understudy: note: nothing was simulated: {} is not written\n", asked.video);
+    return;
+  }
+  const report::Video film = video_of(asked.folder, {}, asked.output.quiet);
+  write_file(asked.video, film.bytes);
+  if (!asked.output.quiet && !asked.output.json) fmt::print("video: {} ({})\n", asked.video, film.codec);
+}
+
 int rehearse(const RehearseOptions& asked) {
   rehearsal::RehearsalRequest request = asked.with_faults();
   request.command = command_line();
+  check_film(asked);
   OutputFolder out(asked.folder);
   request.surface.as_printed = among_results(request.surface.as_printed, asked.folder, out.path());
   std::optional<Watched> watched;
@@ -188,6 +214,7 @@ int rehearse(const RehearseOptions& asked) {
   if (watched)
     watched->server.finish(read_file((std::filesystem::path(asked.folder) / "report.html").string()));
   tell(record, asked, request.program);
+  if (!asked.video.empty()) write_film(record, asked);
   return record.go ? kGood : kNo;
 }
 

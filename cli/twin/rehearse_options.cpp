@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 
 namespace understudy::cli {
 namespace {
+namespace fs = std::filesystem;
 
 void add_tolerances(CLI::App& command, rehearsal::RehearsalRequest& request) {
   command
@@ -134,9 +136,9 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
 }
 
 /// Say what is written and where, or stand in the provenance of a record themselves.
-constexpr std::array<std::string_view, 9> kOptionsLeftOut{"--out",         "--record", "--as-printed",
-                                                          "--no-pictures", "--quiet",  "--json",
-                                                          "--seed",        "--watch",  "--watch-port"};
+constexpr std::array<std::string_view, 10> kOptionsLeftOut{
+    "--out",   "--video", "--record", "--as-printed", "--no-pictures",
+    "--quiet", "--json",  "--seed",   "--watch",      "--watch-port"};
 
 /// Throws InputError where it is no command of `rehearse`, whose options `app` has.
 void parse_command(CLI::App& app, const std::string& command_line) {
@@ -152,6 +154,14 @@ void parse_command(CLI::App& app, const std::string& command_line) {
   }
 }
 
+/// Its name from the folder on, where it lies in it.
+std::optional<fs::path> place_among(const std::string& file, const std::string& folder) {
+  const auto whole = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
+  fs::path name = whole(file).lexically_relative(whole(fs::path(folder) / "."));
+  if (name.empty() || *name.begin() == "..") return std::nullopt;
+  return name;
+}
+
 }  // namespace
 
 void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
@@ -162,6 +172,8 @@ void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
                   "for_s: 0.4}'; may be given several times (docs/faults.md)")
       ->allow_extra_args(false);
   command.add_option("--out", options.folder, "folder of results")->capture_default_str();
+  command.add_option("--video", options.video,
+                     "FILE.mp4, outside of --out: also a film of the run (understudy export video)");
   auto* watch = command.add_flag("--watch", options.watch,
                                  "serve the growing report to a browser of this computer (docs/watch.md)");
   command.add_option("--watch-port", options.watch_port, "port of --watch; 0: any free one")
@@ -199,12 +211,15 @@ std::map<std::string, std::string> rehearse_option_words(const std::string& comm
   return given;
 }
 
+bool is_among(const std::string& file, const std::string& folder) {
+  return place_among(file, folder).has_value();
+}
+
 std::string among_results(const std::string& file, const std::string& folder, const std::string& working) {
-  namespace fs = std::filesystem;
   if (file.empty()) return file;
-  const auto whole = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
-  const fs::path name = whole(file).lexically_relative(whole(fs::path(folder) / "."));
-  if (name.empty() || *name.begin() == "..") return file;
+  const auto among = place_among(file, folder);
+  if (!among) return file;
+  const fs::path name = *among;
   fs::create_directories((working / name).parent_path());
   return (working / name).string();
 }

@@ -16,6 +16,7 @@ struct RehearseOptions {
   rehearsal::RehearsalRequest request;
   std::vector<std::string> faults;   ///< in the words of scenarios
   std::string folder = "rehearsal";  ///< of results
+  std::string video;                 ///< a film of the run; empty: none
   bool watch = false;                ///< show the growing report in a browser
   int watch_port = 0;                ///< of HTTP; 0: any free one
   OutputOptions output;
@@ -35,6 +36,9 @@ RehearseOptions read_rehearse_command(const std::string& command_line);
 /// otherwise, by name: "program",
 /// "--gap-control". Throws as read_rehearse_command().
 std::map<std::string, std::string> rehearse_option_words(const std::string& command_line);
+
+/// Whether `file` lies in `folder` or below it; neither need be there.
+bool is_among(const std::string& file, const std::string& folder);
 
 /// `file` where it lies outside of `folder`; else its place in `working`, where that folder is being made.
 std::string among_results(const std::string& file, const std::string& folder, const std::string& working);

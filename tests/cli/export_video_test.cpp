@@ -1,0 +1,109 @@
+// The film of a rehearsal, read back as a player reads it.
+#include <filesystem>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "core/file/read_file.h"
+#include "tests/cli/program_run.h"
+
+namespace understudy::cli_test {
+namespace {
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+std::vector<cv::Mat> frames_of(const std::string& file) {
+  cv::VideoCapture video(file, cv::CAP_FFMPEG);
+  std::vector<cv::Mat> frames;
+  for (cv::Mat frame; video.read(frame);) frames.push_back(frame.clone());
+  return frames;
+}
+
+/// Pixels of the right half, where the print is seen from close by, that are as orange as filament.
+int orange_pixels(const cv::Mat& frame) {
+  int count = 0;
+  for (int row = 0; row < frame.rows * 3 / 4; ++row)
+    for (int column = frame.cols / 2; column < frame.cols; ++column) {
+      const auto& p = frame.at<cv::Vec3b>(row, column);  // blue, green, red
+      count += p[2] > 120 && p[2] > p[1] + 25 && p[1] > p[0] + 10;
+    }
+  return count;
+}
+
+/// A short print on the table, its results in `out`.
+class ExportVideo : public testing::Test {
+ protected:
+  Outcome rehearse(const std::string& program, const std::string& options = "") const {
+    return understudy("rehearse \"" + folder_.write("line.gcode", program) +
+                      "\" --engine quasistatic --gap-control off --tip-tolerance 5 --out " + out() + " " +
+                      options);
+  }
+  std::string out() const { return folder_ / "out"; }
+  std::string film() const { return folder_ / "line.mp4"; }
+  void refused(const std::string& words, const std::string& says) const {
+    const Outcome outcome = understudy("export video " + words);
+    EXPECT_EQ(outcome.status, 2) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.err, MatchesRegex("understudy: [^\n]*\n"));
+    EXPECT_THAT(outcome.err, HasSubstr(says));
+    EXPECT_FALSE(fs::exists(film()));
+  }
+
+  static constexpr const char* kLine =
+      "G21 G90 M83\nM104 S200\nG0 X-3 Y0 Z1\nG1 Z0.15 F600\nG1 X3 E0.2 F300\nG1 Y1 E0.03\nG1 X-3 E0.2\nG0 "
+      "Z2\n";
+  Folder folder_;
+};
+
+TEST_F(ExportVideo, TheBeadsGrowFromTheFirstFrameToTheLast) {
+  ASSERT_LE(rehearse(kLine).status, 1);
+  const Outcome outcome =
+      understudy("export video " + out() + " --seconds 1 --fps 6 --size 640x360 -o " + film());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(outcome.out, HasSubstr("6 frames of 640 x 360 pixels"));
+  const auto frames = frames_of(film());
+  ASSERT_EQ(frames.size(), 6U);
+  for (const cv::Mat& frame : frames) EXPECT_EQ(frame.size(), cv::Size(640, 360));
+  // The path to come is a line two pixels wide, beads are several times as wide.
+  const int first = orange_pixels(frames.front()), late = orange_pixels(frames[4]),
+            last = orange_pixels(frames.back());
+  EXPECT_GT(first, 100);
+  EXPECT_GT(2 * late, 3 * first);
+  EXPECT_GT(last, late);
+  EXPECT_GT(last, 2 * first);
+}
+
+TEST_F(ExportVideo, ARehearsalRefusesAFilmThatItCannotMakeBeforeItRuns) {
+  const Outcome refused = rehearse(kLine, "--video " + (folder_ / "out/in.mp4"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("name a place outside"));
+  EXPECT_FALSE(fs::exists(out())) << "refused before the run";
+  EXPECT_EQ(rehearse(kLine, "--no-pictures --video " + film()).status, 2);
+}
+
+TEST_F(ExportVideo, WhatCannotBeMadeIsRefusedInOneLine) {
+  ASSERT_LE(rehearse(kLine).status, 1);
+  refused(out() + " -o " + (folder_ / "line.avi"), "does not end in .mp4");
+  refused(out() + " --size 640 -o " + film(), "1280x720");
+  refused(out() + " --size 642x360 -o " + film(), "by fours");
+  refused(out() + " --seconds 0 -o " + film(), "0.2..600");
+  refused(out() + " --fps 100 -o " + film(), "1..60");
+  refused((folder_ / "nothing") + " -o " + film(), "nothing");
+  ASSERT_LE(rehearse(kLine, "--no-pictures").status, 1);
+  refused(out() + " -o " + film(), "replay");
+}
+
+TEST_F(ExportVideo, AnInterruptLeavesNoHalfFile) {
+  ASSERT_LE(rehearse(kLine).status, 1);
+  const Outcome outcome = understudy_interrupted("export video " + out() + " -o " + film(), 4);
+  EXPECT_EQ(outcome.status, 128 + 2) << outcome.out << outcome.err;
+  EXPECT_FALSE(fs::exists(film()));
+}
+
+}  // namespace
+}  // namespace understudy::cli_test
