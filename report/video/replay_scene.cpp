@@ -16,6 +16,8 @@ using rehearsal::TracePoint;
 constexpr std::size_t kPathPointsMost = 3000;    // of what is still to come
 constexpr std::size_t kTrianglesMost = 600'000;  // of beads in one picture
 
+constexpr double kShareLeast = 1e-6;  // of a section: less has no direction
+
 /// The last key that is not later; the first for what is earlier.
 std::size_t key_at(const std::vector<double>& times, double time) {
   const auto next = std::upper_bound(times.begin(), times.end(), time);
@@ -97,8 +99,8 @@ std::vector<sim::BeadStretch> laid_by(const std::vector<sim::BeadStretch>& beads
     sim::BeadStretch begun(stretch.begin(), later);
     if (later != stretch.end()) {
       const sim::BeadSection& last = *(later - 1);
-      begun.push_back(
-          sim::section_between(last, *later, (time - last.laid_at) / (later->laid_at - last.laid_at)));
+      const double share = (time - last.laid_at) / (later->laid_at - last.laid_at);
+      if (share > kShareLeast) begun.push_back(sim::section_between(last, *later, share));
     }
     laid.push_back(std::move(begun));
   }

@@ -39,6 +39,7 @@ TEST(ReplayScene, WhatIsLaidEndsWhereTheToolIs) {
   ASSERT_EQ(half.size(), 1U);
   ASSERT_EQ(half[0].size(), 3U);
   EXPECT_NEAR(half[0].back().middle_W.x(), 7e-3, 1e-12);
+  EXPECT_EQ(laid_by(beads(), 15)[0].size(), 2U) << "no section twice";
   EXPECT_EQ(laid_by(beads(), 20)[0].size(), 3U);
 }
 
