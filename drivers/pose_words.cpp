@@ -17,7 +17,7 @@ AxisVector pose_words(const Pose& X_BT) {
           p.y(),
           p.z(),
           std::atan2(R(2, 1), R(2, 2)),
-          std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
+          std::atan2(0 - R(2, 0), std::hypot(R(0, 0), R(1, 0))),
           std::atan2(R(1, 0), R(0, 0))};
 }
 

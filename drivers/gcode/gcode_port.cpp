@@ -154,15 +154,23 @@ bool GcodePort::step(double until) {
   return fault_ == Fault::none;
 }
 
+/// The controller goes on to where it was sent, on its own time.
+void GcodePort::settle() {
+  const double deadline = link_->now() + kSettleTime;
+  while (!controller_->settled() && controller_->fault() == Fault::none && link_->now() < deadline) {
+    try {
+      link_->wait(link_->now() + kTick);
+    } catch (const MachineError& error) {
+      controller_->fail(Fault::power, error.what());
+    }
+    controller_->pump();
+  }
+}
+
 Status GcodePort::wait_until(double time) {
   while (fault_ == Fault::none && now_ < time) step(time);
   if (fault_ == Fault::underrun) {
-    // The controller goes on to where the queue ended, on its own time.
-    const double deadline = link_->now() + kSettleTime;
-    while (!controller_->settled() && controller_->fault() == Fault::none && link_->now() < deadline) {
-      link_->wait(link_->now() + kTick);
-      controller_->pump();
-    }
+    settle();
     streaming_ = false;
   }
   return fault_ == Fault::none ? Status::ok : Status::faulted;
@@ -201,6 +209,7 @@ Status GcodePort::set_outputs(const machine::Outputs& outputs, double deadline) 
         outputs.fan == outputs_.fan && outputs.nozzle_temperature == outputs_.nozzle_temperature;
     if (!same) controller_->push_rest(path_.last().position);
     controller_->pump();
+    if (words_ != nullptr && outputs.off() && !same) settle();  // LinuxCNC takes its time for a line
   }
   outputs_ = outputs;
   return Status::ok;

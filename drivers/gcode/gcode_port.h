@@ -12,8 +12,8 @@
 #include "drivers/gcode/controller.h"
 #include "drivers/gcode/gcode_session.h"
 #include "drivers/gcode/gcode_words.h"
-#include "drivers/gcode/path_sampler.h"
 #include "drivers/gcode/linuxcnc_session.h"
+#include "drivers/gcode/path_sampler.h"
 #include "drivers/pose_words.h"
 #include "machine/description.h"
 
@@ -60,6 +60,7 @@ class GcodePort : public DriverPort {
   void hand_over(bool all);
   void raise(machine::Fault fault, const std::string& why);
   void end_of_motion();
+  void settle();
 
   GcodeSetup setup_;
   std::unique_ptr<ByteLink> link_;

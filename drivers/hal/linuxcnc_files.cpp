@@ -281,7 +281,7 @@ std::vector<HalFile> linuxcnc_files(const machine::MachineDescription& machine, 
   if (machine.is_chain())
     throw InputError(machine.file.string() +
                      ": LinuxCNC's genhexkins is the kinematics of a hexapod, and this machine is none: "
-                     "understudy export hal");
+                     "write one by understudy export hal");
   const Figures f{machine, hal_settings(machine, options), to_mm(machine.hexapod().geometry.deviation)};
   return {{"machine.ini", ini_file(f)},
           {"machine.hal", machine_file(f)},

@@ -105,7 +105,6 @@ class ScriptedRsh : public ByteLink {
 
 class LinuxcncSessionTest : public testing::Test {
  protected:
-  LinuxcncSessionTest() { options_.step.fill(0.5e-6); }
   void connect() {
     session_.connect();
     run(1);
@@ -132,7 +131,11 @@ class LinuxcncSessionTest : public testing::Test {
 
   ScriptedRsh rsh_;
   PoseWords words_{hexapod()};
-  SessionOptions options_;
+  SessionOptions options_ = [] {
+    SessionOptions options;
+    options.step.fill(0.5e-6);
+    return options;
+  }();
   LinuxcncSession session_{rsh_, words_, options_, {}};
 };
 
@@ -148,7 +151,7 @@ TEST_F(LinuxcncSessionTest, SendsTwoBlocksInALineAndCountsThemOnceItRestsWhereIt
   elsewhere[0] += 1e-3;
   session_.push_rest(elsewhere);
   const AxisVector there = words_.joints_of_axes(elsewhere);
-  run(0.3);
+  run(0.02);
   EXPECT_EQ(session_.executed(), 0U);
   rsh_.joints = there;
   run(0.3);

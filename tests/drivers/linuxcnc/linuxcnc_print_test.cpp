@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "control/print.h"
@@ -103,6 +104,27 @@ void print_helix(int moves) {
 TEST(LinuxcncPrint, RestsWhereOurInverseKinematicsSays) {
   SKIP_WITHOUT_LINUXCNC();
   print_helix(40);
+}
+
+TEST(LinuxcncPort, SwitchesTheHeaterOffByWordAndByAnEmergencyStop) {
+  SKIP_WITHOUT_LINUXCNC();
+  const RunningLinuxcnc linuxcnc;
+  const auto port = open_gcode(parse_port_uri(linuxcnc.uri("&home=yes&reply_s=20")), linuxcnc.machine());
+  const auto nozzle = [] { return std::atof(RunningLinuxcnc::hal({"gets", "nozzle-setpoint"}).c_str()); };
+  const machine::Outputs hot{.nozzle_temperature = 273.15 + 210, .fan = 0.5};
+  ASSERT_EQ(port->set_outputs(hot, port->now() + 1), machine::Status::ok);
+  ASSERT_EQ(port->wait_until(port->now() + 0.1), machine::Status::ok) << port->fault_text();
+  EXPECT_NEAR(nozzle(), 210, 1e-6);
+  ASSERT_EQ(port->set_outputs({}, port->now() + 1), machine::Status::ok);
+  EXPECT_EQ(nozzle(), 0);
+
+  ASSERT_EQ(port->set_outputs(hot, port->now() + 1), machine::Status::ok);
+  ASSERT_EQ(port->wait_until(port->now() + 0.1), machine::Status::ok) << port->fault_text();
+  ASSERT_NEAR(nozzle(), 210, 1e-6);
+  port->emergency_stop();
+  EXPECT_EQ(port->state().fault, Fault::emergency_stop);
+  EXPECT_THAT(RunningLinuxcnc::hal({"gets", "machine-on"}), testing::HasSubstr("FALSE"));
+  EXPECT_EQ(nozzle(), 0);
 }
 
 TEST(SlowLinuxcncPrint, RestsWhereOurInverseKinematicsSaysInThreeHundredMoves) {
