@@ -101,12 +101,12 @@ void print_helix(int moves) {
       1e6 * watch.worst_drive);
 }
 
-TEST(LinuxcncPrint, RestsWhereOurInverseKinematicsSays) {
+TEST(SlowLinuxcncPrint, RestsWhereOurInverseKinematicsSays) {
   SKIP_WITHOUT_LINUXCNC();
   print_helix(40);
 }
 
-TEST(LinuxcncPort, SwitchesTheHeaterOffByWordAndByAnEmergencyStop) {
+TEST(SlowLinuxcncPort, SwitchesTheHeaterOffByWordAndByAnEmergencyStop) {
   SKIP_WITHOUT_LINUXCNC();
   const RunningLinuxcnc linuxcnc;
   const auto port = open_gcode(parse_port_uri(linuxcnc.uri("&home=yes&reply_s=20")), linuxcnc.machine());
