@@ -1,4 +1,5 @@
-// Stands for twin_commands.cpp, export_mjcf.cpp, export_glb.cpp and export_video.cpp in the build without the twin.
+// Stands for twin_commands.cpp, export_mjcf.cpp, export_glb.cpp and export_video.cpp in the build without the
+// twin.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

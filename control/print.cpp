@@ -38,7 +38,9 @@ class PrintLoop {
         gap_(make_gap_controller()),
         cycle_(machine, port, standing_pose(machine, port), {gap_.get(), options.poses}),
         started_at_(port.now()),
-        offset_(options.offset_W) {}
+        offset_(options.offset_W) {
+    if (part_.mesh != nullptr) make_ready(*part_.mesh);
+  }
 
   PrintResult run() {
     try {

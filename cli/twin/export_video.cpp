@@ -66,7 +66,8 @@ void add_export_video(CLI::App& command, Action& action) {
       "video", "A rehearsal as a film: machine, growing beads, and what was found, as it happens");
   video->footer(
       "Example: understudy rehearse part.gcode --out part && understudy export video part -o part.mp4\n"
-      "A frame takes one to two seconds: fewer of them, and smaller ones, are drawn sooner (docs/viewers.md).");
+      "A frame takes one to two seconds: fewer of them, and smaller ones, are drawn sooner "
+      "(docs/viewers.md).");
   video->add_option("folder", call->folder, "results of understudy rehearse")->required();
   video->add_option("--seconds", call->settings.duration, "length of the film")->capture_default_str();
   video->add_option("--fps", call->settings.frames_per_second, "frames per second")->capture_default_str();

@@ -104,6 +104,8 @@ std::optional<LocalSurface> find_local_surface(const geometry::Mesh& part, const
   return fit.surface;
 }
 
+void make_ready(const geometry::Mesh& part) { static_cast<void>(part.nearest(Vec3::Zero())); }
+
 LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT) {
   if (!height_over(part, X_WT))
     throw InputError(fmt::format("the tool's axis does not meet the part within {:g} mm of the tip at {}",

@@ -18,12 +18,15 @@ struct LocalSurface {
 /// Around the point under the tool [m]: the dot of every gap on the way down lies inside.
 constexpr double kSurfaceRadius = 2.5e-3;
 
+/// Makes what the first look would make otherwise: the search tree of a large part takes a second.
+void make_ready(const geometry::Mesh& part);
+
 /// Quadratic fit of the nominal part around the point under the tool, within kSurfaceRadius. The part is in
 /// the frame of X_WT. Throws InputError when the axis does not meet the part within 20 mm of the tip, or when
 /// the part ends or is not smooth there.
 LocalSurface local_surface(const geometry::Mesh& part, const Pose& X_WT);
 
-/// The same in a control cycle: nothing instead of an error. Does not allocate.
+/// The same in a control cycle: nothing instead of an error. Does not allocate once the part is made ready.
 std::optional<LocalSurface> find_local_surface(const geometry::Mesh& part, const Pose& X_WT);
 
 /// Of the tip over the nominal part [m], along the tool axis; nothing where that does not meet the part

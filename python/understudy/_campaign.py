@@ -13,7 +13,7 @@ from . import _core
 from ._command import run
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas  # type: ignore
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Campaign:
 
 def _pandas() -> Any:
     try:
-        import pandas
+        import pandas  # type: ignore
     except ImportError as error:
         raise ImportError("the rows of a campaign are a pandas.DataFrame: install pandas (Debian: python3-pandas), or "
                           "read runs.sqlite by sqlite3") from error

@@ -1,5 +1,7 @@
-// The print loop of the machine gives the setpoints that the twin got, bit by bit, gap control included:
+// The print loop of the machine gives the setpoints that the twin got, to rounding, gap control included:
 // it sees the frames that the twin took, and everything else comes from a loopback port.
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <span>
 #include <string>
@@ -26,6 +28,10 @@ using machine::Status;
 
 const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 constexpr double kTwinClock = 2e-3;  // [s], of the quasistatic twin
+
+// Of sums: seen are 1.4e-16 with `start` and 4.2e-14 with `continuous`, whose offsets add up. Not to the last
+// bit.
+constexpr double kRounding = 1e-12;  // [m or m/s]
 
 /// What the twin's port took and showed.
 struct TwinRun {
@@ -100,7 +106,6 @@ class LoopbackThatSees : public machine::MachinePort {
     const auto mechanism = machine.make_mechanism();
     machine::LoopbackPort::Options options;
     options.clock_step = kTwinClock;
-    options.drive_zero = machine.drive_zero();
     options.axis_count = mechanism->axis_count();
     const auto axes = std::span(options.start).first(static_cast<std::size_t>(options.axis_count));
     EXPECT_EQ(mechanism->inverse(machine.X_BT_home, {}, axes), kinematics::SolveStatus::ok);
@@ -146,14 +151,17 @@ TEST_P(SameCode, GivesTheMachineTheTwinsSetpointsWithGapControl) {
   EXPECT_EQ(port.left(), 0U);
   const TwinRun driven = read_run(folder / "machine.record");
   ASSERT_EQ(driven.setpoints.size(), twin.setpoints.size());
+  double farthest = 0;  // [m or m/s]
   for (std::size_t i = 0; i < twin.setpoints.size(); ++i) {
     const machine::Setpoint &a = twin.setpoints[i], &b = driven.setpoints[i];
-    ASSERT_TRUE(a.time == b.time && a.line == b.line && a.filament == b.filament &&
-                a.position == b.position && a.velocity == b.velocity)
-        << i << " at " << a.time << " s, line " << a.line << ": apart by "
-        << (kinematics::elements(a.position) - kinematics::elements(b.position)).abs().maxCoeff() << " and "
-        << (kinematics::elements(a.velocity) - kinematics::elements(b.velocity)).abs().maxCoeff();
+    ASSERT_TRUE(a.time == b.time && a.line == b.line) << i << " at " << a.time << " s, line " << a.line;
+    farthest = std::max(farthest, std::abs(a.filament - b.filament));
+    for (std::size_t axis = 0; axis < 6; ++axis)
+      farthest = std::max({farthest, std::abs(a.position[axis] - b.position[axis]),
+                           std::abs(a.velocity[axis] - b.velocity[axis])});
   }
+  RecordProperty("farthest", std::to_string(farthest));
+  EXPECT_LE(farthest, kRounding);
 }
 
 INSTANTIATE_TEST_SUITE_P(GapControl, SameCode,

@@ -197,6 +197,7 @@ TEST(GapCycle, TheSurfaceUnderTheToolIsFoundWithoutAllocating) {
   const Pose X_WT = make_pose(Quat::Identity(), Vec3(0, 0, kTable + kGap));
   const Pose beside = make_pose(Quat::Identity(), Vec3(30.5e-3, 0, kTable + kGap));
   bool on_part = false, off_part = true;
+  make_ready(*part);
   const Calls made = calls_of([&] {
     on_part = find_local_surface(*part, X_WT).has_value() && height_over(*part, X_WT).has_value();
     off_part = find_local_surface(*part, beside).has_value();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include <fmt/format.h>
 
@@ -110,11 +111,11 @@ void GcodeState::set_feed(Block& block) {
 }
 
 void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
+  set_acceleration(block);  // its T is no tool, its R no arc's
   select_tool(block);
   set_nozzle(block, steps);
   set_fan(block, steps);
   set_retraction(block);
-  set_acceleration(block);
   if (block.find(Command::flow) != nullptr)
     if (const auto flow = percent(block, "flow")) flow_ = *flow / 100;
   if (block.find(Command::speed) != nullptr)
@@ -183,18 +184,18 @@ std::optional<double> GcodeState::percent(Block& block, const char* what) const 
 /// M204: P of moves that feed filament, T of the others, S of both. R is of retractions, which no move is.
 void GcodeState::set_acceleration(Block& block) {
   if (block.find(Command::acceleration) == nullptr) return;
-  block.take('R');
-  const auto set = [&](char letter, double& acceleration) {
-    const Word* word = block.take(letter);
-    if (word == nullptr) return;
-    acceleration = length_of(block, *word, unit_);
-    if (!(acceleration > 0))
+  block.extract('R');
+  const auto set = [&](char letter, std::initializer_list<double*> accelerations) {
+    const auto word = block.extract(letter);
+    if (!word) return;
+    const double value = length_of(block, *word, unit_);
+    if (!(value > 0))
       block.fail(*word, fmt::format("'{}': an acceleration is in mm/s^2, above 0", word->text));
+    for (double* acceleration : accelerations) *acceleration = value;
   };
-  set('S', acceleration_);
-  if (block.find('S') != nullptr) travel_acceleration_ = acceleration_;
-  set('P', acceleration_);
-  set('T', travel_acceleration_);
+  set('S', {&acceleration_, &travel_acceleration_});
+  set('P', {&acceleration_});
+  set('T', {&travel_acceleration_});
 }
 
 /// M207: what the firmware does at G10.
