@@ -106,11 +106,12 @@ inline DrawnBundle draw_bundle(const DrawnSetting& setting, std::uint64_t seed) 
       lengths[i] = drawn.truth.machine.geometry.length_offset[i] +
                    (1 + drawn.truth.lead[i]) * pose.displacement[i] +
                    noise * setting.drives.length * random.normal();
+    auto reached = kinematics::forward(drawn.truth.machine.geometry, lengths, X_BT);
     StrutLengths load;
-    if (!strut_loads(hexapod(), drawn.truth.machine.geometry, X_BT, load))
+    if (!strut_loads(hexapod(), drawn.truth.machine.geometry, reached.X_BT, load))
       throw std::logic_error("a reachable pose is singular");
     for (std::size_t i = 0; i < kStruts; ++i) lengths[i] -= std::copysign(0.5 * setting.play, load[i]);
-    const auto reached = kinematics::forward(drawn.truth.machine.geometry, lengths, X_BT);
+    reached = kinematics::forward(drawn.truth.machine.geometry, lengths, X_BT);
     if (reached.status != kinematics::SolveStatus::ok) throw std::logic_error("a true pose is out of reach");
     drawn.truth.poses.push_back(reached.X_BT);
     for (std::size_t c = 0; c < 2; ++c)

@@ -34,11 +34,11 @@ struct Sides {
 /// Against the loads on the true machine.
 Sides counted(const DrawnBundle& drawn) {
   Sides sides;
-  for (const BundlePose& pose : drawn.problem.poses) {
+  for (std::size_t j = 0; j < drawn.problem.poses.size(); ++j) {
     StrutLengths load;
-    EXPECT_TRUE(strut_loads(hexapod(), drawn.truth.machine.geometry, pose.X_BT, load));
+    EXPECT_TRUE(strut_loads(hexapod(), drawn.truth.machine.geometry, drawn.truth.poses[j], load));
     for (std::size_t i = 0; i < kStruts; ++i) {
-      const int side = static_cast<int>(pose.approach[i]);
+      const int side = static_cast<int>(drawn.problem.poses[j].approach[i]);
       sides.known += side != 0;
       sides.wrong += side * load[i] < 0;
     }

@@ -35,10 +35,12 @@ Lab lab() {
     EXPECT_EQ(kinematics::inverse(drawn, X_BT, lengths), kinematics::SolveStatus::ok);
     PoseSample sample;
     sample.displacement = displacements(drawn, lengths);
-    EXPECT_TRUE(strut_loads(lab.machine, lab.truth, X_BT, load));
     for (std::size_t i = 0; i < kStruts; ++i)
-      lengths[i] = lab.truth.length_offset[i] + sample.displacement[i] - std::copysign(0.5 * kPlay, load[i]);
-    const auto stands = kinematics::forward(lab.truth, lengths, X_BT);
+      lengths[i] = lab.truth.length_offset[i] + sample.displacement[i];
+    auto stands = kinematics::forward(lab.truth, lengths, X_BT);
+    EXPECT_TRUE(strut_loads(lab.machine, lab.truth, stands.X_BT, load));
+    for (std::size_t i = 0; i < kStruts; ++i) lengths[i] -= std::copysign(0.5 * kPlay, load[i]);
+    stands = kinematics::forward(lab.truth, lengths, X_BT);
     EXPECT_EQ(stands.status, kinematics::SolveStatus::ok);
     sample.X_BT = stands.X_BT;
     sample.X_BT.translation() += kNoise * normal_vec3(random);
