@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -18,7 +17,6 @@ constexpr double kStripWidth = 30;      // [px], half a millimetre: a thread of 
 constexpr double kPowerMax = 100;       // of the laser's own
 constexpr double kGapOffsetMax = 5e-3;  // [m], beyond it the dot leaves the picture
 constexpr double kOffsetMaxPx = 1000;   // farther than a picture is wide
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t index(const Image& image, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) + static_cast<std::size_t>(x);
