@@ -40,7 +40,6 @@ ContinuousGapController::ContinuousGapController(const machine::MachineDescripti
       history_(kRemembered, machine.cycle_time),
       filter_(machine) {
   offsets_.reserve(kOffsetsMax);
-  if (part_.mesh != nullptr) make_ready(*part_.mesh);
 }
 
 double ContinuousGapController::lead() const {

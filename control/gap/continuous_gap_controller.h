@@ -47,7 +47,7 @@ class ContinuousGapController {
   /// From a time on, every pose is shifted by this, in addition to what came before.
   using Report = std::function<void(const OffsetChange&)>;
 
-  /// Machine, part and port outlive the controller.
+  /// Machine, part and port outlive the controller. The mesh of the part is made ready (local_surface.h).
   ContinuousGapController(const machine::MachineDescription& machine, const PrintedPart& part,
                           const ContinuousGapOptions& options, machine::MachinePort& port, Report report);
 

@@ -212,6 +212,7 @@ void control_without_calls(const machine::MachineDescription& machine) {
   GapRig rig(machine, low_by(0));
   rig.set_play([](const Pose& X) -> Vec3 { return 0.01 * X.translation().x() * Vec3::UnitZ(); });
   const auto mesh = slab();
+  make_ready(*mesh);
   const PrintedPart part{mesh.get(), {}};
   std::vector<OffsetChange> offsets;
   ContinuousGapController gap(machine, part, {{}, gap_follower_options(machine)}, rig.port(),

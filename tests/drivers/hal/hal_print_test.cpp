@@ -8,6 +8,7 @@
 #include "control/print.h"
 #include "tests/drivers/hal/hal_machine.h"
 #include "tests/drivers/hal/received_setpoints.h"
+#include "tests/drivers/helix.h"
 
 namespace understudy::drivers {
 namespace {
@@ -17,31 +18,16 @@ using machine::Fault;
 
 constexpr int kMoves = 360;
 
-/// A helix of beads about the middle of the work space, the tool tilted by 2 degrees towards where it goes;
-/// the fan changes every 40 moves, for which the machine comes to rest.
+/// The tool tilted by 2 degrees towards where it goes.
 toolpath::Program helix(const machine::MachineDescription& machine) {
-  toolpath::Program program;
-  program.file = "helix.gcode";
-  const Pose X_WT_home = machine.X_WB * machine.X_BT_home;
-  for (int i = 0; i <= kMoves; ++i) {
-    const double turn = 0.02 * i;
-    toolpath::Step step;
-    step.kind = i == 0 ? toolpath::StepKind::travel : toolpath::StepKind::print;
-    step.X_WT = X_WT_home;
-    step.X_WT.translation() += Vec3(10e-3 * std::cos(turn), 10e-3 * std::sin(turn), -10e-6 * i);
-    step.X_WT.linear() = exp_rotation(0.035 * Vec3(-std::sin(turn), std::cos(turn), 0)) * X_WT_home.linear();
-    step.feed = 15e-3;
-    step.filament = i == 0 ? 0 : 20e-6;
-    step.line = i + 1;
-    program.steps.push_back(step);
-    if (i % 40 != 0) continue;
-    toolpath::Step fan;
-    fan.kind = toolpath::StepKind::fan;
-    fan.fan = i / 40 % 2 == 0 ? 0.5 : 1;
-    fan.line = i + 1;
-    program.steps.push_back(fan);
-  }
-  return program;
+  return program_of({.moves = kMoves,
+                     .moves_in_a_piece = 40,
+                     .radius = 10e-3,
+                     .turn = 0.02,
+                     .tilt = 0.035,
+                     .feed = 15e-3,
+                     .filament = 20e-6},
+                    machine);
 }
 
 /// At every rest of a print: where the drives are against where the last setpoint is.

@@ -8,6 +8,7 @@
 
 #include "control/print.h"
 #include "drivers/gcode/gcode_port.h"
+#include "tests/drivers/helix.h"
 #include "tests/drivers/linuxcnc/linuxcnc_machine.h"
 
 namespace understudy::drivers {
@@ -17,31 +18,16 @@ using machine::Fault;
 
 constexpr int kMovesInAPiece = 20;
 
-/// A helix of beads, the tool tilted towards where it goes; the fan changes every 20 moves, for which the
-/// machine comes to rest.
 toolpath::Program helix(const machine::MachineDescription& machine, int moves) {
-  toolpath::Program program;
-  program.file = "helix.gcode";
-  const Pose X_WT_home = machine.X_WB * machine.X_BT_home;
-  for (int i = 0; i <= moves; ++i) {
-    const double turn = 0.06 * i;
-    toolpath::Step step;
-    step.kind = i == 0 ? toolpath::StepKind::travel : toolpath::StepKind::print;
-    step.X_WT = X_WT_home;
-    step.X_WT.translation() += Vec3(15e-3 * std::cos(turn), 15e-3 * std::sin(turn), -10e-6 * i);
-    step.X_WT.linear() = exp_rotation(0.1 * Vec3(-std::sin(turn), std::cos(turn), 0.3)) * X_WT_home.linear();
-    step.feed = 10e-3;
-    step.filament = i == 0 ? 0 : 40e-6;
-    step.line = i + 1;
-    program.steps.push_back(step);
-    if (i % kMovesInAPiece != 0) continue;
-    toolpath::Step fan;
-    fan.kind = toolpath::StepKind::fan;
-    fan.fan = i / kMovesInAPiece % 2 == 0 ? 0.5 : 1;
-    fan.line = i + 1;
-    program.steps.push_back(fan);
-  }
-  return program;
+  return program_of({.moves = moves,
+                     .moves_in_a_piece = kMovesInAPiece,
+                     .radius = 15e-3,
+                     .turn = 0.06,
+                     .tilt = 0.1,
+                     .spin = 0.03,
+                     .feed = 10e-3,
+                     .filament = 40e-6},
+                    machine);
 }
 
 /// At every rest of a print: drives behind LinuxCNC's kinematics against our inverse kinematics of the pose.

@@ -88,7 +88,8 @@ TEST(SlowPlantTrial, TwentyMachinesBeforeBoardsOfAPrintShop) {
   EXPECT_LT(bundle.registered.worst, 100e-6);
   // 20 machines: an RMS of errors that are mostly six numbers each is known to 1 / sqrt(2 6 20) = 6.5 %.
   EXPECT_NEAR(bundle.in_frame.ratio, 1, 0.26);
-  // Stated is half of a play where cables could change its side; here are none.
+  // The goal is 1 within 0.26. It is missed on the safe side: half of a play is stated where cables could
+  // change its side; here are none.
   EXPECT_NEAR(bundle.registered.ratio, 0.52, 0.1);
   EXPECT_NEAR(bundle.registered.coverage, 0.95, 0.04);
 }
