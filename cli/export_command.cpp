@@ -4,7 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/export_video_command.h"
-#include "cli/machine_option.h"
+#include "cli/options/machine_option.h"
 #include "cli/urdf_of.h"
 #include "core/file/output_file.h"
 #include "machine/description.h"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/machine_option.h"
+#include "cli/options/machine_option.h"
 #include "core/error.h"
 #include "core/file/number_table.h"
 #include "core/units.h"

@@ -15,7 +15,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "cli/command.h"
-#include "cli/identify_command.h"
+#include "cli/drive/identify_command.h"
 #include "cli/new_machine_command.h"
 #include "cli/plain_processor.h"
 #include "core/error.h"

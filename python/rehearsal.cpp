@@ -14,7 +14,7 @@
 #include "rehearsal/rehearse.h"
 #include "report/page/write_results.h"
 #include "report/summary_json.h"
-#include "report/trace_csv.h"
+#include "report/trace/trace_csv.h"
 
 namespace understudy::python {
 namespace {

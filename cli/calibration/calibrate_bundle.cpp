@@ -6,8 +6,8 @@
 #include "calibration/bundle/calibrate_bundle.h"
 #include "cli/calibration/calibrate_bundle.h"
 #include "cli/calibration/calibration_output.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
 #include "core/units.h"
 
 namespace understudy::cli {

@@ -6,13 +6,13 @@
 
 #include "calibration/gap_sensor/calibrate_gap_sensor.h"
 #include "cli/command.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
 #include "core/interrupt.h"
 #include "machine/default_machine.h"
 #include "machine/file/gap_sensor_section.h"
 #include "machine/file/section_text.h"
-#include "report/gap_sensor_summary.h"
+#include "report/calibration/gap_sensor_summary.h"
 
 namespace understudy::cli {
 namespace {

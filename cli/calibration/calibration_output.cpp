@@ -10,7 +10,7 @@
 #include "core/interrupt.h"
 #include "machine/file/beside_machine.h"
 #include "machine/file/calibration_section.h"
-#include "report/calibration_summary.h"
+#include "report/calibration/calibration_summary.h"
 #include "report/page/calibration_page.h"
 
 namespace understudy::cli {

@@ -5,7 +5,7 @@
 
 #include "calibration/machine/calibrate_machine.h"
 #include "cli/command.h"
-#include "cli/output_options.h"
+#include "cli/options/output_options.h"
 #include "core/file/output_folder.h"
 
 namespace understudy::cli {

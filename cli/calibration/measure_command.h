@@ -9,7 +9,7 @@
 
 #include "calibration/machine/measurement_table.h"
 #include "cli/command.h"
-#include "cli/output_options.h"
+#include "cli/options/output_options.h"
 #include "machine/default_machine.h"
 #include "vision/boards/rig_file.h"
 

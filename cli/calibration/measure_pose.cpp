@@ -9,8 +9,8 @@
 
 #include "calibration/machine/camera_poses.h"
 #include "cli/calibration/measure_command.h"
+#include "cli/options/seed_option.h"
 #include "cli/progress.h"
-#include "cli/seed_option.h"
 #include "core/cut_image.h"
 #include "core/interrupt.h"
 #include "core/units.h"

@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/dialect_options.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/dialect_options.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
 #include "cli/progress.h"
 #include "cli/twin/compensation_commands.h"
 #include "cli/twin/rehearse_options.h"

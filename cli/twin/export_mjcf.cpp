@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/machine_option.h"
-#include "cli/seed_option.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/seed_option.h"
 #include "core/file/output_file.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"

@@ -7,7 +7,7 @@
 #include "cli/command.h"
 #include "core/file/output_file.h"
 #include "report/recorded/recorded_run.h"
-#include "report/trace_hdf5.h"
+#include "report/trace/trace_hdf5.h"
 
 namespace understudy::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "cli/command.h"
 #include "cli/export_video_command.h"
-#include "cli/output_options.h"
+#include "cli/options/output_options.h"
 #include "cli/progress.h"
 #include "core/error.h"
 #include "core/file/output_file.h"

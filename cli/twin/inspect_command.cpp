@@ -12,8 +12,8 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/dialect_options.h"
-#include "cli/machine_option.h"
+#include "cli/options/dialect_options.h"
+#include "cli/options/machine_option.h"
 #include "cli/twin/inspect_robot.h"
 #include "core/error.h"
 #include "core/quantile.h"

@@ -7,9 +7,9 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/dialect_options.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/dialect_options.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
 #include "cli/progress.h"
 #include "core/error.h"
 #include "core/file/output_file.h"

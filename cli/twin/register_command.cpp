@@ -7,10 +7,10 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
+#include "cli/options/seed_option.h"
 #include "cli/progress.h"
-#include "cli/seed_option.h"
 #include "cli/twin/registration_options.h"
 #include "control/registration/part_pose_file.h"
 #include "core/digest.h"

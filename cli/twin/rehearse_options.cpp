@@ -11,9 +11,9 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/dialect_options.h"
-#include "cli/machine_option.h"
-#include "cli/seed_option.h"
+#include "cli/options/dialect_options.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/seed_option.h"
 #include "cli/twin/registration_options.h"
 #include "cli/twin/robot_options.h"
 #include "core/error.h"

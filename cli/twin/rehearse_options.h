@@ -7,7 +7,7 @@
 
 #include <CLI/App.hpp>
 
-#include "cli/output_options.h"
+#include "cli/options/output_options.h"
 #include "rehearsal/request/request.h"
 
 namespace understudy::cli {

@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/machine_option.h"
-#include "cli/seed_option.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/seed_option.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/staged_file.h"

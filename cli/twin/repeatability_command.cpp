@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
-#include "cli/seed_option.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
+#include "cli/options/seed_option.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
 #include "core/units.h"
 #include "machine/description.h"
-#include "report/repeatability_report.h"
+#include "report/study/repeatability_report.h"
 #include "studies/repeatability/repeatability.h"
 
 namespace understudy::cli {

@@ -10,9 +10,9 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/dialect_options.h"
-#include "cli/machine_option.h"
-#include "cli/seed_option.h"
+#include "cli/options/dialect_options.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/seed_option.h"
 #include "cli/twin/compensation_commands.h"
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"

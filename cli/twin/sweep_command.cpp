@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/jobs_option.h"
-#include "cli/output_options.h"
+#include "cli/options/jobs_option.h"
+#include "cli/options/output_options.h"
+#include "cli/options/seed_option.h"
 #include "cli/progress.h"
-#include "cli/seed_option.h"
 #include "cli/twin/planned_program.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
@@ -20,9 +20,9 @@
 #include "regression/run_scenario.h"
 #include "regression/scenario_file.h"
 #include "regression/sweep.h"
-#include "report/error_budget_report.h"
 #include "report/page/error_budget_page.h"
-#include "report/sweep_json.h"
+#include "report/study/error_budget_report.h"
+#include "report/study/sweep_json.h"
 #include "studies/budget/error_budget.h"
 
 namespace understudy::cli {

@@ -16,7 +16,7 @@
 #include "report/gltf/replay_glb.h"
 #include "report/page/pack.h"
 #include "report/page/page_parts.h"
-#include "report/trace_hdf5.h"
+#include "report/trace/trace_hdf5.h"
 #include "sim/as_built/as_built.h"
 #include "sim/plant/plant.h"
 

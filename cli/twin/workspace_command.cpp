@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/jobs_option.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/jobs_option.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
 #include "cli/progress.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"

@@ -7,7 +7,7 @@
 #include "core/quantile.h"
 #include "core/units.h"
 #include "report/chart/svg_chart.h"
-#include "report/trace_values.h"
+#include "report/trace/trace_values.h"
 
 namespace understudy::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "report/chart/svg_chart.h"
-#include "report/error_budget_report.h"
+#include "report/study/error_budget_report.h"
 
 namespace understudy::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/kept_points.h"
+#include "report/trace/kept_points.h"
 
 namespace understudy::report {
 namespace {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "core/version.h"
-#include "report/campaign_report.h"
-#include "report/error_budget_report.h"
 #include "report/markup.h"
 #include "report/page/page_parts.h"
+#include "report/study/campaign_report.h"
+#include "report/study/error_budget_report.h"
 
 namespace understudy::report {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "core/version.h"
 #include "report/chart/error_budget_charts.h"
-#include "report/error_budget_report.h"
 #include "report/markup.h"
 #include "report/page/page_parts.h"
+#include "report/study/error_budget_report.h"
 
 namespace understudy::report {
 namespace {

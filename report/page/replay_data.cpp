@@ -12,8 +12,8 @@
 #include "core/text/stable_number.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
-#include "report/kept_points.h"
 #include "report/page/pack.h"
+#include "report/trace/kept_points.h"
 #include "sim/surface/bead_sweep.h"
 
 namespace understudy::report {

@@ -10,7 +10,7 @@
 #include "report/page/replay_data.h"
 #include "report/picture/png.h"
 #include "report/summary_json.h"
-#include "report/trace_values.h"
+#include "report/trace/trace_values.h"
 
 namespace understudy::report {
 namespace {

@@ -9,7 +9,7 @@
 #include "report/page/report_html.h"
 #include "report/picture/png.h"
 #include "report/summary_json.h"
-#include "report/trace_csv.h"
+#include "report/trace/trace_csv.h"
 #include "sim/removal/removal.h"
 
 namespace understudy::report {

@@ -5,16 +5,16 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/jobs_option.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/jobs_option.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
+#include "cli/options/seed_option.h"
 #include "cli/progress.h"
-#include "cli/seed_option.h"
 #include "cli/twin/compensation_commands.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
 #include "core/interrupt.h"
-#include "report/compensation_report.h"
+#include "report/study/compensation_report.h"
 #include "studies/compensation/compensated_prints.h"
 
 namespace understudy::cli {

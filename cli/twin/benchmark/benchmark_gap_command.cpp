@@ -5,11 +5,11 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command.h"
-#include "cli/jobs_option.h"
-#include "cli/machine_option.h"
-#include "cli/output_options.h"
+#include "cli/options/jobs_option.h"
+#include "cli/options/machine_option.h"
+#include "cli/options/output_options.h"
+#include "cli/options/seed_option.h"
 #include "cli/progress.h"
-#include "cli/seed_option.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
 #include "core/interrupt.h"

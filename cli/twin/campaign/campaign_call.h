@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/output_options.h"
+#include "cli/options/output_options.h"
 #include "cli/twin/campaign/campaign_folder.h"
 #include "studies/campaign/campaign.h"
 #include "studies/campaign/run_inputs.h"

@@ -24,8 +24,8 @@
 #include "core/version.h"
 #include "rehearsal/findings/verdict.h"
 #include "rehearsal/request/memory_need.h"
-#include "report/campaign_report.h"
 #include "report/page/campaign_page.h"
+#include "report/study/campaign_report.h"
 #include "report/summary_json.h"
 #include "studies/campaign/campaign_file.h"
 

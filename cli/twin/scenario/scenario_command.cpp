@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/jobs_option.h"
+#include "cli/options/jobs_option.h"
 #include "cli/twin/scenario/scenario_runs.h"
 #include "regression/scenario_file.h"
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/jobs_option.h"
+#include "cli/options/jobs_option.h"
 #include "cli/progress.h"
 #include "cli/twin/command_figures.h"
 #include "cli/twin/own_process.h"

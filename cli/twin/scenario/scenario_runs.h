@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/output_options.h"
+#include "cli/options/output_options.h"
 
 namespace understudy::cli {
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/report/sample_budget.h"
+#include "tests/report/study/sample_budget.h"
 
 namespace understudy::report {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/file/output_file.h"
-#include "report/trace_csv.h"
+#include "report/trace/trace_csv.h"
 #include "tests/report/sample_record.h"
 #include "tests/temporary_folder.h"
 

@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "report/calibration_benchmark_report.h"
 #include "report/page/calibration_benchmark_page.h"
+#include "report/study/calibration_benchmark_report.h"
 
 namespace understudy::studies {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "report/calibration_benchmark_report.h"
+#include "report/study/calibration_benchmark_report.h"
 #include "studies/calibration/calibration_benchmark.h"
 
 namespace understudy::studies {

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/file/read_file.h"
-#include "report/faulted_prints_report.h"
+#include "report/study/faulted_prints_report.h"
 #include "tests/temporary_folder.h"
 
 namespace understudy::studies {
