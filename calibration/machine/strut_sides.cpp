@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/distributions.h"
 #include "core/units.h"
 
 namespace understudy::calibration {
@@ -12,6 +13,19 @@ using machine::HexapodModel;
 
 constexpr double kCables = 0.1;  // [N] that cables pull, and other loads that the description does not have
 constexpr double kSure = 3;      // sigma
+
+/// The side of a play by its strut's load.
+struct SidesByLoad {
+  explicit SidesByLoad(const HexapodModel& hexapod) : nut(kGravity * hexapod.masses.nut) {
+    const double both = hexapod.play.ball_joint + hexapod.play.screw_nut;
+    // The nut hangs in its screw while the rod, which it carries, stands on it.
+    between = both > 0 ? (hexapod.play.ball_joint - hexapod.play.screw_nut) / both : 0;
+  }
+  double side(double load) const { return load > 0 ? 1 : load < -nut ? -1 : between; }
+
+  double nut;  ///< [N], its weight
+  double between = 0;
+};
 
 /// Of a motor, which stands off by dev from its universal joint, when the ball joint is at d_B from there.
 /// Its first axis is `tangent_B`.
@@ -105,13 +119,26 @@ kinematics::PerStrut<double> probable_sides(const machine::MachineDescription& m
   kinematics::PerStrut<double> sides{};
   StrutLengths load;
   if (!strut_loads(machine, geometry, X_BT, load)) return sides;
-  const HexapodModel& hexapod = machine.hexapod();
-  const double nut = kGravity * hexapod.masses.nut;
-  const double both = hexapod.play.ball_joint + hexapod.play.screw_nut;
-  // The nut hangs in its screw while the rod, which it carries, stands on it.
-  const double between = both > 0 ? (hexapod.play.ball_joint - hexapod.play.screw_nut) / both : 0;
-  for (std::size_t i = 0; i < kStruts; ++i) sides[i] = load[i] > 0 ? 1 : load[i] < -nut ? -1 : between;
+  const SidesByLoad by(machine.hexapod());
+  for (std::size_t i = 0; i < kStruts; ++i) sides[i] = by.side(load[i]);
   return sides;
+}
+
+bool side_variances(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                    const machine::ToleranceSet& tolerances, const Pose& X_BT,
+                    kinematics::PerStrut<double>& variance) {
+  StrutLengths load, sigma;
+  if (!strut_loads(machine, geometry, X_BT, load) || !load_sigmas(machine, geometry, tolerances, X_BT, sigma))
+    return false;
+  const SidesByLoad by(machine.hexapod());
+  const double friction = machine.hexapod().play.friction / std::sqrt(3.0);  // of an even distribution
+  for (std::size_t i = 0; i < kStruts; ++i) {
+    const double spread = std::hypot(sigma[i], kCables / kSure, friction), side = by.side(load[i]);
+    const double pulls = normal_below((-by.nut - load[i]) / spread), pushes = normal_below(load[i] / spread);
+    variance[i] = pushes * std::pow(1 - side, 2) + pulls * std::pow(-1 - side, 2) +
+                  (1 - pushes - pulls) * std::pow(by.between - side, 2);
+  }
+  return true;
 }
 
 kinematics::PerStrut<Approach> resting_sides(const machine::MachineDescription& machine,

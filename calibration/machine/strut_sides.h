@@ -22,6 +22,14 @@ bool load_sigmas(const machine::MachineDescription& machine, const kinematics::H
 kinematics::PerStrut<double> probable_sides(const machine::MachineDescription& machine,
                                             const kinematics::HexapodGeometry& geometry, const Pose& X_BT);
 
+/// Mean square of how far each side is from the probable one: the load is normally distributed by
+/// load_sigmas() and 0.1 N (three sigma), and friction holds a side evenly anywhere within. 0 where the side
+/// is sure, 2 where a strut without a nut's weight is as likely to push as to pull. False where strut_loads()
+/// is.
+bool side_variances(const machine::MachineDescription& machine, const kinematics::HexapodGeometry& geometry,
+                    const machine::ToleranceSet& tolerances, const Pose& X_BT,
+                    kinematics::PerStrut<double>& variance);
+
 /// A strut that pushes rests as if it had come by lengthening, one that pulls as by shortening. `unknown`
 /// within friction of the joints, between the sides (where the nut's own weight keeps one play on either),
 /// and nearer to that than three sigma of the load, for a geometry that is off by `tolerances`, and 0.1 N.

@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include "calibration/rows/surroundings_start.h"
+#include "core/distributions.h"
 
 namespace understudy::calibration {
 namespace {
@@ -72,8 +71,7 @@ double spoiled_from(RowKind kind) {
   static const auto limits = [] {
     std::array<double, kMostEquations + 1> of{};
     for (int n = 1; n <= kMostEquations; ++n)
-      of[static_cast<std::size_t>(n)] =
-          quantile(complement(boost::math::chi_squared_distribution<double>(n), kRowSpoiled));
+      of[static_cast<std::size_t>(n)] = chi_squared_exceeded(n, kRowSpoiled);
     return of;
   }();
   return limits.at(static_cast<std::size_t>(equations_of(kind)));

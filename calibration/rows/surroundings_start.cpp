@@ -1,8 +1,8 @@
 #include "calibration/rows/surroundings_start.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+
+#include "core/decompositions.h"
 
 namespace understudy::calibration {
 namespace {
@@ -11,12 +11,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Slot = SurroundingsLayout::Slot;
-
-Mat3 nearest_rotation(const Mat3& M) {
-  const Eigen::JacobiSVD<Mat3> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vec3 signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-}
 
 bool has_turn(RowKind kind) { return kind == RowKind::pose || kind == RowKind::orientation; }
 bool in_frame(RowKind kind) { return has_turn(kind) || kind == RowKind::position; }
@@ -138,7 +132,7 @@ void Starter::turns_by_positions(bool linear) {
         b.segment<3>(at) = reached_target(j) - middle_S;
         at += 3;
       }
-      const VectorXd x = A.completeOrthogonalDecomposition().solve(b);
+      const VectorXd x = least_norm(A, b);
       for (Index k = 0; k < 3; ++k) Q.row(k) = x.segment<3>(3 * k).transpose();
     } else {
       for (const std::size_t j : rows)
@@ -170,7 +164,7 @@ void Starter::positions() {
     if (layout_.frames[frame(j)].known) b.segment<3>(at) -= at_.frames[frame(j)].translation();
     at += 3;
   }
-  const VectorXd x = A.completeOrthogonalDecomposition().solve(b);
+  const VectorXd x = least_norm(A, b);
   for (Index f = 0; f < frames; ++f)
     if (!layout_.frames[static_cast<std::size_t>(f)].known)
       at_.frames[static_cast<std::size_t>(f)].translation() = x.segment<3>(3 * f);
@@ -203,7 +197,7 @@ void Starter::points() {
       A.block<3, 3>(at, 3 * static_cast<Index>(place(j))).setIdentity();
     at += 3;
   }
-  const VectorXd x = A.completeOrthogonalDecomposition().solve(b);
+  const VectorXd x = least_norm(A, b);
   for (Index p = 0; p < places; ++p)
     if (!layout_.points[static_cast<std::size_t>(p)].known)
       at_.points[static_cast<std::size_t>(p)] = x.segment<3>(3 * p);
@@ -232,7 +226,7 @@ void Starter::anchors() {
       if (zero) A(static_cast<Index>(i), 4) = 2 * d;
       b[static_cast<Index>(i)] = d * d - p.squaredNorm();
     }
-    const VectorXd x = A.completeOrthogonalDecomposition().solve(b);
+    const VectorXd x = least_norm(A, b);
     at_.anchors[k] = middle + x.head<3>();
     if (zero) at_.zeros[k] = x[4];
   }

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/SVD>
 
+#include "core/decompositions.h"
 #include "core/units.h"
 
 namespace understudy::calibration {
@@ -47,8 +47,7 @@ Mat3 orientation_of(const OrientationReading& reading, const std::vector<double>
     case OrientationForm::matrix:
       break;
   }
-  const Eigen::JacobiSVD<Mat3> svd(matrix_of(numbers), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  return nearest_rotation(matrix_of(numbers));
 }
 
 double off_rotation(const OrientationReading& reading, const std::vector<double>& numbers) {

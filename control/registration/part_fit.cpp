@@ -1,17 +1,16 @@
 #include "control/registration/part_fit.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include "core/assert.h"
 #include "core/cross_matrix.h"
+#include "core/decompositions.h"
+#include "core/distributions.h"
 #include "core/units.h"
 
 namespace understudy::control {
@@ -70,20 +69,20 @@ Noise noise_of(const std::vector<MeasuredPoint>& points) {
 
 /// The freedoms in units of the tolerance, apart by what the points tell of each.
 struct Freedoms {
-  Mat6 root;                                   // L
-  Eigen::SelfAdjointEigenSolver<Mat6> solver;  // of L^T J^T R^-1 J L
+  Mat6 root;             // L
+  SymmetricEigen apart;  // of L^T J^T R^-1 J L
 
-  bool seen(Eigen::Index i) const { return solver.eigenvalues()[i] > kSeenAbove; }
+  bool seen(Eigen::Index i) const { return apart.values[i] > kSeenAbove; }
   int seen_count() const {
     int count = 0;
     for (Eigen::Index i = 0; i < 6; ++i) count += seen(i);
     return count;
   }
-  Eigen::Matrix<double, 6, 1> motion(Eigen::Index i) const { return root * solver.eigenvectors().col(i); }
+  Eigen::Matrix<double, 6, 1> motion(Eigen::Index i) const { return root * apart.vectors.col(i); }
   /// Eigenvalues increase: the unseen ones come first.
   Rows motions(bool of_seen) const {
     const Eigen::Index k = seen_count();
-    const Mat6 all = root * solver.eigenvectors();
+    const Mat6 all = root * apart.vectors;
     return of_seen ? Rows(all.rightCols(k).transpose()) : Rows(all.leftCols(6 - k).transpose());
   }
 };
@@ -92,7 +91,7 @@ Freedoms freedoms_of(const Linearised& at, const Noise& noise, const Mat6& root)
   const Eigen::LLT<Eigen::MatrixXd> cholesky(noise.covariance);
   const Eigen::MatrixXd white =
       cholesky.matrixL().solve(noise.own.cwiseInverse().asDiagonal() * (at.rows * root));
-  return {root, Eigen::SelfAdjointEigenSolver<Mat6>(Mat6(white.transpose() * white))};
+  return {root, symmetric_eigen(white.transpose() * white)};
 }
 
 Pose turned_about(const Vec3& reference, const Eigen::Matrix<double, 6, 1>& motion) {
@@ -115,7 +114,7 @@ SeenFit seen_fit(const Linearised& at, const Noise& noise, const Freedoms& freed
   const Eigen::MatrixXd rows = noise.own.cwiseInverse().asDiagonal() * at.rows;
   SeenFit fit{freedoms.motions(true), {}, {}, noise.covariance};
   fit.design = rows * fit.motions.transpose();
-  fit.inverse = fit.design.completeOrthogonalDecomposition().pseudoInverse();
+  fit.inverse = pseudo_inverse(fit.design);
   const Eigen::MatrixXd unseen = rows * freedoms.motions(false).transpose();
   fit.covariance += unseen * unseen.transpose();
   return fit;
@@ -164,32 +163,22 @@ std::vector<UnseenFreedom> name_unseen(const Freedoms& freedoms, const Vec3& ref
   std::vector<UnseenFreedom> unseen;
   if (motions.cols() == 0) return unseen;
   const Mat6 tolerance = freedoms.root * freedoms.root.transpose();
-  const Eigen::MatrixXd basis =
-      Eigen::JacobiSVD<Eigen::MatrixXd>(motions, Eigen::ComputeThinU | Eigen::ComputeThinV).matrixU();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> turning(basis.bottomRows<3>(), Eigen::ComputeFullV);
-  const auto share = [&](Eigen::Index k) {
-    return k < turning.singularValues().size() ? turning.singularValues()[k] : 0.0;
-  };
+  const Eigen::MatrixXd basis = left_singular_vectors(motions);
+  const RightSingular turning = right_singular(basis.bottomRows<3>());
+  const auto share = [&](Eigen::Index k) { return k < turning.values.size() ? turning.values[k] : 0.0; };
   Eigen::Index turns = 0;
   while (turns < basis.cols() && share(turns) > kTurnShare) ++turns;
   if (const Eigen::Index shifts = basis.cols() - turns; shifts > 0) {
-    const Eigen::MatrixXd way = basis.topRows<3>() * turning.matrixV().rightCols(shifts);
-    const Eigen::MatrixXd unit =
-        Eigen::JacobiSVD<Eigen::MatrixXd>(way, Eigen::ComputeThinU | Eigen::ComputeThinV).matrixU();
-    const Eigen::MatrixXd directions = aligned(unit);
+    const Eigen::MatrixXd way = basis.topRows<3>() * turning.vectors.rightCols(shifts);
+    const Eigen::MatrixXd directions = aligned(left_singular_vectors(way));
     for (Eigen::Index k = 0; k < shifts; ++k) unseen.push_back(shift_along(directions.col(k), tolerance));
   }
   for (Eigen::Index k = 0; k < turns; ++k) {
-    Eigen::Matrix<double, 6, 1> motion = basis * turning.matrixV().col(k);
+    Eigen::Matrix<double, 6, 1> motion = basis * turning.vectors.col(k);
     motion.tail<3>() /= size;
     unseen.push_back(turn_about(motion, reference, tolerance));
   }
   return unseen;
-}
-
-double rare_chi_square(int degrees_of_freedom) {
-  if (degrees_of_freedom <= 0) return 0;
-  return quantile(complement(boost::math::chi_squared(degrees_of_freedom), kRare));
 }
 
 /// Of what the best pose leaves. What a part of another size leaves is no sign of another part.
@@ -274,7 +263,7 @@ PartFit fit_part(const geometry::Mesh& drawn, const std::vector<MeasuredPoint>& 
   fit.residuals.assign(at.distance.begin(), at.distance.end());
   fit.chi_square = chi_square_of(at, noise, seen, tolerance.size);
   fit.degrees_of_freedom = static_cast<int>(points.size()) - fit.seen;
-  fit.chi_square_limit = rare_chi_square(fit.degrees_of_freedom);
+  if (fit.degrees_of_freedom > 0) fit.chi_square_limit = chi_squared_exceeded(fit.degrees_of_freedom, kRare);
   return fit;
 }
 

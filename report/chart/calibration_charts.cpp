@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <boost/math/distributions/normal.hpp>
 
+#include "core/distributions.h"
 #include "core/units.h"
 #include "report/chart/svg_chart.h"
 
@@ -102,14 +102,13 @@ std::string quantile_chart(const MachineCalibration& result) {
   const std::vector<double> values = ordered_residuals(result);
   const double top = span_of(values, 3);
   SvgChart plot({}, Scale::linear(-3.6, 3.6), Scale::linear(-top, top));
-  const boost::math::normal normal;
   plot.y_axis("residual / sigma");
   plot.x_axis("quantile of a normal distribution");
   const double end = std::min(3.6, top);
   plot.line({{-end, -end}, {end, end}}, "stroke=\"#d55e00\"");
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double expected =
-        boost::math::quantile(normal, (static_cast<double>(k) + 0.5) / static_cast<double>(values.size()));
+        normal_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(values.size()));
     plot.dot({std::clamp(expected, -3.6, 3.6), values[k]}, series_colour(0),
              fmt::format("{:.2f}", values[k]));
   }

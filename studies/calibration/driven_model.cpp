@@ -43,11 +43,12 @@ ErrorModel tip_errors_of(const BundleProblem& problem, const DrivenModel& model,
     for (Index i = 0; i < leads; ++i)
       rows.col(own + i) = by_length.col(i).head<3>() * sample.displacement[static_cast<std::size_t>(i)];
     Twist variance = Twist::Constant(std::pow(problem.drives.length, 2));
-    const auto sure =
-        resting_sides(machine, model.parameters.geometry, machine.tolerances.after_calibration, X_BT[k]);
-    for (std::size_t i = 0; i < kStruts; ++i)
-      if (sure[i] == Approach::unknown)
-        variance[static_cast<Index>(i)] += std::pow(problem.drives.side_unknown, 2);
+    kinematics::PerStrut<double> side_variance{};
+    if (!side_variances(machine, model.parameters.geometry, machine.tolerances.after_calibration, X_BT[k],
+                        side_variance))
+      throw std::logic_error("a pose held out has no loads");
+    for (std::size_t i = 0; i < kStruts && model.allows_for_play; ++i)
+      variance[static_cast<Index>(i)] += std::pow(0.5 * model.parameters.play[i], 2) * side_variance[i];
     const auto tip = by_length.topRows<3>();
     errors.own.push_back(tip * variance.asDiagonal() * tip.transpose());
   }
