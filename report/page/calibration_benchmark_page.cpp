@@ -151,12 +151,14 @@ std::string stated(const CalibrationBenchmark& benchmark, const ConditionScore& 
          {std::pair{"W", c.scores[e].in_frame}, std::pair{"registered", c.scores[e].registered}})
       rows += fmt::format(
           "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
-          "<td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
+          "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
           html_text(benchmark.entrants[e].name), frame, cell(to_um(score.median), 1),
-          cell(to_um(score.worst), 1), cell(score.ratio, 2), cell(1e2 * score.coverage, 1));
+          cell(to_um(score.worst), 1), cell(score.ratio, 2), cell(score.chi_square, 2),
+          cell(1e2 * score.coverage, 1));
   return "<table><thead><tr><th>entrant</th><th>frame</th><th class=\"number\">median µm</th>"
          "<th class=\"number\">worst µm</th><th class=\"number\">error over stated</th>"
-         "<th class=\"number\">within 95 %, %</th></tr></thead><tbody>\n" +
+         "<th class=\"number\">chi-square</th><th class=\"number\">within 95 %, "
+         "%</th></tr></thead><tbody>\n" +
          rows + "</tbody></table>\n";
 }
 

@@ -29,6 +29,7 @@ Json stated_value(const StatedScore& score) {
   value["worst_um"] = micrometres(score.worst, "worst");
   value["worst_machine_median_um"] = micrometres(score.median_worst, "worst machine's median");
   value["error_over_stated"] = number(score.ratio, "error over stated");
+  value["chi_square"] = number(score.chi_square, "chi-square");
   value["coverage_95"] = number(score.coverage, "coverage");
   return value;
 }
@@ -112,9 +113,10 @@ std::string stated_row(const std::string& name, const StatedScore& score) {
   const auto cell = [](double value, const char* form) {
     return std::isfinite(value) ? fmt::format(fmt::runtime(form), value) : std::string("-");
   };
-  return fmt::format("  {:<28} {:>8} {:>8} {:>14} {:>14} {:>9}\n", name, cell(to_um(score.median), "{:.1f}"),
-                     cell(to_um(score.worst), "{:.1f}"), cell(to_um(score.median_worst), "{:.1f}"),
-                     cell(score.ratio, "{:.2f}"), cell(1e2 * score.coverage, "{:.1f} %"));
+  return fmt::format("  {:<28} {:>8} {:>8} {:>14} {:>14} {:>11} {:>9}\n", name,
+                     cell(to_um(score.median), "{:.1f}"), cell(to_um(score.worst), "{:.1f}"),
+                     cell(to_um(score.median_worst), "{:.1f}"), cell(score.ratio, "{:.2f}"),
+                     cell(score.chi_square, "{:.2f}"), cell(1e2 * score.coverage, "{:.1f} %"));
 }
 
 /// On the plant: errors in frame W as the boards have it, and where the work is registered on the machine.
@@ -123,9 +125,9 @@ std::string stated_tables(const CalibrationBenchmark& benchmark) {
   for (const ConditionScore& c : benchmark.conditions)
     for (const auto& [name, which] : {std::pair{"in W as the boards have it", &EntrantScore::in_frame},
                                       std::pair{"registered at 20 other poses", &EntrantScore::registered}}) {
-      text += fmt::format("\n{}, {} [um]\n  {:<28} {:>8} {:>8} {:>14} {:>14} {:>9}\n",
+      text += fmt::format("\n{}, {} [um]\n  {:<28} {:>8} {:>8} {:>14} {:>14} {:>11} {:>9}\n",
                           to_string(c.condition, benchmark.request.from), name, "", "median", "worst",
-                          "worst machine", "error/stated", "in 95 %");
+                          "worst machine", "error/stated", "chi-square", "in 95 %");
       for (std::size_t e = 0; e < c.scores.size(); ++e)
         text += stated_row(calibration::brief(benchmark.entrants[e].name, 25), c.scores[e].*which);
     }

@@ -94,10 +94,12 @@ double mean_square(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-constexpr double kEllipsoid95 = 7.815;  // chi-square of three degrees of freedom
+constexpr double kTipFreedoms = 3;
+constexpr double kEllipsoid95 = 7.815;  // chi-square of these
 
 StatedScore stated_score(const std::vector<Trial>& trials, std::size_t entrant, StatedErrors Answer::*which) {
   std::vector<double> errors, medians, stated;
+  double chi_square = 0;
   int inside = 0, counted = 0;
   for (const Trial& trial : trials) {
     const StatedErrors& of = trial.answers[entrant].*which;
@@ -107,13 +109,15 @@ StatedScore stated_score(const std::vector<Trial>& trials, std::size_t entrant, 
     stated.insert(stated.end(), of.stated.begin(), of.stated.end());
     for (const double v : of.normalised) {
       ++counted;
+      chi_square += v / kTipFreedoms;
       inside += v < kEllipsoid95;
     }
   }
-  if (errors.empty()) return {kNone, kNone, kNone, kNone, kNone};
-  StatedScore score{quantile(errors, 0.5), quantile(errors, 1), quantile(medians, 1), kNone, kNone};
+  if (errors.empty()) return {kNone, kNone, kNone, kNone, kNone, kNone};
+  StatedScore score{quantile(errors, 0.5), quantile(errors, 1), quantile(medians, 1), kNone, kNone, kNone};
   if (counted == 0) return score;
   score.ratio = std::sqrt(mean_square(errors) / mean_square(stated));
+  score.chi_square = chi_square / counted;
   score.coverage = static_cast<double>(inside) / counted;
   return score;
 }

@@ -41,6 +41,7 @@ struct StatedScore {
   double median = 0, worst = 0;  ///< [m]
   double median_worst = 0;       ///< [m], the worst machine's median
   double ratio = 0;              ///< RMS of the errors over that of the stated ones; NaN: none were stated
+  double chi_square = 0;         ///< mean of e^T C^-1 e over its three degrees of freedom; NaN likewise
   double coverage = 0;           ///< share of the tips within their ellipsoid of 95 %; NaN likewise
 };
 
