@@ -88,10 +88,15 @@ TEST(SlowPlantTrial, TwentyMachinesBeforeBoardsOfAPrintShop) {
   EXPECT_LT(bundle.registered.worst, 100e-6);
   // 20 machines: an RMS of errors that are mostly six numbers each is known to 1 / sqrt(2 6 20) = 6.5 %.
   EXPECT_NEAR(bundle.in_frame.ratio, 1, 0.26);
-  // The goal is 1 within 0.26. It is missed on the safe side: half of a play is stated where cables could
-  // change its side; here are none.
-  EXPECT_NEAR(bundle.registered.ratio, 0.52, 0.1);
-  EXPECT_NEAR(bundle.registered.coverage, 0.95, 0.04);
+  EXPECT_NEAR(bundle.registered.ratio, 1, 0.26);
+  // The goal of what is stated.
+  for (const StatedScore& score : {bundle.in_frame, bundle.registered}) {
+    EXPECT_GT(score.chi_square, 0.8);
+    EXPECT_LT(score.chi_square, 1.25);
+  }
+  // Below 0.95: a play on the other side than the probable one is an error of a whole play, seldom, and not
+  // normally distributed.
+  EXPECT_NEAR(bundle.registered.coverage, 0.89, 0.04);
 }
 
 }  // namespace
