@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
-#include <opencv2/core/utility.hpp>
 
 #include "cli/command.h"
 #include "cli/drive/identify_command.h"
@@ -24,6 +23,7 @@
 #include "core/standard_streams.h"
 #include "core/text/printable.h"
 #include "core/version.h"
+#include "vision/plain_instructions.h"
 
 namespace {
 
@@ -100,8 +100,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   // The same bytes whatever the number of cores, and whatever instructions the processor has.
-  cv::setNumThreads(1);
-  cv::setUseOptimized(false);
+  vision::hold_opencv_to_plain_instructions();
   keep_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write
   watch_for_interrupt();

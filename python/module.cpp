@@ -1,15 +1,13 @@
 #include "python/module.h"
 
-#include <opencv2/core/utility.hpp>
-
 #include "core/simd.h"
 #include "core/version.h"
+#include "vision/plain_instructions.h"
 
 PYBIND11_MODULE(_core, module) {
   using namespace understudy;
   // The same bytes whatever the number of cores, as the command has it.
-  cv::setNumThreads(1);
-  cv::setUseOptimized(false);
+  vision::hold_opencv_to_plain_instructions();
   module.doc() = "Understudy's rooms as Python sees them. SI units: m, rad, s; poses are x y z, w x y z.";
   module.attr("__version__") = kVersion;
   python::add_errors(module);

@@ -9,6 +9,7 @@
 
 #include "core/file/read_file.h"
 #include "machine/record/record_reader.h"
+#include "tests/cli/drive/same_bits.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {
@@ -34,11 +35,6 @@ Recorded read(const std::string& file) {
       recorded.setpoints.insert(recorded.setpoints.end(), submit->setpoints.begin(), submit->setpoints.end());
   });
   return recorded;
-}
-
-bool same_bits(const machine::Setpoint& a, const machine::Setpoint& b) {
-  return a.time == b.time && a.position == b.position && a.velocity == b.velocity &&
-         a.filament == b.filament && a.line == b.line;
 }
 
 /// One rehearsal for all tests, of a machine that keeps to the gap by itself: its folder, and the record of
