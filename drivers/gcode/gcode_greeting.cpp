@@ -76,7 +76,7 @@ void GcodeSession::connect() {
     greet_counting();
   else
     greet_numbering();
-  if (fault_ != machine::Fault::none) throw MachineError(fault_text_);
+  if (fault() != machine::Fault::none) throw MachineError(fault_text());
   if (!position_fresh_)
     throw MachineError(fmt::format("the controller does not report the axes {}", writer_.axes().letters));
   heard_ = link_.now();

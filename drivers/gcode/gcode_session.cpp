@@ -1,8 +1,8 @@
 #include "drivers/gcode/gcode_session.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,48 +16,27 @@ using machine::Fault;
 
 namespace {
 
-constexpr std::size_t kLineMax = 1024;  // [bytes], of a reply; garbage without an end is dropped
-constexpr double kPoll = 0.05;          // [s], between two questions for the status
-constexpr int kResendsMax = 20;         // for one line
-constexpr int kProbesMax = 2;           // into silence
-constexpr int kAsksMax = 3;             // for a position that is not as expected
-constexpr int kIdleReports = 2;         // of a controller that has nothing left to do
+constexpr double kPoll = 0.05;   // [s], between two questions for the status
+constexpr int kResendsMax = 20;  // for one line
+constexpr int kProbesMax = 2;    // into silence
+constexpr int kAsksMax = 3;      // for a position that is not as expected
+constexpr int kIdleReports = 2;  // of a controller that has nothing left to do
 constexpr std::string_view kGrblOrder = "XYZABCUVW";
 
 }  // namespace
 
 GcodeSession::GcodeSession(ByteLink& link, GcodeWriter writer, const SessionOptions& options)
-    : link_(link), writer_(std::move(writer)), options_(options), heard_(link.now()) {}
-
-void GcodeSession::fail(Fault fault, const std::string& why) {
-  if (fault_ != Fault::none) return;
-  fault_ = fault;
-  fault_text_ = why;
-}
+    : LineSession(link, options), writer_(std::move(writer)) {}
 
 void GcodeSession::push(std::string line, double duration, std::uint64_t executed) {
-  Entry entry;
-  entry.text = std::move(line);
-  entry.duration = duration;
-  entry.executed = std::max(executed, entries_.empty() ? executed_ : entries_.back().executed);
-  if (entries_.empty()) heard_ = link_.now();
-  entries_.push_back(std::move(entry));
+  Entry& entry = add(Role::line, std::move(line), duration);
+  entry.executed = std::max(entry.executed, executed);
 }
 
 void GcodeSession::push_rest(const AxisVector& position) {
-  Entry entry;
+  if (!counts()) add(Role::wait, "M400");
+  Entry& entry = counts() ? add(Role::rest, "") : add(Role::ask, "M114");
   entry.expected = position;
-  entry.executed = entries_.empty() ? executed_ : entries_.back().executed;
-  entry.role = Role::rest;
-  if (entries_.empty()) heard_ = link_.now();
-  if (!counts()) {
-    entry.role = Role::wait;
-    entry.text = "M400";
-    entries_.push_back(entry);
-    entry.role = Role::ask;
-    entry.text = "M114";
-  }
-  entries_.push_back(std::move(entry));
 }
 
 bool GcodeSession::push_outputs(const machine::Outputs& before, const machine::Outputs& after) {
@@ -70,47 +49,9 @@ bool GcodeSession::push_outputs(const machine::Outputs& before, const machine::O
   return heats;
 }
 
-double GcodeSession::backlog() const {
-  double sum = 0;
-  for (std::size_t i = accepted_; i < entries_.size(); ++i) sum += entries_[i].duration;
-  return sum;
-}
-
-void GcodeSession::pump() {
-  if (fault_ != Fault::none) return;
-  try {
-    while (const auto reply = next_reply()) {
-      handle(*reply);
-      if (fault_ != Fault::none) return;
-    }
-    if (counts() && link_.now() >= polled_ + kPoll) {
-      polled_ = link_.now();
-      send_now("?");
-    }
-    send_lines();
-    write_out();
-    watch_silence();
-  } catch (const MachineError& error) {
-    fail(Fault::power, error.what());
-  }
-}
-
-/// The next whole line that came, without its end.
 std::optional<Reply> GcodeSession::next_reply() {
-  std::array<char, 512> bytes;
-  while (true) {
-    const std::size_t end = incoming_.find_first_of("\r\n");
-    if (end != std::string::npos) {
-      const std::string line = incoming_.substr(0, end);
-      incoming_.erase(0, end + 1);
-      if (!line.empty()) return parse_reply(line);
-      continue;
-    }
-    if (incoming_.size() > kLineMax) incoming_.clear();
-    const std::size_t count = link_.receive(bytes);
-    if (count == 0) return std::nullopt;
-    incoming_.append(bytes.data(), count);
-  }
+  const auto line = next_line();
+  return line ? std::optional(parse_reply(*line)) : std::nullopt;
 }
 
 void GcodeSession::handle(const Reply& reply) {
@@ -184,13 +125,9 @@ void GcodeSession::resend_from(int number) {
   fail(Fault::drive, fmt::format("the controller asks for line {}, which it had accepted", number));
 }
 
-/// The first of the entries are done.
-void GcodeSession::confirm(std::size_t count) {
-  if (count == 0) return;
-  executed_ = entries_[count - 1].executed;
-  entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(count));
+void GcodeSession::confirm_sent(std::size_t count) {
+  confirm(count);
   sent_ -= count;
-  accepted_ -= count;
 }
 
 void GcodeSession::take_status(const ControllerStatus& status) {
@@ -210,9 +147,7 @@ void GcodeSession::take_status(const ControllerStatus& status) {
     if (at >= values.size()) return;  // a report that was cut
     position[static_cast<std::size_t>(i)] = values[at] * axes.unit(i);
   }
-  position_ = position;
-  position_time_ = link_.now();
-  position_fresh_ = true;
+  note_position(position);
   if (status.planner_free) planner_size_ = std::max(planner_size_, *status.planner_free);
   const bool empty = !status.planner_free || *status.planner_free == planner_size_;
   idle_reports_ = status.state == "Idle" && empty ? idle_reports_ + 1 : 0;
@@ -226,7 +161,7 @@ void GcodeSession::take_status(const ControllerStatus& status) {
         std::find_if(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(accepted_),
                      [&](const Entry& e) { return e.number == *status.line; });
     if (running != entries_.begin() + static_cast<std::ptrdiff_t>(accepted_))
-      confirm(static_cast<std::size_t>(running - entries_.begin()));
+      confirm_sent(static_cast<std::size_t>(running - entries_.begin()));
   }
   // A rest is accepted with what is before it.
   while (accepted_ < entries_.size() && accepted_ == sent_ && entries_[accepted_].role == Role::rest)
@@ -244,9 +179,7 @@ void GcodeSession::take_position(const Reply& reply) {
     if (word == reply.words.end()) return;
     position[static_cast<std::size_t>(i)] = word->second * axes.unit(i);
   }
-  position_ = position;
-  position_time_ = link_.now();
-  position_fresh_ = true;
+  note_position(position);
 }
 
 bool GcodeSession::stands_at(const AxisVector& expected, std::string& off) const {
@@ -272,7 +205,7 @@ void GcodeSession::settle_rest() {
   std::string off = "the controller does not say where it stands";
   const bool good = position_fresh_ && stands_at(entry.expected, off);
   position_fresh_ = false;
-  if (good) return confirm(accepted_);
+  if (good) return confirm_sent(accepted_);
   if (++entry.asked >= kAsksMax) return fail(Fault::following_error, off);
   idle_reports_ = 0;
   if (entry.role == Role::rest) return;
@@ -301,6 +234,10 @@ bool GcodeSession::may_send(const Entry& entry) const {
 }
 
 void GcodeSession::send_lines() {
+  if (counts() && link_.now() >= polled_ + kPoll) {
+    polled_ = link_.now();
+    send_now("?");
+  }
   while (outgoing_.empty() && sent_ < entries_.size()) {
     Entry& entry = entries_[sent_];
     if (entry.role == Role::rest) return;
@@ -313,14 +250,6 @@ void GcodeSession::send_lines() {
     outgoing_ += line;
     ++sent_;
     write_out();
-  }
-}
-
-void GcodeSession::write_out() {
-  while (!outgoing_.empty()) {
-    const std::size_t taken = link_.send(outgoing_);
-    if (taken == 0) return;
-    outgoing_.erase(0, taken);
   }
 }
 

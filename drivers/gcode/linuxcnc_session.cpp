@@ -20,6 +20,7 @@ using machine::Fault;
 namespace {
 
 constexpr std::size_t kLineMax = 240;  // characters that LinuxCNC takes as one line
+constexpr std::size_t kShown = 80;     // characters of a line in a message
 constexpr double kPoll = 0.05;         // [s], between two questions for the state
 constexpr int kAsksMax = 3;            // for joints that do not stand as expected
 constexpr double kReceive = 0.1;       // [s], of linuxcncrsh for one line
@@ -34,28 +35,12 @@ std::string call_of(const std::string& one, const std::string& two) {
 
 LinuxcncSession::LinuxcncSession(ByteLink& link, PoseWords& words, const SessionOptions& options,
                                  AnotherLink another)
-    : link_(link), words_(words), options_(options), another_(std::move(another)), heard_(link.now()) {}
-
-void LinuxcncSession::fail(Fault fault, const std::string& why) {
-  if (fault_ != Fault::none) return;
-  fault_ = fault;
-  fault_text_ = why;
-}
-
-void LinuxcncSession::add(Role role, std::string text, double duration) {
-  if (entries_.empty()) heard_ = link_.now();
-  Entry entry;
-  entry.role = role;
-  entry.text = std::move(text);
-  entry.duration = duration;
-  entry.executed = entries_.empty() ? executed_ : entries_.back().executed;
-  entries_.push_back(std::move(entry));
-}
+    : LineSession(link, options), words_(words), another_(std::move(another)) {}
 
 /// Nothing follows before LinuxCNC has done that line.
 void LinuxcncSession::add_waiting(const std::string& line, double duration) {
   add(Role::line, "set set_wait done");
-  add(Role::barrier, line, duration);
+  add(Role::wait, line, duration);
   add(Role::line, "set set_wait received");
 }
 
@@ -83,8 +68,7 @@ void LinuxcncSession::push(const Block& block) {
 
 void LinuxcncSession::push_rest(const AxisVector& position) {
   add_waiting("set mdi G4 P0", 0);
-  add(Role::position, "");
-  entries_.back().expected = position;
+  add(Role::rest, "").expected = position;
 }
 
 bool LinuxcncSession::push_outputs(const machine::Outputs& before, const machine::Outputs& after) {
@@ -100,49 +84,11 @@ bool LinuxcncSession::push_outputs(const machine::Outputs& before, const machine
   return waits;
 }
 
-double LinuxcncSession::backlog() const {
-  double sum = 0;
-  for (std::size_t i = accepted_; i < entries_.size(); ++i) sum += entries_[i].duration;
-  return sum;
-}
-
-void LinuxcncSession::pump() {
-  if (fault_ != Fault::none) return;
-  try {
-    while (const auto line = next_line()) {
-      handle(*line);
-      if (fault_ != Fault::none) return;
-    }
-    send_next();
-    write_out();
-    watch_silence();
-  } catch (const MachineError& error) {
-    fail(Fault::power, error.what());
-  }
-}
-
-std::optional<std::string> LinuxcncSession::next_line() {
-  std::array<char, 512> bytes;
-  while (true) {
-    const std::size_t end = incoming_.find_first_of("\r\n");
-    if (end != std::string::npos) {
-      const std::string line = incoming_.substr(0, end);
-      incoming_.erase(0, end + 1);
-      if (!line.empty()) return line;
-      continue;
-    }
-    if (incoming_.size() > 4 * kLineMax) incoming_.clear();
-    const std::size_t count = link_.receive(bytes);
-    if (count == 0) return std::nullopt;
-    incoming_.append(bytes.data(), count);
-  }
-}
-
 void LinuxcncSession::handle(const std::string& line) {
   heard_ = link_.now();
   if (line.starts_with("SET ")) {
     if (line.ends_with(" NAK")) {
-      refused_ = line;
+      refused_ = in_flight_ > 0 ? entries_[accepted_].text.substr(0, kShown) : "a line";
       polled_ = 0;  // the error that it has for it is asked for first
       accept();
     }
@@ -157,8 +103,13 @@ void LinuxcncSession::handle(const std::string& line) {
   if (line.starts_with("MACHINE ")) {
     questions_ = 0;  // the last of a round
     if (!refused_.empty())
-      return fail(Fault::drive, fmt::format("LinuxCNC refuses a line: it says '{}'", refused_));
-    settle_position();
+      return fail(
+          Fault::drive,
+          fmt::format("LinuxCNC refuses '{}' and tells no error: its motion took a command too late (the "
+                      "computer is too busy), or another program has taken control of linuxcncrsh; "
+                      "LinuxCNC's own terminal says more",
+                      refused_));
+    settle_rest();
   }
 }
 
@@ -175,14 +126,12 @@ void LinuxcncSession::take_joints(const std::string& line) {
     if (!(words >> joints[i])) return;
     joints[i] = from_mm(joints[i]);
   }
-  position_ = words_.axes_of_joints(joints);
-  position_time_ = link_.now();
-  position_fresh_ = true;
+  note_position(words_.axes_of_joints(joints));
 }
 
-/// All before the position is done, and LinuxCNC has just said where its joints stand.
-void LinuxcncSession::settle_position() {
-  if (accepted_ >= entries_.size() || entries_[accepted_].role != Role::position || !position_fresh_) return;
+/// All before the rest is done, and LinuxCNC has just said where its joints stand.
+void LinuxcncSession::settle_rest() {
+  if (accepted_ >= entries_.size() || entries_[accepted_].role != Role::rest || !position_fresh_) return;
   position_fresh_ = false;
   Entry& entry = entries_[accepted_];
   for (std::size_t i = 0; i < kPoseWords; ++i) {
@@ -192,15 +141,13 @@ void LinuxcncSession::settle_position() {
                                                i + 1, to_mm(position_[i]), to_mm(entry.expected[i])));
     return;
   }
-  executed_ = entry.executed;
-  entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(accepted_) + 1);
-  accepted_ = 0;
+  confirm(++accepted_);
 }
 
 /// One line at a time; between two of them, and while there is none, questions for the state.
-void LinuxcncSession::send_next() {
+void LinuxcncSession::send_lines() {
   if (in_flight_ > 0 || questions_ > 0 || !outgoing_.empty()) return;
-  const bool asks = accepted_ < entries_.size() && entries_[accepted_].role == Role::position;
+  const bool asks = accepted_ < entries_.size() && entries_[accepted_].role == Role::rest;
   const bool waiting = accepted_ > 0 && entries_[accepted_ - 1].text == "set set_wait done";
   if (!waiting && link_.now() >= polled_ + kPoll) return ask();
   if (asks || accepted_ >= entries_.size()) return;
@@ -228,18 +175,10 @@ void LinuxcncSession::ask() {
   outgoing_ += "get joint_pos\r\nget error\r\nget estop\r\nget machine\r\n";
 }
 
-void LinuxcncSession::write_out() {
-  while (!outgoing_.empty()) {
-    const std::size_t taken = link_.send(outgoing_);
-    if (taken == 0) return;
-    outgoing_.erase(0, taken);
-  }
-}
-
 void LinuxcncSession::watch_silence() {
   if (in_flight_ == 0 && questions_ == 0) return;
   double patience = options_.reply_time;
-  if (in_flight_ > 0 && entries_[accepted_].role == Role::barrier)
+  if (in_flight_ > 0 && entries_[accepted_].role == Role::wait)
     for (std::size_t i = 0; i <= accepted_; ++i) patience += kPace * entries_[i].duration + kReceive;
   if (link_.now() - heard_ > patience)
     fail(Fault::power, fmt::format("LinuxCNC has not answered for {:.1f} s", link_.now() - heard_));

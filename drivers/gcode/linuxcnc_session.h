@@ -6,16 +6,11 @@
 // stand where they were sent. An error that it tells, a stop or a machine that is off is a fault that stays.
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "drivers/gcode/byte_link.h"
-#include "drivers/gcode/controller.h"
-#include "drivers/gcode/gcode_session.h"
+#include "drivers/gcode/line_session.h"
 #include "drivers/pose_words.h"
 
 namespace understudy::drivers {
@@ -23,7 +18,7 @@ namespace understudy::drivers {
 /// A further connection to the same LinuxCNC: for an emergency stop, while the first may be waiting.
 using AnotherLink = std::function<std::unique_ptr<ByteLink>()>;
 
-class LinuxcncSession : public Controller {
+class LinuxcncSession : public LineSession {
  public:
   /// Link and words must outlive the session. `another` may be empty.
   LinuxcncSession(ByteLink& link, PoseWords& words, const SessionOptions& options, AnotherLink another);
@@ -33,64 +28,30 @@ class LinuxcncSession : public Controller {
   void push(const Block& block) override;
   void push_rest(const machine::AxisVector& position) override;
   bool push_outputs(const machine::Outputs& before, const machine::Outputs& after) override;
-  void pump() override;
   void outputs_off() override;
   void emergency_stop() override;
 
-  bool settled() const override { return entries_.empty(); }
-  double backlog() const override;
-  std::uint64_t executed() const override { return executed_; }
-  const machine::AxisVector& position() const override { return position_; }
-  double position_time() const override { return position_time_; }
-  machine::Fault fault() const override { return fault_; }
-  const std::string& fault_text() const override { return fault_text_; }
-  void fail(machine::Fault fault, const std::string& why) override;
-
  private:
-  enum class Role { block, line, barrier, position };
-  struct Entry {
-    Role role = Role::line;
-    std::string text;  ///< parameters of a block, or a line as it is sent
-    double duration = 0;
-    std::uint64_t executed = 0;
-    machine::AxisVector expected{};  ///< of a position
-    int asked = 0;
-  };
-
-  void add(Role role, std::string text, double duration = 0);
   void add_waiting(const std::string& line, double duration);
   std::string exchange(const std::string& lines, const std::string& begin, double seconds);
   void switch_on();
   void home();
   void set_modes();
   void check_kinematics();
-  std::optional<std::string> next_line();
-  void handle(const std::string& line);
+  void handle(const std::string& line) override;
   void accept();
   void take_joints(const std::string& line);
-  void settle_position();
-  void send_next();
+  void settle_rest();
+  void send_lines() override;
   void ask();
-  void write_out();
-  void watch_silence();
+  void watch_silence() override;
 
-  ByteLink& link_;
   PoseWords& words_;
-  SessionOptions options_;
   AnotherLink another_;
-  std::deque<Entry> entries_;  ///< not done, oldest first
-  std::size_t accepted_ = 0;   ///< of them: received by LinuxCNC
-  std::size_t in_flight_ = 0;  ///< of them, behind the accepted: sent in one line
+  std::size_t in_flight_ = 0;  ///< of the entries, behind the accepted: sent in one line
   int questions_ = 0;          ///< that were asked and not answered
-  double polled_ = 0, heard_ = 0;
   Block last_;
-  std::string outgoing_, incoming_, refused_;
-  std::uint64_t executed_ = 0;
-  machine::AxisVector position_{};
-  double position_time_ = 0;
-  bool position_fresh_ = false;
-  machine::Fault fault_ = machine::Fault::none;
-  std::string fault_text_;
+  std::string refused_;
 };
 
 }  // namespace understudy::drivers

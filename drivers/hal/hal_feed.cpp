@@ -228,6 +228,12 @@ machine::AxisState HalFeed::state() const {
   return s;
 }
 
+bool HalFeed::read_load(machine::LoadReading& reading) const {
+  if (!settings_.load_encoders) return false;
+  reading = {state().sampled_at, sample_.load};
+  return true;
+}
+
 Status HalFeed::submit(std::span<const machine::Setpoint> setpoints, double deadline) {
   if (fault_ != Fault::none) return Status::faulted;
   if (now() > deadline) return Status::deadline_exceeded;

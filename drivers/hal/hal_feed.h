@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drivers/hal/hal_row.h"
+#include "machine/load_reading.h"
 #include "machine/setpoint_queue.h"
 
 namespace understudy::drivers {
@@ -43,6 +44,8 @@ class HalFeed {
 
   double now() const { return static_cast<double>(ticks_) * tick_; }
   machine::AxisState state() const;
+  /// False of a machine without encoders behind the play.
+  bool read_load(machine::LoadReading& reading) const;
   machine::Status submit(std::span<const machine::Setpoint> setpoints, double deadline);
   machine::Status set_outputs(const machine::Outputs& outputs, double deadline);
   machine::Status urgent(machine::UrgentCommand command);  ///< clear_fault: of a machine that is on

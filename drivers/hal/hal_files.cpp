@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/hal/hal_load_encoders.h"
+
 namespace understudy::drivers {
 namespace {
 
@@ -47,10 +49,10 @@ std::string components(const HalSettings& s) {
       kRecordDepth, kRecordDepth, kRecordDepth, sample_columns(s), repeated(s, "f") + "sb",
       repeated(s, "s") + "sbbb", repeated(s, "f") + "s");
   text += fmt::format(
-      "loadrt limit3 names={}\nloadrt mux2 names={},heater.gate,fan.gate\nloadrt offset names={}\n"
+      "loadrt limit3 names={}\nloadrt mux2 names={},heater.gate,fan.gate\nloadrt offset names={}{}\n"
       "loadrt sum2 names={}\nloadrt wcomp names={}\n",
-      names(s, "limit"), names(s, "acceleration"), names(s, "zero"), names(s, "error"),
-      names(s, "following"));
+      names(s, "limit"), names(s, "acceleration"), names(s, "zero"), load_encoder_components(s),
+      names(s, "error"), names(s, "following"));
   text += fmt::format(
       "loadrt timedelay names=watchdog,brake\n"
       "loadrt estop_latch names=latch\n"
@@ -71,6 +73,7 @@ std::string functions(const HalSettings& s) {
     });
   };
   add("zero", ".update-feedback");
+  text += load_encoder_functions(s);
   text += "addf moving-on servo\naddf on-path servo\n";
   add("acceleration", "");
   add("limit", "");
@@ -167,6 +170,7 @@ std::string machine_file(const HalSettings& s) {
          "# halrun -I -f machine.hal, in this folder. README.md says what a real machine changes: not this "
          "file.\n\n" +
          components(s) + functions(s) + axis_nets(s) + state_nets(s) +
+         load_encoder_nets(s, s.axes.size() + kStateColumns) +
          "source steps.hal\n"
          "addf sampler.0 servo\naddf sampler.1 servo\naddf sampler.2 servo\naddf sampler.3 servo\n"
          "source pins.hal\n"
@@ -223,7 +227,8 @@ std::string pins_file(const HalSettings& s) {
              "#   net nozzle-setpoint => the temperature controller's setpoint [deg C], 0: off\n"
              "#   net fan-setpoint => pwmgen.0.value\n"
              "sets emergency-stop-ok 1\n",
-             first);
+             first) +
+         simulated_load_encoders(s);
 }
 
 std::string axis_table(const HalSettings& s) {
@@ -268,6 +273,7 @@ std::string readme(const HalSettings& s) {
       "| `AXIS-step`, `AXIS-direction` | of the software step generators |\n"
       "| `AXIS-command`, `AXIS-drive` | command and position of other step generators, counted from where "
       "the axis stands when HAL starts |\n"
+      "{}"
       "| `drives-on` | enables the drives |\n"
       "| `charge-pump` | toggles while the machine is on, for a relay that drops when HAL dies |\n"
       "| `nozzle-setpoint`, `fan-setpoint` | [deg C] and 0..1; 0 while the machine is off |\n\n"
@@ -283,14 +289,16 @@ std::string readme(const HalSettings& s) {
       "PREEMPT_RT kernel (`linux-image-rt-amd64`), measure with `latency-histogram`, and choose "
       "`--base-period` above the worst latency; a board with step generators in hardware needs "
       "the servo thread alone.\n",
-      s.options.watchdog * 1e3, s.brake_time * 1e3);
+      load_encoder_signals(s), s.options.watchdog * 1e3, s.brake_time * 1e3);
   return text;
 }
 
 }  // namespace
 
 std::string stream_columns(const HalSettings& s) { return repeated(s, "f") + "sbff"; }
-std::string sample_columns(const HalSettings& s) { return repeated(s, "f") + "ssbbbbbb"; }
+std::string sample_columns(const HalSettings& s) {
+  return repeated(s, "f") + "ssbbbbbb" + std::string(s.load_encoders ? s.machine_axes : 0, 'f');
+}
 
 std::vector<HalFile> hal_files(const HalSettings& settings) {
   return {{"machine.hal", machine_file(settings)},

@@ -18,8 +18,8 @@ struct HalFile {
 std::vector<HalFile> hal_files(const HalSettings& settings);
 
 /// Types of the columns of a row that the port writes to `streamer` (axes, row number, reset, nozzle [deg C],
-/// fan [0..1]), and of a sample that it reads back (feedback, row number, underruns, six bits), as `cfg=`
-/// wants them.
+/// fan [0..1]), and of a sample that it reads back (feedback, row number, underruns, six bits, what
+/// encoders behind the play read), as `cfg=` wants them.
 std::string stream_columns(const HalSettings& settings);
 std::string sample_columns(const HalSettings& settings);
 

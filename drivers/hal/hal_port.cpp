@@ -190,6 +190,9 @@ double HalPort::now() const {
 machine::AxisState HalPort::state() const {
   return link_->with([](HalFeed& feed) { return feed.state(); });
 }
+bool HalPort::read_load(machine::LoadReading& reading) const {
+  return link_->with([&](HalFeed& feed) { return feed.read_load(reading); });
+}
 Status HalPort::submit(std::span<const machine::Setpoint> setpoints, double deadline) {
   return link_->with([&](HalFeed& feed) { return feed.submit(setpoints, deadline); });
 }

@@ -14,6 +14,7 @@
 
 #include "drivers/driver_port.h"
 #include "machine/description.h"
+#include "machine/load_reading.h"
 
 namespace understudy::drivers {
 
@@ -32,7 +33,7 @@ struct HalCounts {
   std::uint64_t underruns = 0;  ///< servo periods without a row while the machine was on
 };
 
-class HalPort : public DriverPort {
+class HalPort : public DriverPort, public machine::LoadSide {
  public:
   /// Throws as HalSession does. The machine is on afterwards, or a fault stands that says why not.
   HalPort(const machine::MachineDescription& machine, const HalPortOptions& options);
@@ -44,6 +45,7 @@ class HalPort : public DriverPort {
   int axis_count() const override;
   double now() const override;
   machine::AxisState state() const override;
+  bool read_load(machine::LoadReading& reading) const override;
   machine::Status submit(std::span<const machine::Setpoint> setpoints, double deadline) override;
   machine::Status wait_until(double time) override;
   /// clear_fault switches the machine on again and waits for it, some lead; the axes rest where they are.

@@ -45,9 +45,16 @@ bool parse(std::string_view line, const HalSettings& settings, HalSample& s) {
     if (!take(line, units)) return false;
     (i < settings.machine_axes ? s.position[i] : s.filament) = settings.axes[i].si(units);
   }
-  return take(line, s.number) && take(line, s.underruns) && take(line, s.on) && take(line, s.drives) &&
-         take(line, s.following) && take(line, s.starved) && take(line, s.limit) &&
-         take(line, s.stop_released);
+  if (!(take(line, s.number) && take(line, s.underruns) && take(line, s.on) && take(line, s.drives) &&
+        take(line, s.following) && take(line, s.starved) && take(line, s.limit) &&
+        take(line, s.stop_released)))
+    return false;
+  for (std::size_t i = 0; settings.load_encoders && i < settings.machine_axes; ++i) {
+    double units = 0;
+    if (!take(line, units)) return false;
+    s.load[i] = settings.axes[i].si(units);
+  }
+  return true;
 }
 
 }  // namespace understudy::drivers

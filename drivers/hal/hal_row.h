@@ -32,6 +32,7 @@ struct HalSample {
   bool starved = false;            ///< the watchdog has seen no rows for its time
   bool limit = false;              ///< a limit switch is struck
   bool stop_released = false;      ///< the chain of emergency stops is closed
+  machine::AxisVector load{};      ///< [m or rad], by the encoders behind the play, of a machine with such
 };
 
 /// Appends the row as a line; nine decimals of mm and degrees.

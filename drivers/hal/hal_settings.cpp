@@ -9,11 +9,13 @@
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "machine/load_encoders.h"
 
 namespace understudy::drivers {
 namespace {
 
-constexpr double kEndless = 1e20;  // HAL's own word for no limit
+constexpr double kEndless = 1e20;         // HAL's own word for no limit
+constexpr std::size_t kColumnsMost = 21;  // of a HAL stream
 
 // Where a machine file is silent: a stepper of 200 full steps in 16 microsteps, a lead of 1 mm or 1 degree.
 constexpr double kAssumedScale = 3200;
@@ -76,11 +78,30 @@ void check(const HalOptions& options, double cycle) {
                                  2 * cycle * 1e3));
 }
 
+/// Where every axis has one, as the twin's port reads them.
+void add_load_encoders(const machine::MachineDescription& machine, HalSettings& settings) {
+  if (machine.file.empty()) return;
+  const machine::LoadEncoderCounts counts = machine::load_encoder_counts(machine.file.string());
+  const std::span axes(settings.axes.data(), settings.machine_axes);
+  if (std::ranges::any_of(axes, [&](const HalAxis& a) { return !(counts.of(a.angle) > 0); })) return;
+  for (HalAxis& axis : axes) axis.count = axis.units(counts.of(axis.angle));
+  settings.load_encoders = true;
+  const std::size_t columns = settings.axes.size() + kStateColumns + settings.machine_axes;
+  if (columns > kColumnsMost)
+    throw InputError(
+        {machine.file.string()},
+        fmt::format("load_encoders: with one at each of {} axes a sample of HAL has {} columns, at "
+                    "most {} can be: leave the section out of the file for HAL",
+                    settings.machine_axes, columns, kColumnsMost));
+}
+
 std::string fingerprint(const HalSettings& settings) {
   std::string text = fmt::format("{:.9g}\n", settings.cycle);
   for (const HalAxis& a : settings.axes)
     text += fmt::format("{} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", a.name, a.angle, a.scale, a.home,
                         a.lower, a.upper, a.velocity, a.acceleration);
+  if (settings.load_encoders)  // further columns of the sample
+    for (const HalAxis& a : settings.axes) text += fmt::format("load {:.9g}\n", a.count);
   return sha256_hex(text).substr(0, 16);
 }
 
@@ -110,6 +131,7 @@ HalSettings hal_settings(const machine::MachineDescription& machine, const HalOp
   if (machine.tool.prints()) settings.axes.push_back(filament_axis(machine.cycle_time));
   for (HalAxis& axis : settings.axes)
     axis.following = options.following * axis.velocity + kFollowingSteps / axis.scale;
+  add_load_encoders(machine, settings);
   settings.fingerprint = fingerprint(settings);
   return settings;
 }

@@ -9,6 +9,9 @@
 
 namespace understudy::drivers {
 
+/// Of a sample, behind the feedback of the axes: row, underruns, six bits.
+constexpr std::size_t kStateColumns = 8;
+
 /// "Unit" is mm, or a degree for an axis that turns.
 struct HalAxis {
   std::string name;         ///< "l1", "j1", "x", "filament"
@@ -22,6 +25,7 @@ struct HalAxis {
   double acceleration = 0;  ///< [unit/s^2], with which it brakes when the stream ends or the machine stops
   double jump = 0;          ///< [unit/s^2], passed on while setpoints come: a corner's jump of velocity too
   double following = 0;     ///< [unit], the machine stops where the drive is farther from its command
+  double count = 0;         ///< [unit], of the encoder behind the play; 0: there is none
   double units(double si) const;  ///< [m or rad] to [unit]
   double si(double units) const;  ///< [unit] to [m or rad]
 };
@@ -40,13 +44,14 @@ struct HalSettings {
   double cycle = 0;              ///< [s], between setpoints: period of the servo thread
   std::vector<HalAxis> axes;     ///< the machine's, then "filament" of a tool that prints
   std::size_t machine_axes = 0;  ///< without the filament
+  bool load_encoders = false;    ///< every axis of the machine has one
   double brake_time = 0;         ///< [s], from the stop until the drives are off
   HalOptions options;
   bool prints() const { return axes.size() > machine_axes; }
 };
 
-/// Throws InputError for a machine whose home its own kinematics does not reach, and for options out of
-/// their range.
+/// Throws InputError for a machine whose home its own kinematics does not reach, for one with more encoders
+/// behind the play than HAL can tell of at once, and for options out of their range.
 HalSettings hal_settings(const machine::MachineDescription& machine, const HalOptions& options = {});
 
 /// One line for each axis whose full speed the software cannot step: more than one step a base period.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file/read_file.h"
+#include "tests/cli/line_in_air.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {
@@ -15,16 +16,10 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-/// A short straight line in air: a run takes a fraction of a second.
 class OutputOptions : public testing::Test {
  protected:
   void SetUp() override {
-    folder_.write("line.gcode", "M104 S230\nG1 X0 Y0 Z60 F3000\nG1 X4 Y0 Z60 E0.3 F600\n");
-    folder_.write(
-        "s.yaml",
-        "name: line\ndescription: d\nsource: s\nmachine: hexapod\nprogram: line.gcode\nas_built: sampled\n"
-        "seed: 1\ngap_control: off\nengine: quasistatic\nexpect:\n"
-        "  - {metric: verdict, equals: go, source: a test}\n");
+    write_line_in_air(folder_);
     folder_.write("c.yaml", "name: c\nscenarios: [s.yaml]\nseeds: 1-3\n");
   }
   std::string at(const std::string& name) const { return folder_ / name; }

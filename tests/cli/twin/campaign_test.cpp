@@ -13,6 +13,7 @@
 #include "core/digest.h"
 #include "core/file/read_file.h"
 #include "core/random.h"
+#include "tests/cli/line_in_air.h"
 #include "tests/cli/program_run.h"
 
 namespace understudy::cli_test {
@@ -37,16 +38,10 @@ std::string asked(const fs::path& file, const std::string& sql) {
   return answer;
 }
 
-/// A short straight line in air: a run takes a fraction of a second.
 class Campaign : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_.write("line.gcode", "M104 S230\nG1 X0 Y0 Z60 F3000\nG1 X4 Y0 Z60 E0.3 F600\n");
-    folder_.write(
-        "s.yaml",
-        "name: line\ndescription: d\nsource: s\nmachine: hexapod\nprogram: line.gcode\nas_built: sampled\n"
-        "seed: 1\ngap_control: off\nengine: quasistatic\nexpect:\n"
-        "  - {metric: verdict, equals: go, source: a test}\n");
+    write_line_in_air(folder_);
     write("c",
           "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\nmetrics: "
           "[accuracy.tip_p95_um]\n");

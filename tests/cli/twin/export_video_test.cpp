@@ -8,14 +8,12 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/file/read_file.h"
-#include "tests/cli/program_run.h"
+#include "tests/cli/twin/exported_print.h"
 
 namespace understudy::cli_test {
 namespace {
 namespace fs = std::filesystem;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::MatchesRegex;
 
 std::vector<cv::Mat> frames_of(const std::string& file) {
   cv::VideoCapture video(file, cv::CAP_FFMPEG);
@@ -35,38 +33,18 @@ int orange_pixels(const cv::Mat& frame) {
   return count;
 }
 
-/// A short print on the table, its results in `out`.
-class ExportVideo : public testing::Test {
+class ExportVideo : public ExportedPrint {
  protected:
-  Outcome rehearse(const std::string& program, const std::string& options = "") const {
-    return understudy("rehearse \"" + folder_.write("line.gcode", program) +
-                      "\" --engine quasistatic --gap-control off --tip-tolerance 5 --out " + out() + " " +
-                      options);
-  }
-  std::string out() const { return folder_ / "out"; }
-  std::string film() const { return folder_ / "line.mp4"; }
-  void refused(const std::string& words, const std::string& says) const {
-    const Outcome outcome = understudy("export video " + words);
-    EXPECT_EQ(outcome.status, 2) << outcome.out << outcome.err;
-    EXPECT_THAT(outcome.err, MatchesRegex("understudy: [^\n]*\n"));
-    EXPECT_THAT(outcome.err, HasSubstr(says));
-    EXPECT_FALSE(fs::exists(film()));
-  }
-
-  static constexpr const char* kLine =
-      "G21 G90 M83\nM104 S200\nG0 X-3 Y0 Z1\nG1 Z0.15 F600\nG1 X3 E0.2 F300\nG1 Y1 E0.03\nG1 X-3 E0.2\nG0 "
-      "Z2\n";
-  Folder folder_;
+  ExportVideo() : ExportedPrint("video", "mp4") {}
 };
 
 TEST_F(ExportVideo, TheBeadsGrowFromTheFirstFrameToTheLast) {
   ASSERT_LE(rehearse(kLine).status, 1);
-  const Outcome outcome =
-      understudy("export video " + out() + " --seconds 1 --fps 6 --size 640x360 -o " + film());
+  const Outcome outcome = run_export(out() + " --seconds 1 --fps 6 --size 640x360 -o " + exported());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_THAT(outcome.out, HasSubstr("6 frames of 640 x 360 pixels"));
-  const auto frames = frames_of(film());
+  const auto frames = frames_of(exported());
   ASSERT_EQ(frames.size(), 6U);
   for (const cv::Mat& frame : frames) EXPECT_EQ(frame.size(), cv::Size(640, 360));
   // The path to come is a line two pixels wide, beads are several times as wide.
@@ -83,26 +61,26 @@ TEST_F(ExportVideo, ARehearsalRefusesAFilmThatItCannotMakeBeforeItRuns) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("name a place outside"));
   EXPECT_FALSE(fs::exists(out())) << "refused before the run";
-  EXPECT_EQ(rehearse(kLine, "--no-pictures --video " + film()).status, 2);
+  EXPECT_EQ(rehearse(kLine, "--no-pictures --video " + exported()).status, 2);
 }
 
 TEST_F(ExportVideo, WhatCannotBeMadeIsRefusedInOneLine) {
   ASSERT_LE(rehearse(kLine).status, 1);
   refused(out() + " -o " + (folder_ / "line.avi"), "does not end in .mp4");
-  refused(out() + " --size 640 -o " + film(), "1280x720");
-  refused(out() + " --size 642x360 -o " + film(), "by fours");
-  refused(out() + " --seconds 0 -o " + film(), "0.2..600");
-  refused(out() + " --fps 100 -o " + film(), "1..60");
-  refused((folder_ / "nothing") + " -o " + film(), "nothing");
+  refused(out() + " --size 640 -o " + exported(), "1280x720");
+  refused(out() + " --size 642x360 -o " + exported(), "by fours");
+  refused(out() + " --seconds 0 -o " + exported(), "0.2..600");
+  refused(out() + " --fps 100 -o " + exported(), "1..60");
+  refused((folder_ / "nothing") + " -o " + exported(), "nothing");
   ASSERT_LE(rehearse(kLine, "--no-pictures").status, 1);
-  refused(out() + " -o " + film(), "replay");
+  refused(out() + " -o " + exported(), "replay");
 }
 
 TEST_F(ExportVideo, AnInterruptLeavesNoHalfFile) {
   ASSERT_LE(rehearse(kLine).status, 1);
-  const Outcome outcome = understudy_interrupted("export video " + out() + " -o " + film(), 4);
+  const Outcome outcome = understudy_interrupted("export video " + out() + " -o " + exported(), 4);
   EXPECT_EQ(outcome.status, 128 + 2) << outcome.out << outcome.err;
-  EXPECT_FALSE(fs::exists(film()));
+  EXPECT_FALSE(fs::exists(exported()));
 }
 
 }  // namespace

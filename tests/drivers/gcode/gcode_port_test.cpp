@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "tests/drivers/gcode/gcode_trial.h"
+#include "tests/drivers/gcode/moving_rsh.h"
 #include "tests/machine/port_conformance.h"
 
 namespace understudy::machine {
@@ -33,6 +34,28 @@ class GcodeOnTrial : public PortOnTrial {
   drivers::GcodeTrial trial_;
 };
 
+/// LinuxCNC, by linuxcncrsh: in poses.
+class LinuxcncOnTrial : public PortOnTrial {
+ public:
+  LinuxcncOnTrial() {
+    const auto& machine = drivers::MovingRsh::described();
+    const auto setup =
+        drivers::gcode_setup(drivers::parse_port_uri("tcp://none:5007?family=linuxcnc"), machine);
+    port_ = std::make_unique<drivers::GcodePort>(std::make_unique<drivers::MovingRsh>(), setup, machine);
+    range = machine.make_mechanism()->axis_range(0);
+    capacity = 4096;
+    clock_step = 0;
+    resolution = 0.2e-6;  // 0.1 um and 0.01 mdeg of a word, half of it in each of six
+    latency = 1.6;        // the lookahead, a block, ten lines a second, and a rest that is waited for
+    camera = false;
+  }
+  MachinePort& port() override { return *port_; }
+  void lose_frames(bool /*lost*/) override {}
+
+ private:
+  std::unique_ptr<drivers::GcodePort> port_;
+};
+
 template <drivers::Firmware firmware>
 std::unique_ptr<PortOnTrial> make() {
   return std::make_unique<GcodeOnTrial<firmware>>();
@@ -42,6 +65,9 @@ INSTANTIATE_TEST_SUITE_P(Grblhal, PortConformance, testing::Values(&make<drivers
 INSTANTIATE_TEST_SUITE_P(Marlin, PortConformance, testing::Values(&make<drivers::Firmware::marlin>));
 INSTANTIATE_TEST_SUITE_P(Reprapfirmware, PortConformance,
                          testing::Values(&make<drivers::Firmware::reprapfirmware>));
+INSTANTIATE_TEST_SUITE_P(Linuxcnc, PortConformance, testing::Values(+[]() -> std::unique_ptr<PortOnTrial> {
+                           return std::make_unique<LinuxcncOnTrial>();
+                         }));
 
 }  // namespace
 }  // namespace understudy::machine

@@ -167,6 +167,20 @@ TEST_F(HalFeedTest, IsBehindTheClockByTheLeadInMotionAndFreshAtRest) {
   EXPECT_NEAR(feed_.state().time - feed_.state().sampled_at, 0, 1e-12);
 }
 
+TEST_F(HalFeedTest, TellsWhatEncodersBehindThePlayReadLastAndWhen) {
+  machine::LoadReading reading;
+  EXPECT_FALSE(feed_.read_load(reading)) << "a machine without";
+  HalSettings settings = two_axes();
+  settings.load_encoders = true;
+  HalSample sample = hal_.sample();
+  HalFeed feed(settings, options(), sample);
+  sample.load = {10.02e-3, 19.97e-3};
+  feed.take(sample);
+  ASSERT_TRUE(feed.read_load(reading));
+  EXPECT_EQ(reading.position, sample.load);
+  EXPECT_EQ(reading.sampled_at, feed.state().sampled_at);
+}
+
 TEST_F(HalFeedTest, AControllerThatIsLateInMotionIsAnUnderrunAndOneAtRestIsNot) {
   ASSERT_EQ(feed_.submit(there_and_back(5e-3, 300), kNever), Status::ok);
   ASSERT_EQ(wait(0.1), Status::ok);

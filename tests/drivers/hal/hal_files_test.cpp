@@ -12,6 +12,8 @@
 namespace understudy::drivers {
 namespace {
 
+const std::string kWithEncoders = "hexapod{load_encoders.count_um: 0.5}";
+
 std::string file_named(const std::vector<HalFile>& files, const std::string& name) {
   for (const HalFile& f : files)
     if (f.name == name) return f.text;
@@ -26,7 +28,9 @@ int matches(const std::string& text, const std::string& pattern) {
 
 /// Every pin of the streamer and of the samplers is on one signal, for each shipped machine.
 TEST(HalFiles, ConnectEveryColumnOnce) {
-  for (const std::string& name : machine::machine_names()) {
+  std::vector<std::string> names = machine::machine_names();
+  names.push_back(kWithEncoders);
+  for (const std::string& name : names) {
     const HalSettings s = hal_settings(machine::load_machine(name));
     const std::string text = file_named(hal_files(s), "machine.hal");
     const auto check = [&](const std::string& pin, std::size_t columns) {
@@ -53,10 +57,25 @@ TEST(HalFiles, SayWhatIsAssumedAndWhatAMachineChanges) {
   EXPECT_THAT(file_named(files, "pins.hal"), testing::HasSubstr("emergency-stop-ok"));
 }
 
+TEST(HalFiles, HaveAPinForEachEncoderBehindThePlay) {
+  const auto files = hal_files(hal_settings(machine::load_machine(kWithEncoders)));
+  const std::string pins = file_named(files, "pins.hal"), machine = file_named(files, "machine.hal");
+  for (int i = 1; i <= 6; ++i) {
+    const std::string signal = "l" + std::to_string(i) + "-load";
+    EXPECT_EQ(matches(pins, "\nnet " + signal + " <= "), 1) << signal;
+    EXPECT_EQ(matches(machine, "\nnet " + signal + " => load\\.l" + std::to_string(i) + "\\.fb-in"), 1)
+        << signal;
+  }
+  EXPECT_THAT(file_named(files, "README.md"), testing::HasSubstr("Counts a unit: `l1` 2000, `l2` 2000"));
+  for (const HalFile& f : hal_files(hal_settings(machine::load_machine("hexapod"))))
+    EXPECT_EQ(f.text.find("-load"), std::string::npos) << f.name;
+}
+
 /// HAL itself loads what is written, and its threads run.
 void expect_loads(const std::string& name) {
   const HalSettings s = hal_settings(machine::load_machine(name));
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("hal-files-" + name);
+  const auto folder =
+      std::filesystem::path(testing::TempDir()) / ("hal-files-" + name.substr(0, name.find('{')));
   std::filesystem::create_directories(folder);
   for (const HalFile& f : hal_files(s)) std::ofstream(folder / f.name) << f.text;
   ::setenv("RTAPI_UID", "65534", 0);
@@ -81,7 +100,8 @@ void expect_loads(const std::string& name) {
 
 TEST(HalFiles, AreLoadedByHal) {
   SKIP_WITHOUT_HAL();
-  for (const char* name : {"arm-positioner", "five-axis"}) expect_loads(name);
+  for (const std::string& name : {std::string("arm-positioner"), std::string("five-axis"), kWithEncoders})
+    expect_loads(name);
 }
 
 TEST(SlowHalFiles, AreLoadedByHalForEveryMachine) {

@@ -32,7 +32,8 @@ inline bool has_hal() { return std::filesystem::exists("/usr/bin/halrun"); }
 /// base thread without a real-time kernel makes ten thousand a second.
 class HalMachine {
  public:
-  explicit HalMachine(const HalOptions& options = trial_options()) {
+  /// `more` goes to the end of the machine file.
+  explicit HalMachine(const HalOptions& options = trial_options(), const std::string& more = "") {
     prefer_this_thread();  // it is the controller: late only when the computer is
     folder_ = std::filesystem::path(testing::TempDir()) / ("understudy-hal-" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder_);
@@ -43,7 +44,7 @@ class HalMachine {
     std::string file = text.str();
     const std::string fine = "microsteps: 16";
     file.replace(file.find(fine), fine.size(), "microsteps: 1");
-    std::ofstream(folder_ / "machine.yaml") << file;
+    std::ofstream(folder_ / "machine.yaml") << file << more;
     machine_ = machine::load_machine((folder_ / "machine.yaml").string());
     settings_ = hal_settings(machine_, options);
     for (const HalFile& f : hal_files(settings_)) std::ofstream(folder_ / f.name) << f.text;

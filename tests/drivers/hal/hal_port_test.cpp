@@ -75,6 +75,37 @@ TEST_F(HalPortTest, MovesAndReadsBackWithinAStep) {
   EXPECT_EQ(port->counts().underruns, 0U);
 }
 
+TEST_F(HalPortTest, ReadsTheEncodersBehindThePlayBesideTheDrives) {
+  const HalMachine hal(HalMachine::trial_options(), "\nload_encoders:\n  count_um: 0.5\n");
+  const RunningHal running(hal);
+  // The scale along strut 3 reads 12.5 um more than the drive: a zero that is off.
+  RunningHal::command({"setp", "encoder-of-l3.offset", "0.0125"});
+  const auto port = hal.attach();
+  ASSERT_EQ(port->state().fault, Fault::none) << port->fault_text();
+  Setpoint s;
+  s.time = port->now() + 0.5;
+  s.position = port->state().position;
+  for (std::size_t i = 0; i < 6; ++i) s.position[i] += 1e-3 * static_cast<double>(i + 1);
+  ASSERT_EQ(port->submit(std::array{s}, kNever), Status::ok);
+  ASSERT_EQ(port->wait_until(s.time + 0.01), Status::ok) << port->fault_text();
+  const AxisState end = port->state();
+  machine::LoadReading load;
+  ASSERT_TRUE(machine::read_load(*port, load));
+  EXPECT_EQ(load.sampled_at, end.sampled_at);
+  // Samples have six decimals of a mm.
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_NEAR(load.position[i] - end.position[i], i == 2 ? 12.5e-6 : 0, 1.1e-9) << i;
+}
+
+TEST_F(HalPortTest, AMachineWithoutEncodersBehindThePlayHasNoReading) {
+  const HalMachine hal;
+  const auto port = hal.open();
+  machine::LoadReading load;
+  load.position[0] = 7;
+  EXPECT_FALSE(machine::read_load(*port, load));
+  EXPECT_EQ(load.position[0], 7);
+}
+
 /// A period's setpoints of axis 0 from where the clock stands, out by `depth` and back, at rest at both ends.
 std::vector<Setpoint> there_and_back(const machine::MachinePort& port, const machine::AxisVector& start,
                                      double depth, double seconds) {

@@ -43,6 +43,18 @@ TEST(HalRow, ASampleIsReadInSi) {
   EXPECT_FALSE(s.starved || s.limit);
 }
 
+TEST(HalRow, WhatEncodersBehindThePlayReadFollowsTheState) {
+  HalSettings settings = slide_turn_and_filament();
+  settings.load_encoders = true;
+  HalSample s;
+  const std::string state = "123.456789 -90.000000 1.500000 42 3 1 1 1 0 0 1 ";
+  ASSERT_TRUE(parse(state + "123.469289 -89.000000", settings, s));
+  EXPECT_DOUBLE_EQ(s.position[0], 0.123456789);
+  EXPECT_DOUBLE_EQ(s.load[0], 0.123469289);
+  EXPECT_NEAR(s.load[1], -1.5533430342750, 1e-12);
+  EXPECT_FALSE(parse(state + "123.469289", settings, s)) << "of one axis it is not known";
+}
+
 TEST(HalRow, WhatIsNoSampleIsRefused) {
   HalSample s;
   for (const char* line :

@@ -69,6 +69,29 @@ TEST(HalSettings, TheFingerprintTellsOtherAxesApart) {
   EXPECT_NE(hal_settings(machine).fingerprint, before);
 }
 
+TEST(HalSettings, TakesEncodersBehindThePlayWhereEveryAxisHasOne) {
+  const auto of = [](const std::string& machine) { return hal_settings(machine::load_machine(machine)); };
+  const HalSettings plain = of("hexapod"), with = of("hexapod{load_encoders.count_um: 0.5}");
+  EXPECT_FALSE(plain.load_encoders);
+  ASSERT_TRUE(with.load_encoders);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(with.axes[i].count, 0.5e-3, 1e-15) << "mm";
+  EXPECT_EQ(with.axes[6].count, 0) << "none at the filament";
+  EXPECT_NE(with.fingerprint, plain.fingerprint) << "a sample has other columns";
+  EXPECT_FALSE(of("five-axis{load_encoders.count_um: 0.5}").load_encoders) << "none at its turns";
+}
+
+TEST(HalSettings, RefusesMoreEncodersBehindThePlayThanASampleHoldsColumns) {
+  // 8 axes and the filament, 8 of the state, 8 encoders.
+  try {
+    hal_settings(machine::load_machine("arm-positioner{load_encoders.count_arcmin: 0.1}"));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("load_encoders: with one at each of 8 axes a sample of HAL has "
+                                   "25 columns, at most 21 can be"));
+  }
+}
+
 TEST(HalSettings, NamesAxesThatSoftwareCannotStepFastEnough) {
   const auto lines = too_fast_for_software(hal_settings(machine::load_machine("hexapod")));
   ASSERT_EQ(lines.size(), 6U);
