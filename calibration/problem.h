@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
 #include "kinematics/hexapod/hexapod.h"
 
 namespace understudy::calibration {
@@ -67,6 +68,7 @@ struct Problem {
 struct Options {
   int max_iterations = 50;
   std::uint64_t seed = 1;  ///< of estimators that draw subsets
+  Progress progress = {};  ///< of estimators that may take long
 };
 
 enum class [[nodiscard]] Status{

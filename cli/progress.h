@@ -30,4 +30,12 @@ class ProgressLine {
   std::mutex mutex_;                  ///< threads of a work pool tell how far each is
 };
 
+/// Work that tells its progress: `work(progress)`, and what it returns. Before anything else is printed the
+/// line is gone.
+template <typename Work>
+auto with_progress(bool wanted, Work work) {
+  ProgressLine line(wanted);
+  return work(line.teller());
+}
+
 }  // namespace understudy::cli

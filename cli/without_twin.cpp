@@ -1,12 +1,14 @@
-// Stands for twin_commands.cpp, export_mjcf.cpp, export_glb.cpp and export_video.cpp in the build without the
-// twin.
+// Stands for twin_commands.cpp, export_mjcf.cpp, export_glb.cpp, export_video.cpp and drive_watch.cpp in the
+// build without the twin.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cli/command.h"
 #include "cli/doctor.h"
+#include "cli/drive_watch.h"
 #include "cli/export_video_command.h"
 #include "control/library_versions.h"
+#include "core/error.h"
 
 namespace understudy::cli {
 
@@ -15,6 +17,10 @@ void add_export_mjcf(CLI::App&, Action&) {}
 void add_export_trace(CLI::App&, Action&) {}
 void add_export_video(CLI::App&, Action&) {}
 void add_export_glb(CLI::App&, Action&) {}
+
+std::unique_ptr<DriveWatch> watch_drive(const machine::MachineDescription&, const std::string&, int) {
+  throw InputError("--watch: this build is without the twin, and has no page to show");
+}
 
 std::vector<std::string> left_out_commands() {
   return {"rehearse",  "inspect",       "pose",      "place",        "verify",      "register",

@@ -17,6 +17,7 @@
 #include "machine/port.h"
 #include "rehearsal/findings/finding.h"
 #include "rehearsal/replay.h"
+#include "rehearsal/run_curves.h"
 #include "rehearsal/scene.h"
 
 namespace understudy::sim {
@@ -220,6 +221,7 @@ struct Record {
   double gap_accepted_min_mm = 0, gap_accepted_max_mm = 0, gap_aim_mm = 0;
   std::vector<TracePoint> trace;
   int trace_stride = 1;                               ///< snapshots a point of the trace
+  RunCurves curves;                                   ///< over the time of the trace; may be empty
   std::vector<GapBelief> gap_beliefs;                 ///< one for each point of the trace
   std::string gap_belief_note;                        ///< where their sigma comes from, in words
   std::vector<TracePoint> trace_without_gap_control;  ///< empty when the run itself had none

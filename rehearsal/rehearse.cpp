@@ -16,6 +16,7 @@
 #include "core/units.h"
 #include "core/version.h"
 #include "machine/fixture_file.h"
+#include "rehearsal/axis_columns.h"
 #include "rehearsal/before_calibration.h"
 #include "rehearsal/findings/accuracy_findings.h"
 #include "rehearsal/findings/feature_findings.h"
@@ -57,17 +58,7 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
   record.tip_tolerance_mm = to_mm(setup.accepted.tip);
   record.orientation_tolerance_deg = to_deg(setup.accepted.orientation);
   record.gap_aim_mm = to_mm(setup.machine.gap.aim);
-  const auto mechanism = setup.machine.make_mechanism();
-  for (int i = 0; i < mechanism->axis_count(); ++i) {
-    // The tip has columns x, y and z of its own.
-    const std::string name = mechanism->axis_name(i);
-    const bool taken = name == "x" || name == "y" || name == "z";
-    AxisColumn column{(taken ? "axis_" : "") + name + (mechanism->axis_is_angle(i) ? "_deg" : "_mm"), {}, {}};
-    const kinematics::AxisRange range = mechanism->axis_range(i);
-    if (std::isfinite(range.lower)) column.min = range.lower;
-    if (std::isfinite(range.upper)) column.max = range.upper;
-    record.axes.push_back(column);
-  }
+  record.axes = axis_columns(*setup.machine.make_mechanism());
   record.provenance = {kVersion,     setup.machine.sha256,  setup.program.sha256,
                        request.seed, setup.as_built.source, request.command};
   record.provenance.inputs_sha256 = inputs_sha256(request, setup.program.sha256);
@@ -200,6 +191,7 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
     record.findings.insert(record.findings.end(), findings.begin(), findings.end());
   record.trace = runs.main.trace;
   record.trace_stride = runs.main.trace_stride;
+  record.curves = runs.main.curves;
   if (without) record.trace_without_gap_control = without->trace;
   record.frames = runs.main.frames;
   fill_beliefs(setup, options.gap_control, runs.main.result, record);

@@ -120,6 +120,7 @@ struct Watch {
         trace(deposition, TraceObserver::kCapacity, setup.asked),
         collision(setup.truth, setup.as_built, setup.workblank ? setup.workblank->stock : setup.built_part,
                   collision_options(setup)),
+        curves(deposition, options.watch_collisions ? &collision : nullptr, struts_of(setup)),
         removal(removal_of(setup)),  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): a unique_ptr holds it
         thread(watching(options)) {}
 
@@ -127,7 +128,12 @@ struct Watch {
     std::vector<sim::Observer*> all{curing ? static_cast<sim::Observer*>(&*curing) : &deposition, &trace};
     if (options.watch_collisions) all.push_back(&collision);
     if (removal) all.push_back(removal.get());
+    all.push_back(&curves);
     return all;
+  }
+
+  static int struts_of(const TwinSetup& setup) {
+    return setup.machine.is_chain() ? 0 : static_cast<int>(kinematics::kStruts);
   }
 
   static std::unique_ptr<sim::RemovalObserver> removal_of(const TwinSetup& setup) {
@@ -181,6 +187,7 @@ struct Watch {
   std::optional<sim::CuringObserver> curing;
   TraceObserver trace;
   sim::CollisionObserver collision;
+  CurvesObserver curves;
   std::unique_ptr<sim::RemovalObserver> removal;
   sim::ObserverThread thread;
 };
@@ -300,6 +307,9 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   run.orientation_peak = watch.trace.orientation_peak();
   run.trace_stride = watch.trace.stride();
   run.trace = watch.trace.take();
+  run.curves = watch.curves.take();
+  if (setup.machine.tool.prints() && !setup.cure)
+    run.curves.glass_transition = setup.material.glass_transition;
   run.frames = pair_with_truth(run.result, truth);
   run.deposition = watch.deposition.summary();
   run.loose = watch.deposition.unsupported_stretches();

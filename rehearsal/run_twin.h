@@ -12,6 +12,7 @@
 #include "machine/cure.h"
 #include "machine/description.h"
 #include "machine/material.h"
+#include "rehearsal/curves_observer.h"
 #include "rehearsal/fill_watch.h"
 #include "rehearsal/flow_watch.h"
 #include "rehearsal/program/programmed_layers.h"
@@ -67,6 +68,7 @@ struct TwinRun {
   control::PrintResult result;
   std::vector<TracePoint> trace;
   int trace_stride = 1;  ///< snapshots a point of the trace
+  RunCurves curves;
   std::optional<AccuracyFigures> accuracy;
   ErrorPeak tip_peak, orientation_peak;
   std::vector<FrameRecord> frames;

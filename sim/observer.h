@@ -16,9 +16,10 @@ struct Snapshot {
   kinematics::AxisVector axes_reached{};    ///< SI, where the drives are, whatever the port reports
   double filament = 0;                      ///< [m], fed since the start
   double fan = 0;
-  double nozzle_temperature = 0;  ///< [K]
-  int line = 0;                   ///< G-code line
-  double closure_error = 0;       ///< [m]
+  double nozzle_temperature = 0;         ///< [K]
+  int line = 0;                          ///< G-code line
+  double closure_error = 0;              ///< [m]
+  kinematics::AxisVector drive_force{};  ///< [N] or [N m], as Plant::drive_force()
 };
 
 class Observer {

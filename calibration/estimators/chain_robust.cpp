@@ -57,8 +57,8 @@ ChainCalibration calibrate_chain_robust(const ChainParameters& nominal,
                    "of " + std::to_string(samples.size()) +
                        " poses none can be rejected: robust needs at least " + std::to_string(start + 1));
   ChainPoseFit model(likelihood, samples);
-  const std::vector<bool> used =
-      agreeing_poses(model, {samples.size(), parameters, options.max_iterations, options.seed});
+  const std::vector<bool> used = agreeing_poses(
+      model, {samples.size(), parameters, options.max_iterations, options.seed, options.progress});
   if (used.empty())
     return refused(likelihood.refusal(), Status::not_converged,
                    "no " + std::to_string(start) +

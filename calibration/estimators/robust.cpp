@@ -41,8 +41,9 @@ class Robust final : public Estimator {
     const Identifiability found = check_identifiability(problem, {});
     if (found.status != Status::ok) return refused(problem, found);
     HexapodPoseFit model(problem);
-    const std::vector<bool> used = agreeing_poses(
-        model, {problem.samples.size(), kGeometryParameters, options.max_iterations, options.seed});
+    const std::vector<bool> used =
+        agreeing_poses(model, {problem.samples.size(), kGeometryParameters, options.max_iterations,
+                               options.seed, options.progress});
     if (used.empty())
       return refused(problem, Status::not_converged,
                      "no 8 of the poses agree on a machine: check their order");

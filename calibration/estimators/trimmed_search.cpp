@@ -11,6 +11,7 @@ namespace understudy::calibration {
 namespace {
 
 constexpr int kStarts = 60;           // of which 99 % hit 8 good poses when a quarter of 24 are bad: 1 in 16
+constexpr double kStartsDone = 0.5;   // of the work, as progress tells it
 constexpr std::size_t kBest = 5;      // starts that are followed to the end
 constexpr int kShortFit = 6;          // iterations
 constexpr double kGoodShare = 0.75;   // of the poses, at least, are taken for good
@@ -41,6 +42,8 @@ class Search {
       candidate.used = draw();
       if (refit(candidate, kShortFit) && concentrate(candidate) && concentrate(candidate))
         all.push_back(std::move(candidate));
+      tell(stage_of(setting_.progress, 0, kStartsDone), static_cast<std::size_t>(n + 1), kStarts,
+           "fits to a few poses");
     }
     std::stable_sort(all.begin(), all.end(),
                      [](const Candidate& a, const Candidate& b) { return a.trimmed < b.trimmed; });
@@ -109,6 +112,8 @@ class Search {
             (nearest == best.used.size() || best.distances[j] < best.distances[nearest]))
           nearest = j;
       if (nearest == best.used.size()) return;
+      tell(stage_of(setting_.progress, kStartsDone, 1), round, best.used.size() - core_ + 1,
+           "poses that join");
       best.used[nearest] = true;
       if (!refit(best, setting_.iterations)) return;
     }

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
+
 namespace understudy::calibration {
 
 /// All that the search knows of a model.
@@ -32,6 +34,7 @@ struct TrimmedSearch {
   int parameters = 0;      ///< that the poses tell
   int iterations = 50;     ///< of each fit as poses join
   std::uint64_t seed = 1;  ///< of the starts
+  Progress progress = {};
 };
 
 /// used[j] of the poses that agree, three quarters of them at least; empty where no start led to a fit.

@@ -10,6 +10,6 @@ namespace understudy::calibration {
 /// As estimator.calibrate(). Where it finds plays, and the loads on the machine found tell a side that was
 /// unknown, that is noted in `problem`, and the estimator calibrates again. Sides that were told stay.
 Calibration calibrate_by_loads(const machine::MachineDescription& machine, const Estimator& estimator,
-                               Problem& problem);
+                               Problem& problem, const Options& options = {});
 
 }  // namespace understudy::calibration

@@ -84,11 +84,12 @@ TipCovariance tip_covariance(const MachineCalibration& result, const ChainCalibr
 }  // namespace
 
 void calibrate_chain_machine(const Measurements& measurements, const machine::MachineDescription& nominal,
-                             const Estimator& estimator, MachineCalibration& result) {
+                             const Estimator& estimator, MachineCalibration& result,
+                             const Progress& progress) {
   machine::require_calibratable(nominal);
   check_axes_moved(measurements, nominal);
   const ChainProblem problem{{nominal.chain().kinematics.chain, {}}, chain_samples(measurements, nominal)};
-  const ChainCalibration found = estimator.calibrate_chain(problem);
+  const ChainCalibration found = estimator.calibrate_chain(problem, {.progress = stage_of(progress, 0, 0.7)});
   check_found(found, measurements, result.estimator);
   kinematics::ChainDescription& known = result.machine.chain().kinematics;
   if (known.design.axes.empty()) known.design = known.chain;
@@ -107,7 +108,8 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
   const std::string misfit =
       misfit_warning(found.chi_square, found.degrees_of_freedom, "outliers, play, bending");
   if (!misfit.empty()) result.warnings.push_back(misfit);
-  result.tip = tip_map(nominal, result.machine, tip_covariance(result, found, measurements));
+  result.tip = tip_map(nominal, result.machine, tip_covariance(result, found, measurements),
+                       stage_of(progress, 0.7, 1));
 }
 
 }  // namespace understudy::calibration

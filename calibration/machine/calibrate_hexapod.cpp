@@ -16,6 +16,8 @@
 namespace understudy::calibration {
 namespace {
 
+constexpr const char* kTip = "where the tip goes";
+
 PoseResidual residual_of(const Problem& problem, const Calibration& found, std::size_t j, int line) {
   const PoseSample& sample = problem.samples[j];
   PoseResidual r = pose_residual(found, sample.covariance, j, line);
@@ -81,7 +83,7 @@ void check_hexapod_model(const machine::MachineDescription& machine, const std::
 }
 
 void calibrate_hexapod(const Measurements& measurements, const machine::MachineDescription& nominal,
-                       const Estimator& estimator, MachineCalibration& result) {
+                       const Estimator& estimator, MachineCalibration& result, const Progress& progress) {
   check_hexapod_model(nominal, measurements.file, result);
   const Unknowns unknowns = estimator.unknowns();
   if (unknowns.play && !measurements.approach_told)
@@ -89,8 +91,10 @@ void calibrate_hexapod(const Measurements& measurements, const machine::MachineD
         {measurements.file, 0, 0},
         fmt::format("{} needs the columns a1..a6: the side that each strut came from", result.estimator));
   Problem problem = hexapod_problem(measurements, nominal);
-  const Calibration found = calibrate_by_loads(nominal, estimator, problem);
+  const Calibration found =
+      calibrate_by_loads(nominal, estimator, problem, {.progress = stage_of(progress, 0, 0.9)});
   check_found(found, measurements, result.estimator);
+  tell(progress, 9, 10, kTip);
   report_hexapod(problem, found, unknowns, measurements, nominal, result);
 }
 

@@ -8,7 +8,7 @@ namespace understudy::calibration {
 
 /// The hexapod's half of calibrate_machine(): joints, length offsets and what else the estimator knows.
 void calibrate_hexapod(const Measurements& measurements, const machine::MachineDescription& nominal,
-                       const Estimator& estimator, MachineCalibration& result);
+                       const Estimator& estimator, MachineCalibration& result, const Progress& progress = {});
 
 /// Throws InputError for struts whose drives do not tell their lengths; warns of what no model has. `file`:
 /// of the measurements.

@@ -40,11 +40,13 @@ void warn_of_noise(const CalibrationRequest& request, MachineCalibration& result
 }  // namespace
 
 void calibrate_measurements(const Measurements& measurements, const machine::MachineDescription& nominal,
-                            const Estimator& estimator, MachineCalibration& result) {
+                            const Estimator& estimator, MachineCalibration& result,
+                            const Progress& progress) {
+  tell(progress, 0, 1, fmt::format("fitting {} poses", measurements.poses.size()));
   if (nominal.is_chain())
-    calibrate_chain_machine(measurements, nominal, estimator, result);
+    calibrate_chain_machine(measurements, nominal, estimator, result, progress);
   else
-    calibrate_hexapod(measurements, nominal, estimator, result);
+    calibrate_hexapod(measurements, nominal, estimator, result, progress);
   if (const std::string lines = rejected_lines(result); !lines.empty())
     result.warnings.push_back("poses rejected as outliers: line " + lines);
   result.machine.calibration = {result.estimator, std::filesystem::path(result.file).filename().string(),
@@ -72,7 +74,7 @@ MachineCalibration calibrate_machine(const CalibrationRequest& request) {
   warn_of_noise(request, result);
   const auto estimator =
       estimator_of(request, result.estimator, nominal.is_chain() ? MachineKind::chain : MachineKind::hexapod);
-  calibrate_measurements(measurements, nominal, *estimator, result);
+  calibrate_measurements(measurements, nominal, *estimator, result, request.progress);
   return result;
 }
 

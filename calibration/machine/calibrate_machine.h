@@ -21,6 +21,7 @@ struct CalibrationRequest {
   ProcessLimits plugin_limits{.time = 60};
   std::optional<MeasurementNoise> noise;  ///< of poses, where the file has none
   std::string command;                    ///< for the record: how a user repeats this
+  Progress progress = {};
 };
 
 /// Throws InputError, with file and line where one row is at fault, for all that check_identifiability() and
@@ -30,6 +31,7 @@ MachineCalibration calibrate_machine(const CalibrationRequest& request);
 /// The same of measurements and an estimator that are at hand. `result` comes with its machine (`nominal`),
 /// the names of file and estimator, and the noise.
 void calibrate_measurements(const Measurements& measurements, const machine::MachineDescription& nominal,
-                            const Estimator& estimator, MachineCalibration& result);
+                            const Estimator& estimator, MachineCalibration& result,
+                            const Progress& progress = {});
 
 }  // namespace understudy::calibration

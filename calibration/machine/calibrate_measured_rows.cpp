@@ -111,7 +111,7 @@ MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
   require_row_model(nominal, result);
   MeasuredRows rows = read_measured_rows(request.map, request.measurements, nominal);
   assume_noise(request.noise, rows.problem);
-  const RowCalibration found = calibrate_rows(rows.problem);
+  const RowCalibration found = calibrate_rows(rows.problem, {.progress = stage_of(request.progress, 0, 0.7)});
   check_answer(found, rows);
   check_explained(found, rows.files.front(), nominal.name);
 
@@ -120,7 +120,7 @@ MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
   result.command = request.command;
   result.estimator = "rows";
   take_rows(rows, found, result);
-  take_machine(found, rows.problem, nominal, result);
+  take_machine(found, rows.problem, nominal, result, stage_of(request.progress, 0.7, 1));
   if (!result.spoiled.empty())
     result.warnings.push_back(fmt::format("{} of {} rows do not agree with the others and were left out: {}",
                                           result.spoiled.size(), rows.problem.rows.size(),

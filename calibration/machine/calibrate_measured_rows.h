@@ -8,6 +8,7 @@
 
 #include "calibration/machine/machine_calibration.h"
 #include "calibration/table/column_map.h"
+#include "core/progress.h"
 
 namespace understudy::calibration {
 
@@ -18,6 +19,7 @@ struct RowsRequest {
   std::string machine;                    ///< name or path
   std::optional<MeasurementNoise> noise;  ///< of rows that tell none
   std::string command;                    ///< for the record
+  Progress progress = {};
 };
 
 /// Throws InputError, with file and line where one row is at fault, for all that

@@ -13,7 +13,7 @@ namespace understudy::calibration {
 namespace {
 
 void take_chain(const RowCalibration& found, const machine::MachineDescription& nominal,
-                MachineCalibration& result) {
+                MachineCalibration& result, const Progress& progress) {
   ChainCalibration chain;
   static_cast<Estimation&>(chain) = found;
   chain.parameters = *found.machine.chain();
@@ -25,7 +25,7 @@ void take_chain(const RowCalibration& found, const machine::MachineDescription& 
   known.chain = absorb_zeros(chain.parameters);
   result.stored = stored_parameters(chain, Measurements{}, result.machine);
   result.machine.X_BT_home = kinematics::forward(known.chain, known.home);
-  result.tip = tip_map(nominal, result.machine, chain_tip(result.machine, chain));
+  result.tip = tip_map(nominal, result.machine, chain_tip(result.machine, chain), progress);
 }
 
 /// Numbers of `estimated` among all of the machine's parameters.
@@ -39,7 +39,7 @@ std::vector<Eigen::Index> columns_of(const RowCalibration& found) {
 }
 
 void take_hexapod(const RowCalibration& found, const machine::MachineDescription& nominal,
-                  MachineCalibration& result) {
+                  MachineCalibration& result, const Progress& progress) {
   Calibration hexapod;
   static_cast<Estimation&>(hexapod) = found;
   hexapod.parameters.geometry = found.machine.hexapod()->geometry;
@@ -48,7 +48,7 @@ void take_hexapod(const RowCalibration& found, const machine::MachineDescription
   hexapod.covariance(columns, columns) = found.covariance;
   result.machine.hexapod().geometry = hexapod.parameters.geometry;
   result.stored = stored_parameters(hexapod, {}, Measurements{}, result.machine);
-  result.tip = tip_map(nominal, result.machine, hexapod_tip(result.machine, hexapod, {}));
+  result.tip = tip_map(nominal, result.machine, hexapod_tip(result.machine, hexapod, {}), progress);
 }
 
 double value(const HexapodGeometry& geometry, Eigen::Index parameter) {
@@ -84,11 +84,12 @@ void require_row_model(const machine::MachineDescription& nominal, MachineCalibr
 }
 
 void take_machine(const RowCalibration& found, const RowProblem& problem,
-                  const machine::MachineDescription& nominal, MachineCalibration& result) {
+                  const machine::MachineDescription& nominal, MachineCalibration& result,
+                  const Progress& progress) {
   if (found.machine.chain())
-    take_chain(found, nominal, result);
+    take_chain(found, nominal, result, progress);
   else
-    take_hexapod(found, nominal, result);
+    take_hexapod(found, nominal, result, progress);
   result.parameters = parameter_lines(found, problem.nominal);
   report_estimation(found, found.covariance, result);
 }

@@ -11,6 +11,7 @@ void require_row_model(const machine::MachineDescription& nominal, MachineCalibr
 
 /// Geometry, what the file stores, parameters, tip. `result.machine` is the nominal one before.
 void take_machine(const RowCalibration& found, const RowProblem& problem,
-                  const machine::MachineDescription& nominal, MachineCalibration& result);
+                  const machine::MachineDescription& nominal, MachineCalibration& result,
+                  const Progress& progress = {});
 
 }  // namespace understudy::calibration

@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kPoses = 400;   // their median is known within 3 %
 constexpr double kSliceHalf = 50e-3;  // [m], half the cube of docs/reference.md#calibration-figures
 constexpr double kSliceStep = 5e-3;   // [m]
-constexpr std::uint64_t kSeed = 1;    // the same poses for every calibration of a machine
+constexpr const char* kAsked = "where the tip goes";
+constexpr std::uint64_t kSeed = 1;  // the same poses for every calibration of a machine
 
 /// sqrt of the trace: 1 sigma of the tip's 3D error.
 double sigma_of(const Mat3& covariance) { return std::sqrt(std::max(0.0, covariance.trace())); }
@@ -44,7 +45,7 @@ bool reachable(const kinematics::Mechanism& mechanism, const Pose& X_BT) {
 }
 
 TipMap::Slice slice(const machine::MachineDescription& machine, const kinematics::Mechanism& mechanism,
-                    const TipCovariance& covariance, int v) {
+                    const TipCovariance& covariance, int v, const Progress& progress) {
   const Pose X_WT_home = machine.X_WB * machine.X_BT_home;
   TipMap::Slice out;
   out.v = "xyz"[v];
@@ -53,6 +54,7 @@ TipMap::Slice slice(const machine::MachineDescription& machine, const kinematics
   out.v0 = X_WT_home.translation()[v] - kSliceHalf;
   out.columns = out.rows = 1 + static_cast<int>(std::lround(2 * kSliceHalf / kSliceStep));
   for (int row = 0; row < out.rows; ++row) {
+    tell(progress, static_cast<std::size_t>(row), static_cast<std::size_t>(out.rows), kAsked);
     for (int column = 0; column < out.columns; ++column) {
       Pose X_WT = X_WT_home;
       X_WT.translation().x() = out.u0 + column * out.step;
@@ -69,15 +71,18 @@ TipMap::Slice slice(const machine::MachineDescription& machine, const kinematics
 }  // namespace
 
 TipMap tip_map(const machine::MachineDescription& before, const machine::MachineDescription& after,
-               const TipCovariance& covariance) {
+               const TipCovariance& covariance, const Progress& progress) {
+  tell(progress, 0, 1, kAsked);
   const auto old_model = before.make_mechanism(), new_model = after.make_mechanism();
   Random random(kSeed, "calibrate work space");
   TipMap map;
   std::vector<double> sigmas, moves;
   double squares = 0;
+  std::size_t done = 0;
   for (const Pose& X_BT :
        random_reachable_poses(*new_model, reference_region(after.X_BT_home), kPoses, random)) {
     if (double d = 0; moved_tip(before, *old_model, after, *new_model, X_BT, d)) moves.push_back(d);
+    tell(stage_of(progress, 0, 0.4), ++done, kPoses, kAsked);
     Mat3 at;
     if (!covariance || !covariance(X_BT, at)) continue;
     sigmas.push_back(sigma_of(at));
@@ -90,7 +95,9 @@ TipMap tip_map(const machine::MachineDescription& before, const machine::Machine
   map.worst = quantile(sigmas, 1);
   map.rms = std::sqrt(squares / static_cast<double>(sigmas.size()));
   if (sigmas.empty()) return map;
-  for (const int v : {1, 2}) map.slices.push_back(slice(after, *new_model, covariance, v));
+  for (const int v : {1, 2})
+    map.slices.push_back(
+        slice(after, *new_model, covariance, v, stage_of(progress, v == 1 ? 0.4 : 0.7, v == 1 ? 0.7 : 1)));
   return map;
 }
 

@@ -31,7 +31,7 @@ using TipCovariance = std::function<bool(const Pose& X_BT, Mat3& covariance)>;
 
 /// `before` knows the machine as it was known, `after` as it is known now.
 TipMap tip_map(const machine::MachineDescription& before, const machine::MachineDescription& after,
-               const TipCovariance& covariance);
+               const TipCovariance& covariance, const Progress& progress = {});
 
 TipCovariance hexapod_tip(const machine::MachineDescription& machine, const Calibration& calibration,
                           const Unknowns& unknowns);

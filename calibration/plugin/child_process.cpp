@@ -184,7 +184,8 @@ class Watch {
 
 }  // namespace
 
-ProcessRun run_process(const std::string& command, const std::string& input, const ProcessLimits& limits) {
+ProcessRun run_process(const std::string& command, const std::string& input, const ProcessLimits& limits,
+                       const Progress& progress) {
   Pipe in, out, err;
   NoBrokenPipeSignal quiet;
   Child child(command, limits, in, out, err);
@@ -196,6 +197,8 @@ ProcessRun run_process(const std::string& command, const std::string& input, con
   std::size_t written = 0;
   while (in.write.is_open() || out.read.is_open() || err.read.is_open() || !child.ended()) {
     stop_if_interrupted();
+    if (progress)
+      progress(watch.seconds() / limits.time, fmt::format("the plug-in, {:g} s at most", limits.time));
     const bool ended = child.ended();  // before reading: all that it wrote is in the pipes
     pollfd watched[] = {
         {in.write.get(), POLLOUT, 0}, {out.read.get(), POLLIN, 0}, {err.read.get(), POLLIN, 0}};

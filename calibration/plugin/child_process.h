@@ -6,6 +6,7 @@
 #include <string>
 
 #include "calibration/plugin/process_limits.h"
+#include "core/progress.h"
 
 namespace understudy::calibration {
 
@@ -20,8 +21,8 @@ struct ProcessRun {
 /// Runs `command` by /bin/sh in a box (box.h), in a session of its own, with the environment of
 /// plugin_environment.h and no open files but its three streams. All that it started is killed when it ends,
 /// whatever session or group that began, and when we die. Only throws Interrupted, when the user asked for
-/// it, and MachineError, when no process can be started.
-ProcessRun run_process(const std::string& command, const std::string& input,
-                       const ProcessLimits& limits = {});
+/// it, and MachineError, when no process can be started. `progress` is the share of the time limit.
+ProcessRun run_process(const std::string& command, const std::string& input, const ProcessLimits& limits = {},
+                       const Progress& progress = {});
 
 }  // namespace understudy::calibration

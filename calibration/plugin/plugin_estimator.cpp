@@ -18,9 +18,9 @@ class PluginEstimator final : public Estimator {
   PluginEstimator(std::string command, const ProcessLimits& limits)
       : command_(std::move(command)), limits_(limits) {}
 
-  Calibration calibrate(const Problem& problem, const Options&) const override {
+  Calibration calibrate(const Problem& problem, const Options& options) const override {
     Calibration result = refused(problem, Status::no_answer, {});
-    result.message = ask(problem, result.parameters);
+    result.message = ask(problem, options.progress, result.parameters);
     if (!result.message.empty()) return result;
     result.pose = add_residuals(problem, {}, result);
     if (result.pose) {
@@ -35,12 +35,12 @@ class PluginEstimator final : public Estimator {
     return result;
   }
 
-  ChainCalibration calibrate_chain(const ChainProblem& problem, const Options&) const override {
+  ChainCalibration calibrate_chain(const ChainProblem& problem, const Options& options) const override {
     ChainCalibration result;
     result.status = Status::no_answer;
     result.parameters = problem.nominal;
     result.used.assign(problem.samples.size(), true);
-    result.message = ask(problem, result.parameters);
+    result.message = ask(problem, options.progress, result.parameters);
     if (!result.message.empty()) return result;
     result.estimated = chain_parameter_names(problem.nominal.chain);
     for (const ChainSample& sample : problem.samples) {
@@ -58,8 +58,8 @@ class PluginEstimator final : public Estimator {
  private:
   /// Why there is no answer; empty, and the answer in `parameters`, where there is one.
   template <typename AnyProblem, typename Parameters>
-  std::string ask(const AnyProblem& problem, Parameters& parameters) const {
-    const ProcessRun run = run_process(command_, problem_json(problem), limits_);
+  std::string ask(const AnyProblem& problem, const Progress& progress, Parameters& parameters) const {
+    const ProcessRun run = run_process(command_, problem_json(problem), limits_, progress);
     if (!run.ok) return run.failure;
     if (run.output.find_first_not_of(" \t\r\n") != std::string::npos)
       return read_answer(run.output, parameters);

@@ -173,6 +173,7 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
                     "of frames, targets and places): measure more",
                     problem.rows.size(), equations, numbers, numbers - layout.columns(), layout.columns()));
   const RowLikelihood likelihood(problem, layout, unknowns.machine);
+  tell(options.progress, 0, 10, "fitting the measuring frames");
   const auto before = fitted_surroundings(likelihood, problem, layout, options.start, options.max_iterations);
   if (!before)
     return refused(result, Status::not_converged, "no place of the measuring frames fits these rows");
@@ -186,6 +187,7 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
     return true;
   };
   if (untold(before->fit.state, options.start, {})) return result;
+  tell(options.progress, 3, 10, fmt::format("fitting {} rows", problem.rows.size()));
   const AgreeingFit agreeing = fit_agreeing(likelihood, problem, {problem.nominal, before->fit.state.around},
                                             options.start, options.machine, options.max_iterations);
   const RowFit& after = agreeing.fit;
@@ -197,6 +199,7 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
                     "measurements of the same rows, of this machine, with one target each?",
                     spoiled, problem.rows.size()));
   if (untold(after.state, agreeing.noise, agreeing.weights)) return result;
+  tell(options.progress, 9, 10, "comparing with the nominal machine");
   // What the nominal machine leaves, weighed as the found one is.
   const RowFit compared = likelihood.fit({problem.nominal, before->fit.state.around}, agreeing.noise, false,
                                          options.max_iterations, agreeing.weights);

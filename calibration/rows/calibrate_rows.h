@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibration/rows/row_outliers.h"
+#include "core/progress.h"
 
 namespace understudy::calibration {
 
@@ -60,6 +61,7 @@ struct RowOptions {
   /// False: the machine stays, and only what stands around it is found.
   bool machine = true;
   AddedNoise start{1e-3, 2e-3, 1e-3, 1e-3, 1e-3};  ///< where the search for the noise begins
+  Progress progress = {};                          ///< by stages
 };
 
 /// Never throws for data: `status` and `message` say what is missing, `pose` which row.

@@ -14,6 +14,7 @@
 #include "cli/options/noise_option.h"
 #include "cli/options/output_options.h"
 #include "cli/options/plugin_box.h"
+#include "cli/progress.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
 
@@ -60,14 +61,24 @@ std::optional<calibration::RowsRequest> rows_request(CalibrateCall& call) {
 
 int run_calibrate(CalibrateCall call) {
   CalibrationOutput output(call.output, call.report, call.urdf);
-  if (const auto rows = rows_request(call))
-    return output.write(calibration::calibrate_measured_rows(*rows), call.told);
+  if (auto rows = rows_request(call))
+    return output.write(with_progress(!call.told.quiet,
+                                      [&](const Progress& progress) {
+                                        rows->progress = progress;
+                                        return calibration::calibrate_measured_rows(*rows);
+                                      }),
+                        call.told);
   calibration::CalibrationRequest request = call.request;
   request.measurements = call.measurements.front();
   request.noise = noise_of(call.noise);
   request.command = command_line();
   warn_of_box(!request.plugin.empty());
-  return output.write(calibration::calibrate_machine(request), call.told);
+  return output.write(with_progress(!call.told.quiet,
+                                    [&](const Progress& progress) {
+                                      request.progress = progress;
+                                      return calibration::calibrate_machine(request);
+                                    }),
+                      call.told);
 }
 
 }  // namespace
@@ -102,7 +113,7 @@ void add_calibrate(CLI::App& app, Action& action) {
   output->required();
   command->add_option("--urdf-out", call->urdf, "also write the calibrated machine as a URDF (open chains)");
   command->add_option("--report", call->report, "folder for report.html and summary.json");
-  add_quiet_option(*command, call->told, "the name of the calibrated machine file alone");
+  add_quiet_option(*command, call->told, "no progress, and the name of the calibrated machine file alone");
   add_json_option(*command, call->told, "the summary");
   auto* gap_sensor = add_calibrate_gap_sensor(*command, action);
   auto* bundle = add_calibrate_bundle(*command, action);

@@ -11,8 +11,11 @@
 
 #include "cli/command.h"
 #include "cli/drive/gap_latency.h"
+#include "cli/drive/watched_port.h"
+#include "cli/drive_watch.h"
 #include "cli/options/camera_option.h"
 #include "cli/options/print_request.h"
+#include "cli/options/watch_options.h"
 #include "cli/progress.h"
 #include "control/preflight.h"
 #include "control/resume/resumed_program.h"
@@ -34,6 +37,7 @@ struct DriveOptions {
   PrintRequest print;
   std::string port, rehearsal, record = "drive.record", resume, camera;
   bool without_rehearsal = false;
+  WatchOptions watch;
 };
 
 constexpr double kToRest = 60;      // [s], for a machine that brakes
@@ -92,11 +96,15 @@ class Driven {
 
 class DriveProgress : public control::PrintObserver {
  public:
+  explicit DriveProgress(DriveWatch* watch) : watch_(watch) {}
   void progress(std::size_t done, std::size_t total, double) override {
-    line_.show(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total)), "printing");
+    const double share = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total));
+    line_.show(share, "printing");
+    if (watch_) watch_->progress(share);
   }
 
  private:
+  DriveWatch* watch_;
   ProgressLine line_;
 };
 
@@ -166,14 +174,18 @@ control::Restart restart_of(const std::string& file, const PreparedPrint& print,
 }
 
 control::PrintResult print_on(const PreparedPrint& print, const std::optional<control::Restart>& restart,
-                              Driven& driven) {
+                              Driven& driven, DriveWatch* watch) {
   control::PrintOptions options;
   if (restart) options.offset_W = restart->offset_W;
   options.gap_control = print.gap_control;
   options.part = print.part.get();
-  DriveProgress progress;
+  DriveProgress progress(watch);
+  WatchedPort watched(driven.port(), [watch](const SeenMotion& seen) {
+    if (watch) watch->moved(seen);
+  });
+  machine::MachinePort& port = watch ? static_cast<machine::MachinePort&>(watched) : driven.port();
   try {
-    return control::print(print.program, print.machine, driven.port(), options, &progress);
+    return control::print(print.program, print.machine, port, options, &progress);
   } catch (const Interrupted&) {
     driven.come_to_rest();
     stopped(driven, driven.emergency() ? "stopped as an emergency by a second signal"
@@ -205,6 +217,8 @@ int drive(const DriveOptions& options) {
   }
   std::unique_ptr<drivers::FrameSource> camera;
   if (!options.camera.empty()) camera = open_camera(options.camera);
+  std::unique_ptr<DriveWatch> watch;
+  if (options.watch.watch) watch = watch_drive(print.machine, asked.program, options.watch.port);
   const CountedInterrupts interrupts;
   Driven driven(options, print, std::move(camera));
   driven.note("path_sha256 " + path);
@@ -214,7 +228,7 @@ int drive(const DriveOptions& options) {
   }
   driven.note(run ? "rehearsal " + run->inputs_sha256 : "without a rehearsal");
   check_before(print, driven);
-  const control::PrintResult result = print_on(print, restart, driven);
+  const control::PrintResult result = print_on(print, restart, driven, watch.get());
   if (!result.completed) {
     const int line = result.stop.line;
     stopped(driven, line > 0 ? fmt::format("stopped at {}:{}: {}", asked.program, line, result.stop.why)
@@ -222,6 +236,7 @@ int drive(const DriveOptions& options) {
   }
   driven.come_to_rest();
   driven.note("completed");
+  if (watch) watch->complete();
   fmt::print("printed {} on {}: {} moves, {:.1f} mm of filament, {:.1f} s\n  record {}\n", asked.program,
              options.port, result.moves, to_mm(result.extruded), result.duration, options.record);
   if (const std::string latency = gap_latency_line(options.record); !latency.empty())
@@ -262,6 +277,7 @@ void add_drive(CLI::App& app, Action& action) {
       ->add_option("--resume", options->resume,
                    "record of this print that was cut short: goes on behind the last bead laid, from home")
       ->check(CLI::ExistingFile);
+  add_watch_options(*command, options->watch, "the axes as they move");
   command->footer(
       "understudy rehearse scenarios/song-bottle.gcode --fixture bottle --out out\n"
       "understudy drive scenarios/song-bottle.gcode --port serial:///dev/ttyACM0?family=grblhal --rehearsal "

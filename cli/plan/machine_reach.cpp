@@ -17,6 +17,7 @@ namespace {
 
 using kinematics::SolveStatus;
 
+constexpr const char* kAsking = "asking the machine";
 constexpr double kTiltShare = 1e-3;  // to which a possible tilt is found
 
 struct Spacing {
@@ -127,10 +128,13 @@ toolpath::WayCheck machine_reach(const machine::MachineDescription& machine) {
   };
 }
 
-void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine) {
+void check_reach(const toolpath::Program& program, const machine::MachineDescription& machine,
+                 const Progress& progress) {
   const toolpath::WayCheck reach = machine_reach(machine);
   std::vector<Pose> way;
+  std::size_t done = 0;
   for (const toolpath::Step& step : program.steps) {
+    tell(progress, ++done, program.steps.size(), kAsking);
     if (!toolpath::moves(step)) continue;
     way.push_back(step.X_WT);
     if (way.size() < 2) continue;
@@ -147,13 +151,16 @@ void check_reach(const toolpath::Program& program, const machine::MachineDescrip
   }
 }
 
-void check_reach_from_home(const toolpath::Program& program, const machine::MachineDescription& machine) {
+void check_reach_from_home(const toolpath::Program& program, const machine::MachineDescription& machine,
+                           const Progress& progress) {
   const MachineReach reach(machine, Singular::allowed);
   Pose X_WT = machine.X_WB * machine.X_BT_home;
   kinematics::AxisVector at{};
   if (const std::string why = reach.stand(X_WT, {}, at); !why.empty())
     throw InputError(fmt::format("machine {} cannot stand at its home: {}", machine.name, why));
+  std::size_t done = 0;
   for (const toolpath::Step& step : program.steps) {
+    tell(progress, ++done, program.steps.size(), kAsking);
     if (!toolpath::moves(step)) continue;
     if (const auto obstacle = reach.lead(X_WT, step.X_WT, kFine, at)) {
       const Vec3 p = obstacle->X_WT.translation();

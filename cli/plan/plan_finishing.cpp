@@ -8,6 +8,7 @@
 
 #include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
+#include "cli/progress.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/units.h"
@@ -69,10 +70,14 @@ int plan_finishing(const FinishingRequest& r) {
   check_option("--fit", r.fit_mm, 10);
   const auto machine = milling_machine(r.options.machine);
   const auto part = geometry::read_stl(machine::find_fixture(r.part));
-  const toolpath::FinishingPlan plan = plan_of(r, machine, *part);
+  toolpath::FinishingPlan plan = plan_of(r, machine, *part);
   const auto stock = geometry::inflated(*part, plan.depth);
-  const auto result = toolpath::plan_finishing(*part, *stock, *table_of(machine), plan);
-  if (!r.ignore_reach) check_reach_from_home(result.program, machine);
+  const auto result = with_progress(!r.options.quiet, [&](const Progress& progress) {
+    plan.progress = stage_of(progress, 0, 0.8);
+    auto planned = toolpath::plan_finishing(*part, *stock, *table_of(machine), plan);
+    if (!r.ignore_reach) check_reach_from_home(planned.program, machine, stage_of(progress, 0.8, 1));
+    return planned;
+  });
   std::string notes = fmt::format(
       "{} layers, {} outlines, {:.1f} mm of cutting to a depth of {:g} mm; fitted normals within {:.2f} deg "
       "of "

@@ -11,6 +11,7 @@
 
 #include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
+#include "cli/progress.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "geometry/box_mesh.h"
@@ -134,7 +135,7 @@ toolpath::LatticePlan plan_of(const LatticeRequest& r, const machine::MachineDes
 int plan_five_directions(const LatticeRequest& r) {
   if (is_frame(r)) throw InputError("--directions five needs a part, " + r.part + " is a frame");
   const auto machine = printing_machine(r.options.machine);
-  const auto plan = plan_of(r, machine);
+  auto plan = plan_of(r, machine);
   const double strut = from_mm(r.strut_mm) * r.scale;
   const auto ranges = toolpath::strut_ranges(toolpath::ToolEnvelope(plan.limits.tool),
                                              plan.limits.strut_diameter, plan.limits.margin);
@@ -148,7 +149,10 @@ int plan_five_directions(const LatticeRequest& r) {
   toolpath::turn(segments, from_deg(r.turn_deg));
   toolpath::place_lattice(segments.lattice, r.scale,
                           place_from("--place", r.place) + from_mm(0.5 * r.diameter_mm) * Vec3::UnitZ());
-  const auto result = toolpath::plan_segments(segments, plan);
+  const auto result = with_progress(!r.options.quiet, [&](const Progress& progress) {
+    plan.limits.progress = progress;
+    return toolpath::plan_segments(segments, plan);
+  });
   write_program(result.program, machine, r.options);
   print_written(
       r.options,
@@ -169,7 +173,11 @@ int plan_lattice(const LatticeRequest& r) {
   const Vec3 place = place_from("--place", r.place);
   // Struts on the table rest on it: their middle is half a diameter above.
   toolpath::place_lattice(lattice, r.scale, place + from_mm(0.5 * r.diameter_mm) * Vec3::UnitZ());
-  const auto result = toolpath::plan_lattice(lattice, plan_of(r, machine));
+  auto plan = plan_of(r, machine);
+  const auto result = with_progress(!r.options.quiet, [&](const Progress& progress) {
+    plan.limits.progress = progress;
+    return toolpath::plan_lattice(lattice, plan);
+  });
   warn_of_lengths(lattice);
   for (const std::string& warning : result.sequence.warnings) fmt::print(stderr, "warning: {}\n", warning);
   write_program(result.program, machine, r.options, result.sequence.warnings);

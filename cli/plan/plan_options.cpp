@@ -44,7 +44,7 @@ void add_output_option(CLI::App& command, PlanOptions& options) {
       "--rotary-words", options.rotary_words,
       "state the tool's orientation by the turning axes of the machine, such as B and C, instead of "
       "W I J K");
-  command.add_flag("-q,--quiet", options.quiet, "do not print what was written");
+  command.add_flag("-q,--quiet", options.quiet, "no progress, and no word about what was written");
 }
 
 void print_written(const PlanOptions& options, const std::string& what) {

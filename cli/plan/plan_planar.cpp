@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/plan/plan_options.h"
+#include "cli/progress.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"
@@ -38,7 +39,10 @@ int plan_planar(const PlanarRequest& r) {
   plan.filament_diameter = machine.tool.filament_diameter;
   plan.temperature = r.options.temperature_c + kCelsiusZero;
   plan.fan = r.options.fan;
-  const auto result = toolpath::plan_planar(*part, core.get(), plan);
+  const auto result = with_progress(!r.options.quiet, [&](const Progress& progress) {
+    plan.progress = progress;
+    return toolpath::plan_planar(*part, core.get(), plan);
+  });
   write_program(result.program, machine, r.options);
   print_written(r.options, fmt::format("{} layers of {:g} mm, {} strokes, {:.1f} mm of bead", result.layers,
                                        r.layer_mm, result.strokes, to_mm(result.printed)));

@@ -6,6 +6,7 @@
 
 #include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
+#include "cli/progress.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"
@@ -24,6 +25,12 @@ struct SupportFreeRequest {
   bool ignore_reach = false;
 };
 
+toolpath::StructuralLine line_of(const SupportFreeRequest& r, const geometry::Mesh& part,
+                                 const Progress& progress) {
+  if (!r.line.empty()) return toolpath::StructuralLine(toolpath::read_curve_csv(r.line));
+  return toolpath::find_structural_line(part, from_mm(r.step_mm), r.smooth_um * kMicrometre, progress);
+}
+
 int plan_support_free(const SupportFreeRequest& r) {
   check_options(r.options);
   check_option("--layer", r.layer_mm, 10);
@@ -33,9 +40,6 @@ int plan_support_free(const SupportFreeRequest& r) {
     throw InputError(fmt::format("--smooth {:g} um is outside 0..1000 um", r.smooth_um));
   const auto machine = printing_machine(r.options.machine);
   const auto part = geometry::read_stl(machine::find_fixture(r.part));
-  const auto line = r.line.empty()
-                        ? toolpath::find_structural_line(*part, from_mm(r.step_mm), r.smooth_um * kMicrometre)
-                        : toolpath::StructuralLine(toolpath::read_curve_csv(r.line));
   toolpath::SupportFreePlan plan;
   plan.range = {from_mm(r.layer_mm), from_mm(r.range_mm.at(0)), from_mm(r.range_mm.at(1)),
                 from_deg(r.lag_deg)};
@@ -47,8 +51,13 @@ int plan_support_free(const SupportFreeRequest& r) {
   plan.filament_diameter = machine.tool.filament_diameter;
   plan.temperature = r.options.temperature_c + kCelsiusZero;
   plan.fan = r.options.fan;
-  const auto result = toolpath::plan_support_free(*part, line, plan);
-  if (!r.ignore_reach) check_reach(result.program, machine);
+  const auto result = with_progress(!r.options.quiet, [&](const Progress& progress) {
+    const auto line = line_of(r, *part, stage_of(progress, 0, 0.3));
+    plan.progress = stage_of(progress, 0.3, 0.8);
+    auto planned = toolpath::plan_support_free(*part, line, plan);
+    if (!r.ignore_reach) check_reach(planned.program, machine, stage_of(progress, 0.8, 1));
+    return planned;
+  });
   const std::string notes = fmt::format(
       "{} layers of {:.3f} to {:.3f} mm, {:.1f} mm of bead, {:.1f} mm3, {} travels; the tool leans by up to "
       "{:.1f} "

@@ -6,6 +6,7 @@
 
 #include "cli/plan/machine_reach.h"
 #include "cli/plan/plan_options.h"
+#include "cli/progress.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/cure.h"
@@ -64,7 +65,7 @@ std::vector<std::vector<Vec3>> strokes_of_svg(const geometry::Mesh& mesh, const 
 }
 
 std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const SurfaceRequest& r,
-                                         const toolpath::SurfacePlan& plan) {
+                                         const toolpath::SurfacePlan& plan, const Progress& progress) {
   if (!r.svg.empty()) return strokes_of_svg(mesh, r);
   if (!r.curves.empty()) {
     std::vector<std::vector<Vec3>> read;
@@ -81,6 +82,7 @@ std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const Surfa
                               : toolpath::bead_area(plan.bead_width, plan.bead_height) / plan.bead_height;
   rows.tilt_min = from_deg(r.tilt_deg[0]);
   rows.tilt_max = from_deg(r.tilt_deg[1]);
+  rows.progress = progress;
   return toolpath::section_rows(mesh, rows);
 }
 
@@ -128,8 +130,13 @@ int plan_surface(const SurfaceRequest& r) {
   fill_process(r, machine, plan);
   plan.tilt_max = std::numbers::pi;  // the machine says
   plan.upright = r.upright;
-  const auto program = toolpath::plan_surface(*mesh, curves_on(*mesh, r, plan), r.layers, plan);
-  if (!r.ignore_reach) check_reach(program, machine);
+  const auto program = with_progress(!r.options.quiet, [&](const Progress& progress) {
+    const auto curves = curves_on(*mesh, r, plan, stage_of(progress, 0, 0.3));
+    plan.progress = stage_of(progress, 0.3, 0.7);
+    auto planned = toolpath::plan_surface(*mesh, curves, r.layers, plan);
+    if (!r.ignore_reach) check_reach(planned, machine, stage_of(progress, 0.7, 1));
+    return planned;
+  });
   write_program(program, machine, r.options);
   print_written(r.options, fmt::format("{} steps on {}", program.steps.size(), r.part));
   return kGood;

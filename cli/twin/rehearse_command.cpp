@@ -18,7 +18,7 @@
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
 #include "cli/twin/replay_option.h"
-#include "cli/watch/live_server.h"
+#include "cli/watch/watched_run.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
@@ -164,19 +164,6 @@ void tell(const rehearsal::Record& record, const RehearseOptions& asked, const s
     print_answer(record, rehearsal::original_of(program), asked.folder);
 }
 
-/// A run that browsers look at while it goes.
-struct Watched {
-  explicit Watched(int port)
-      : server({[this] { return record.page(); }, [this] { return record.json(); },
-                [this] { return record.progress_json(); }},
-               port) {
-    fmt::print(stderr, "watch: {}\n", server.url());
-  }
-
-  report::LiveRecord record;
-  LiveServer server;
-};
-
 /// What lies in the folder of results is one of them, and a film is none: it is made from them.
 void check_film(const RehearseOptions& asked) {
   if (asked.video.empty()) return;
@@ -205,8 +192,8 @@ int rehearse(const RehearseOptions& asked) {
   check_film(asked);
   OutputFolder out(asked.folder);
   request.surface.as_printed = among_results(request.surface.as_printed, asked.folder, out.path());
-  std::optional<Watched> watched;
-  if (asked.watch) watched.emplace(asked.watch_port);
+  std::optional<WatchedRun> watched;
+  if (asked.watch.watch) watched.emplace(asked.watch.port);
   const rehearsal::Record record =
       rehearse_into(request, out.path(), asked.output.quiet, watched ? &watched->record : nullptr);
   stop_if_interrupted();

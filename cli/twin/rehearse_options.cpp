@@ -174,12 +174,7 @@ void add_rehearse_options(CLI::App& command, RehearseOptions& options) {
   command.add_option("--out", options.folder, "folder of results")->capture_default_str();
   command.add_option("--video", options.video,
                      "FILE.mp4, outside of --out: also a film of the run (understudy export video)");
-  auto* watch = command.add_flag("--watch", options.watch,
-                                 "serve the growing report to a browser of this computer (docs/watch.md)");
-  command.add_option("--watch-port", options.watch_port, "port of --watch; 0: any free one")
-      ->check(CLI::Range(0, 65535))
-      ->needs(watch)
-      ->capture_default_str();
+  add_watch_options(command, options.watch, "the growing report");
   add_quiet_option(command, options.output, "no progress, and the verdict alone, in one line");
   add_json_option(command, options.output, "the summary");
 }

@@ -8,6 +8,7 @@
 #include <CLI/App.hpp>
 
 #include "cli/options/output_options.h"
+#include "cli/options/watch_options.h"
 #include "rehearsal/request/request.h"
 
 namespace understudy::cli {
@@ -17,8 +18,7 @@ struct RehearseOptions {
   std::vector<std::string> faults;   ///< in the words of scenarios
   std::string folder = "rehearsal";  ///< of results
   std::string video;                 ///< a film of the run; empty: none
-  bool watch = false;                ///< show the growing report in a browser
-  int watch_port = 0;                ///< of HTTP; 0: any free one
+  WatchOptions watch;                ///< show the growing report in a browser
   OutputOptions output;
 
   /// The request with its faults; throws InputError for words that tell none.

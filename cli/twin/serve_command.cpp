@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,13 +15,16 @@
 #include "cli/options/dialect_options.h"
 #include "cli/options/machine_option.h"
 #include "cli/options/seed_option.h"
+#include "cli/options/watch_options.h"
 #include "cli/twin/compensation_commands.h"
 #include "cli/twin/rehearse_into.h"
 #include "cli/twin/rehearse_options.h"
+#include "cli/watch/watched_run.h"
 #include "control/program/gcode_options.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
+#include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "machine/description.h"
 #include "rehearsal/findings/verdict.h"
@@ -35,6 +40,7 @@ struct ServeCall {
   std::string port, dialect = "grbl", folder = "served";
   double speed = 1;
   bool network = false;
+  WatchOptions watch;
 };
 
 std::atomic<bool> asked_to_stop{false};
@@ -56,7 +62,41 @@ class StopBySignal {
   void (*before_term_)(int);
 };
 
-rehearsal::ServedProgram receive(const ServeCall& call) {
+/// What a sender sees of the machine, for the page.
+class WatchedServing {
+ public:
+  WatchedServing(report::LiveRecord& record, const std::string& machine) : record_(record) {
+    rehearsal::Record described;
+    described.program_name = "received.gcode";
+    described.machine_name = machine;
+    described.title = described.program_name + " on " + machine;
+    record_.begins_motion(
+        described,
+        "The curves are the motion that the sender is told; the rehearsal of it begins when the "
+        "print has ended.");
+    record_.progress(0, "waiting for a sender");
+  }
+
+  void moved(const rehearsal::ServedMotion& now) {
+    rehearsal::TracePoint point;
+    point.time = now.time;
+    point.X_WT = point.X_WT_programmed = now.X_WT;
+    point.extruding = now.filament > filament_;
+    if (point.extruding) path_ += (now.X_WT.translation() - tip_).norm();
+    point.path = path_;
+    tip_ = now.X_WT.translation();
+    filament_ = std::max(filament_, now.filament);
+    record_.moved(point);
+    record_.progress(0, fmt::format("receiving: {} moves, {} lines refused", now.moves, now.refused));
+  }
+
+ private:
+  report::LiveRecord& record_;
+  Vec3 tip_ = Vec3::Zero();
+  double filament_ = 0, path_ = 0;  // [m]
+};
+
+rehearsal::ServedProgram receive(const ServeCall& call, report::LiveRecord* live) {
   const auto machine = machine::load_machine(call.request.machine);
   const auto options = control::gcode_options(call.request.dialect, machine);
   const auto line = rehearsal::open_serve_line(rehearsal::parse_serve_address(call.port, call.network));
@@ -69,6 +109,11 @@ rehearsal::ServedProgram receive(const ServeCall& call) {
   };
   serving.stop = [] { return asked_to_stop.load(); };
   serving.tell = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+  std::optional<WatchedServing> watched;
+  if (live) {
+    watched.emplace(*live, machine.name);
+    serving.moved = [&watched](const rehearsal::ServedMotion& now) { watched->moved(now); };
+  }
   fmt::print("{} listens as {} on {}\n", machine.name, call.dialect, line->name());
   std::fflush(stdout);
   const StopBySignal stop;
@@ -78,9 +123,13 @@ rehearsal::ServedProgram receive(const ServeCall& call) {
 int run_serve(const ServeCall& call) {
   static_cast<void>(rehearsal::parse_serve_address(call.port, call.network));
   OutputFolder out(call.folder);
-  const rehearsal::ServedProgram program = receive(call);
+  std::optional<WatchedRun> watched;
+  if (call.watch.watch) watched.emplace(call.watch.port);
+  report::LiveRecord* live = watched ? &watched->record : nullptr;
+  const rehearsal::ServedProgram program = receive(call, live);
   if (program.moves == 0) {
     fmt::print("{}: no move was received, so there is nothing to rehearse\n", program.ended);
+    if (watched) watched->server.end("No move was received: there is nothing to rehearse.");
     return kNo;
   }
   rehearsal::RehearsalRequest request = call.request;
@@ -90,9 +139,11 @@ int run_serve(const ServeCall& call) {
       "understudy rehearse {} --machine {} --engine {} --seed {} --out {}",
       shell_quoted((std::filesystem::path(call.folder) / "received.gcode").string()),
       shell_quoted(request.machine), request.engine, request.seed, shell_quoted(call.folder + "-again"));
-  const rehearsal::Record record = rehearse_into(request, out.path());
+  const rehearsal::Record record = rehearse_into(request, out.path(), false, live);
   stop_if_interrupted();
   out.commit();
+  if (watched)
+    watched->server.finish(read_file((std::filesystem::path(call.folder) / "report.html").string()));
   fmt::print("{}: {} moves received, {} lines refused\n", program.ended, program.moves, program.refused);
   fmt::print("{}: {}\n", record.title, headline(grade_of(record)));
   fmt::print("report: {}\n", (std::filesystem::path(call.folder) / "report.html").string());
@@ -134,6 +185,7 @@ void add_serve(CLI::App& app, Action& action) {
       ->check(seed_check())
       ->capture_default_str();
   add_dialect_options(*command, request.dialect);
+  add_watch_options(*command, call->watch, "the print as it comes, and the report as it grows,");
   command->footer(
       "Example:\n"
       "  understudy serve --machine hexapod --port pty:/tmp/twin --dialect marlin --out served &\n"

@@ -30,6 +30,10 @@ void only_one(socket_t socket) {
   static_cast<void>(::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes));
 }
 
+std::string event_of(const char* name, const std::string& data) {
+  return fmt::format("event: {}\ndata: {}\n\n", name, data);
+}
+
 }  // namespace
 
 std::string loaded_httplib() { return loaded_version("libcpp-httplib", CPPHTTPLIB_VERSION); }
@@ -50,8 +54,8 @@ struct LiveServer::Server {
 
   std::mutex mutex;
   std::condition_variable changed;
-  std::string last_page;  ///< guarded by `mutex`, as all below
-  bool finished = false, closing = false;
+  std::string last_page, last_words;  ///< guarded by `mutex`, as all below
+  bool finished = false, ended = false, closing = false;
   int viewers = 0, late = 0;  ///< that have yet to load the last page
 };
 
@@ -74,21 +78,28 @@ std::string LiveServer::Server::page() {
 }
 
 bool LiveServer::Server::send_event(httplib::DataSink& sink, std::string& sent) {
-  const char* last = nullptr;
+  std::string last;
   {
     std::unique_lock lock(mutex);
-    if (!sent.empty()) changed.wait_for(lock, kBetweenEvents, [this] { return finished || closing; });
-    if (finished || closing) last = finished ? "done" : "stopped";
+    const auto over = [this] { return finished || ended || closing; };
+    if (!sent.empty()) changed.wait_for(lock, kBetweenEvents, over);
+    if (over())
+      last = finished ? event_of("done", "{}")
+             : ended  ? event_of("ended", last_words)
+                      : event_of("stopped", "{}");
   }
-  std::string event = last ? fmt::format("event: {}\ndata: {{}}\n\n", last)
-                           : fmt::format("event: grown\ndata: {}\n\n", content.progress());
+  std::string event = last.empty() ? event_of("grown", content.progress()) : last;
   // A comment keeps the line alive where nothing has changed, and shows when the browser has left.
   if (event == sent)
     event = ": no change\n\n";
   else
     sent = event;
   if (!sink.write(event.data(), event.size())) return false;
-  if (last) sink.done();
+  if (last.empty()) return true;
+  sink.done();
+  const std::scoped_lock lock(mutex);
+  if (ended && late > 0) --late;
+  changed.notify_all();
   return true;
 }
 
@@ -158,6 +169,15 @@ void LiveServer::finish(std::string page) {
   server_->last_page = std::move(page);
   server_->late = server_->viewers;
   server_->finished = true;
+  server_->changed.notify_all();
+  server_->changed.wait_for(lock, kLastPage, [this] { return server_->late == 0; });
+}
+
+void LiveServer::end(const std::string& words) {
+  std::unique_lock lock(server_->mutex);
+  server_->last_words = fmt::format(R"({{"what":"{}"}})", words);
+  server_->late = server_->viewers;
+  server_->ended = true;
   server_->changed.notify_all();
   server_->changed.wait_for(lock, kLastPage, [this] { return server_->late == 0; });
 }

@@ -26,6 +26,9 @@ class LiveServer {
 
   /// From now on / is `page`. Browsers that watch are told, and waited for until they have it, 5 s at most.
   void finish(std::string page);
+  /// The same of a run without a finished page: the one that is there stays, and says `words`, which
+  /// have neither quotes nor backslashes.
+  void end(const std::string& words);
 
  private:
   struct Server;

@@ -31,7 +31,10 @@ class Visit {
         break;
       }
       session_->receive(line_.read(session_->room(), kPatience));
-      session_->tick(serving_.speed * (serving_.clock() - began_));
+      const double now = serving_.speed * (serving_.clock() - began_);
+      session_->tick(now);
+      if (serving_.moved && !machine_.idle())
+        serving_.moved({now, machine_.X_WT(), machine_.filament(), machine_.moves(), machine_.refused()});
       line_.write(session_->take_output());
       if (serving_.stop()) why = "interrupted";
       if (session_->aborted()) why = "the sender has aborted it";

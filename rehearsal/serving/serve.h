@@ -10,12 +10,21 @@
 
 namespace understudy::rehearsal {
 
+/// Where the machine is that a sender prints on.
+struct ServedMotion {
+  double time = 0;               ///< [s] of the machine, since the sender came
+  Pose X_WT = Pose::Identity();  ///< as planned
+  double filament = 0;           ///< [m], fed by now
+  int moves = 0, refused = 0;    ///< that came by now, and lines
+};
+
 struct ServeOptions {
-  std::string dialect = "grbl";                  ///< of session_dialects()
-  double speed = 1;                              ///< seconds of the machine in one of `clock`
-  std::function<double()> clock;                 ///< [s], that only advances
-  std::function<bool()> stop;                    ///< the user has asked for the end
-  std::function<void(const std::string&)> tell;  ///< what happens, for people; may be empty
+  std::string dialect = "grbl";                    ///< of session_dialects()
+  double speed = 1;                                ///< seconds of the machine in one of `clock`
+  std::function<double()> clock;                   ///< [s], that only advances
+  std::function<bool()> stop;                      ///< the user has asked for the end
+  std::function<void(const std::string&)> tell;    ///< what happens, for people; may be empty
+  std::function<void(const ServedMotion&)> moved;  ///< while the tool moves; may be empty
 };
 
 /// What came.

@@ -7,6 +7,7 @@
 #include "core/text/stable_number.h"
 #include "core/units.h"
 #include "rehearsal/findings/verdict.h"
+#include "report/page/over_time.h"
 #include "report/page/replay_data.h"
 #include "report/picture/png.h"
 #include "report/summary_json.h"
@@ -189,6 +190,7 @@ Json report_data(const rehearsal::Record& record, const std::vector<Illustration
   if (!record.trace_before_calibration.empty())
     report["trace_before_calibration"] = trace_value(record.trace_before_calibration, record);
   if (record.trace_stride > 1) report["trace_stride"] = record.trace_stride;
+  if (Json curves = over_time(record); !curves.is_null()) report["over_time"] = std::move(curves);
   if (!record.strands.empty()) report["strands"] = strands_value(record.strands);
   if (!record.profile.empty()) report["profile"] = profile_value(record);
   if (!record.deviation_note.empty()) report["deviation_note"] = record.deviation_note;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/file/output_file.h"
 #include "core/file/read_file.h"
 
 namespace understudy::report {
@@ -16,10 +17,21 @@ void silence_codecs() {
   ::setenv("OPENCV_LOG_LEVEL", "SILENT", 0);
 }
 
+// [bytes] of a film of a few frames: a disk that has no more is told before they are drawn. FFmpeg does not
+// say why it cannot write.
+constexpr std::size_t kLeastRoom = 65'536;
+
+void require_room(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "room";
+  write_file(file, std::string(kLeastRoom, '\0'));
+  std::filesystem::remove(file);
+}
+
 }  // namespace
 
 Mp4Writer::Mp4Writer(double frames_per_second, cv::Size size)
     : folder_("video"), file_(folder_.path() / "frames.mp4") {
+  require_room(folder_.path());
   silence_codecs();
   struct Choice {
     int tag;
@@ -44,8 +56,9 @@ std::string Mp4Writer::finish() {
   int count = 0;
   while (written.isOpened() && written.grab()) ++count;
   if (count != frames_)
-    throw MachineError(fmt::format("{} of {} frames of the video were written to {}: is the disk full?",
-                                   count, frames_, folder_.path().string()));
+    throw MachineError(
+        fmt::format("cannot write {}: {} of {} frames of the film are there; is the disk full?",
+                    file_.string(), count, frames_));
   return read_file(file_.string());
 }
 

@@ -14,7 +14,7 @@ namespace understudy::report {
 /// H.264, which browsers play; MPEG-4 part 2 where there is no encoder of it.
 class Mp4Writer {
  public:
-  /// Throws MachineError where OpenCV has neither.
+  /// Throws MachineError where OpenCV has neither, and where there is no room for temporary files.
   Mp4Writer(double frames_per_second, cv::Size size);
   void add(const cv::Mat& frame);
   /// Reads what was written; throws MachineError where frames are missing, as on a full disk.

@@ -51,6 +51,7 @@ struct CollisionObserver::State {
   std::optional<Snapshot> last;
   std::uint64_t checks = 0;
   Contact closest, closest_nozzle;
+  double nozzle_seen = kInfinity;  // [m], least since the snapshot before
   // By line and pair: the deepest.
   std::map<std::pair<int, std::size_t>, Contact> touching, near;
 
@@ -72,6 +73,7 @@ struct CollisionObserver::State {
     const Separation seen = bodies.separation(pair, configuration, check_inside);
     ++checks;
     at.clearance = seen.distance;
+    if (pair.nozzle_gap) nozzle_seen = std::min(nozzle_seen, seen.distance);
     record(index,
            {bodies.name(pair.body), bodies.name(pair.obstacle), seen.distance, seen.place_W, time, line});
     at.budget = allowed_motion(seen.distance, limits(index, line));
@@ -172,6 +174,7 @@ CollisionObserver::CollisionObserver(const machine::MachineDescription& machine,
                        0,
                        {},
                        {},
+                       kInfinity,
                        {},
                        {}}) {
   if (!(options.margin > 0))
@@ -188,6 +191,7 @@ void CollisionObserver::observe(const Snapshot& snapshot) {
     throw MachineError("tool pose is not finite at " + std::to_string(snapshot.time) + " s");
   }
   const std::size_t pairs = s.looks.size();
+  s.nozzle_seen = kInfinity;
   if (!s.last) {
     for (std::size_t i = 0; i < pairs; ++i)
       s.look(i, {snapshot.X_WT, snapshot.axes_reached}, snapshot.time, snapshot.line);
@@ -225,6 +229,7 @@ std::vector<Contact> CollisionObserver::near_collisions() const {
 double CollisionObserver::min_clearance() const { return state_->closest.clearance; }
 Contact CollisionObserver::closest() const { return state_->closest; }
 double CollisionObserver::min_nozzle_clearance() const { return state_->closest_nozzle.clearance; }
+double CollisionObserver::nozzle_clearance_seen() const { return state_->nozzle_seen; }
 std::uint64_t CollisionObserver::checks() const { return state_->checks; }
 int CollisionObserver::pairs() const { return static_cast<int>(state_->looks.size()); }
 

@@ -78,6 +78,10 @@ class CollisionObserver : public Observer {
   /// Smallest clearance of the nozzle to the part, or to the table where there is no part, and to beads that
   /// it is pressed into deeper than bead_press; infinity before the first snapshot.
   double min_nozzle_clearance() const;
+  /// [m], the least distance of the nozzle to the part, or to the table where there is no part, that was
+  /// measured since the snapshot before the last; infinity: none was, since between the looks before and
+  /// after nothing that min_nozzle_clearance() or a contact depends on could be missed.
+  double nozzle_clearance_seen() const;
   std::uint64_t checks() const;  ///< distances measured
   int pairs() const;
 

@@ -303,6 +303,7 @@ void DepositionObserver::finish() {
 }
 
 double DepositionObserver::gap() const { return state_->ground.gap; }
+double DepositionObserver::interface_temperature() const { return state_->ground.interface_temperature; }
 std::size_t DepositionObserver::fresh_from() const { return state_->fresh_from; }
 bool DepositionObserver::flowing() const { return state_->flows; }
 

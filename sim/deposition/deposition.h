@@ -118,6 +118,9 @@ class DepositionObserver : public Observer {
 
   /// [m], true gap at the last snapshot; infinity: nothing below.
   double gap() const;
+  /// [K], at the last snapshot, of what is laid with the bead that it is laid on; infinity: it is laid on
+  /// none, or the temperature of beads was not asked for.
+  double interface_temperature() const;
   /// Number of beads under the nozzle's own path that count as contact by design: the first that is fresh.
   std::size_t fresh_from() const;
   bool flowing() const;  ///< in the last interval something left the nozzle

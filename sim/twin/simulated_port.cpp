@@ -174,6 +174,7 @@ void SimulatedPort::observe(const Target& target) {
   if (s.nozzle_temperature > 0) s.nozzle_temperature += options_.nozzle_offset;
   s.line = target.line;
   s.closure_error = plant_.closure_error();
+  s.drive_force = plant_.drive_force();
   for (Observer* observer : observers_) observer->observe(s);
 }
 

@@ -36,6 +36,20 @@ Outcome understudy_interrupted(const std::string& words, double seconds) {
   return shell("timeout --foreground --preserve-status -s INT " + std::to_string(seconds), words);
 }
 
+Outcome understudy_after(const std::string& shell_words, const std::string& words) {
+  return shell(shell_words, words);
+}
+
+std::string with_small_disk(const std::string& folder, int kilobytes) {
+  return "unshare -m sh -c 'mount -t tmpfs -o size=" + std::to_string(kilobytes) + "k none \"" + folder +
+         "\" && { \"$0\" \"$@\"; status=$?; ls -A \"" + folder + "\"; exit $status; }'";
+}
+
+bool can_make_disks() {
+  const Folder folder;
+  return std::system((with_small_disk(folder.path().string(), 8) + " true >/dev/null 2>&1").c_str()) == 0;
+}
+
 Folder::Folder() {
   static int count = 0;
   path_ = fs::temp_directory_path() /

@@ -17,6 +17,15 @@ Outcome understudy(const std::string& words);
 /// The same, with SIGINT after `seconds`.
 Outcome understudy_interrupted(const std::string& words, double seconds);
 
+/// The same behind words of a shell, such as "ulimit -f 8;".
+Outcome understudy_after(const std::string& shell_words, const std::string& words);
+
+/// Words for understudy_after(): a disk of so many kB at `folder`, which only the command sees. What lies on
+/// it at the end is printed.
+std::string with_small_disk(const std::string& folder, int kilobytes);
+/// Whether there can be such a disk here.
+bool can_make_disks();
+
 /// A fresh folder that is removed with the object.
 class Folder {
  public:

@@ -147,6 +147,28 @@ const tests = {
     assert.deepEqual(page.faults, []);
     await page.context().close();
   },
+  async 'loads, temperature and clearance are curves over time, and a press on each moves the replay'() {
+    const page = await open('go');
+    const figure = (title) => page.locator('.plot-grid figure', { has: page.locator('b', { hasText: title }) });
+    for (const title of ['Clearance of the nozzle', 'Temperature', 'Strut forces']) {
+      const over = figure(title).locator('.u-over');
+      await over.scrollIntoViewIfNeeded();
+      const box = await over.boundingBox();
+      await page.mouse.click(box.x + 0.25 * box.width, box.y + 60);
+      const early = await time(page);
+      await page.mouse.click(box.x + 0.75 * box.width, box.y + 60);
+      // Half of a run of 18 s.
+      assert.ok(Math.abs(await time(page) - early - 9) < 1.5, title + ': from ' + early + ' to ' + await time(page));
+    }
+    assert.match(await figure('Strut forces').textContent(), /5 flips: the load changes its side/);
+    assert.match(await figure('Temperature').textContent(), /glass transition, 60\u00a0°C/);
+    assert.deepEqual(page.faults, []);
+    await page.context().close();
+    const older = await open('without-gap-control');
+    assert.equal(await older.locator('.plot-grid b', { hasText: /Clearance of|Temperature|Strut forces/ }).count(), 0);
+    assert.ok(await older.locator('.plot-grid figure').count() > 3);
+    await older.context().close();
+  },
   async 'a press on a curve moves the replay'() {
     const page = await open('go');
     const over = page.locator('.plot-grid figure').nth(-1).locator('.u-over');

@@ -53,6 +53,33 @@ std::vector<TracePoint> sample_trace(double gap_offset, double wobble) {
   return trace;
 }
 
+/// Struts that swing about what they carry, two of them across zero; a nozzle that warms up and comes down.
+RunCurves sample_curves() {
+  RunCurves curves;
+  curves.glass_transition = kCelsiusZero + 60;
+  const double end = kApproachTime + kPrintLength / kPrintSpeed;
+  for (int i = 0; i < 900; ++i) {
+    CurveStretch stretch;
+    stretch.begin = end * i / 900;
+    stretch.end = end * (i + 0.95) / 900;
+    for (std::size_t strut = 0; strut < 6; ++strut) {
+      const double phase = static_cast<double>(strut) * std::numbers::pi / 3;
+      const double load = (strut < 2 ? 0.3 : 2.5) + 1.6 * std::sin(0.9 * stretch.begin + phase);
+      stretch.force[strut].add(load - 0.1);
+      stretch.force[strut].add(load + 0.1);
+    }
+    stretch.nozzle_temperature.add(kCelsiusZero + 230);
+    const TracePoint point = point_at(stretch.begin, 0.131e-3, 1);
+    if (point.extruding && i % 2 == 0)
+      stretch.interface_temperature.add(kCelsiusZero + 128 + 4 * std::sin(point.time));
+    if (std::isfinite(point.gap)) stretch.nozzle_clearance.add(point.gap - 3e-6);
+    curves.stretches.push_back(stretch);
+  }
+  for (int i = 0; i < 5; ++i) curves.flips.push_back({1.9 + 3.5 * i, i % 2});
+  curves.flip_count = 5;
+  return curves;
+}
+
 FrameRecord sample_frame(int index, double gap, Random& random) {
   FrameRecord frame;
   const Vec2 dot(300 + 90 * gap / 1e-3, 240 + 110 * gap / 1e-3);
@@ -146,6 +173,7 @@ Record sample_go() {
   record.go = true;
   add_run(record);
   record.trace = sample_trace(0.131e-3, 1);
+  record.curves = sample_curves();
   record.trace_without_gap_control = sample_trace(0.412e-3, 1.6);
   record.findings = {{"near_collision", Severity::warning, 57, 11.42, 1.8412, 2.0, "mm",
                       "the heater block passes the bottle at 1.84 mm, nearer than 2.00 mm"}};
@@ -156,6 +184,7 @@ Record sample_no_go() {
   Record record = base_record();
   add_run(record);
   record.trace = sample_trace(0.231e-3, 4);
+  record.curves = sample_curves();
   record.trace_without_gap_control = sample_trace(-0.052e-3, 1.6);
   record.gap->start_mm = 0.2533;
   record.gap->in_band_fraction = 0.31;
@@ -174,6 +203,7 @@ Record sample_without_gap_control() {
   Record record = sample_go();
   record.gap_control = "off";
   record.trace = sample_trace(0.412e-3, 1.6);
+  record.curves = {};  // as an older version wrote it
   record.trace_without_gap_control.clear();
   record.frames.clear();
   record.go = false;

@@ -70,6 +70,8 @@ class Planner {
         any = add_outline(outline) || any;
       }
       result_.layers += any;
+      tell(plan_.progress, static_cast<std::size_t>(gaps - layer + 1), static_cast<std::size_t>(gaps + 1),
+           "layers");
     }
     if (result_.outlines == 0)
       throw InputError(fmt::format(

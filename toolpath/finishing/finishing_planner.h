@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
 #include "geometry/mesh.h"
 #include "toolpath/finishing/tool_rings.h"
 #include "toolpath/program.h"
@@ -21,6 +22,7 @@ struct FinishingPlan {
   double feed = 0, approach_feed = 0;  ///< [m/s]
   double clearance = 0;                ///< [m], outside of the stock
   Vec3 first_axis = -Vec3::UnitX();    ///< of the tool at home: the first outline begins where it fits
+  Progress progress = {};
 };
 
 struct FinishingProgram {

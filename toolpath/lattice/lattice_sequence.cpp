@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kLookedAt = 16;                   // removals that an error chooses from
 constexpr std::array<double, 2> kLessPress = {0.5, 0};  // of what is allowed at joints, worse first
+constexpr double kAloneDone = 0.1, kOrderDone = 0.6;    // of the work, as progress tells it
 
 class Sequence {
  public:
@@ -30,6 +31,7 @@ class Sequence {
     rules.removable = [this](const Removal& removal, const std::vector<char>& standing) {
       StrutPrint print;
       if (!access_.find(removal, standing, print)) return false;
+      tell_order(standing);
       prints_[static_cast<std::size_t>(removal.strut)] = std::move(print);
       return true;
     };
@@ -58,10 +60,18 @@ class Sequence {
     StrutAccess::Obstacle obstacle;
   };
 
+  // The search goes back and forth: the farthest that it was.
+  void tell_order(const std::vector<char>& standing) {
+    off_ = std::max(off_, static_cast<std::size_t>(std::count(standing.begin(), standing.end(), 0)));
+    tell(stage_of(limits_.progress, kAloneDone, kOrderDone), off_, standing.size(), "finding an order");
+  }
+
   // The order is found with joints pressed as deep as is allowed. A machine errs, so where another axis
   // presses less, that one is taken: the same struts stand then.
   void leave_room(const Disassembly& found) {
     if (limits_.joint_press <= 0) return;
+    const Progress progress = stage_of(limits_.progress, kOrderDone, 1);
+    std::size_t done = 0;
     for (const double share : kLessPress) {
       SequenceLimits limits = limits_;
       limits.joint_press *= share;
@@ -71,6 +81,7 @@ class Sequence {
         const auto strut = static_cast<std::size_t>(removal.strut);
         standing[strut] = 0;
         if (limits_.out_of_time && limits_.out_of_time()) return;
+        tell(progress, ++done, kLessPress.size() * found.removals.size(), "leaving room at joints");
         StrutPrint print;
         if (access.find(removal, standing, print)) prints_[strut] = std::move(print);
       }
@@ -83,6 +94,8 @@ class Sequence {
     for (int s = 0; s < static_cast<int>(lattice_.struts.size()); ++s) {
       if (limits_.out_of_time && limits_.out_of_time())
         throw InputError("the time allowed (--time-limit) is over before the search for an order began");
+      tell(stage_of(limits_.progress, 0, kAloneDone), static_cast<std::size_t>(s), lattice_.struts.size(),
+           "looking at each strut alone");
       if (access_.never(s, why)) throw InputError(name(s) + no_axis() + "can print it: " + why);
     }
   }
@@ -160,6 +173,7 @@ class Sequence {
   StrutAccess access_;
   std::vector<StrutPrint> prints_;  // by strut: how it comes off
   std::vector<std::string> warnings_;
+  std::size_t off_ = 0;  // struts that were off at once, so far
 };
 
 }  // namespace

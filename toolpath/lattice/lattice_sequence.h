@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
 #include "geometry/printed_clearance.h"
 #include "toolpath/lattice/lattice.h"
 #include "toolpath/lattice/tool_envelope.h"
@@ -42,6 +43,7 @@ struct SequenceLimits {
   bool accept_interference = false;        ///< where no axis is clear, take the clearest and warn
   std::function<bool()> out_of_time = {};  ///< asked during the search
   long steps_max = 200'000;                ///< of the search, docs/limits.md
+  Progress progress = {};                  ///< of the search and all that goes with it
 };
 
 struct StrutSequence {

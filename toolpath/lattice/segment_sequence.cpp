@@ -52,6 +52,7 @@ class SegmentSequence {
       require_clear(level_travel(sequence_.prints.back(), print), strut);
     }
     standing_[static_cast<std::size_t>(strut.strut)] = 1;
+    tell(limits_.progress, built_.size() + 1, standing_.size(), fmt::format("struts along {}", name_));
     built_.push_back(access_.body(strut.strut));
     sequence_.prints.push_back(std::move(print));
     last_ = strut;

@@ -156,6 +156,7 @@ PlanarProgram plan_planar(const geometry::Mesh& part, const geometry::Mesh* core
     const double z_middle = part.lower().z() + (k + 0.5) * plan.layer_height;
     const std::vector<Contour> contours = contours_at(part, z_middle);
     if (!contours.empty()) print.add_layer(contours, z_middle);
+    tell(plan.progress, static_cast<std::size_t>(k + 1), static_cast<std::size_t>(layers), "layers");
   }
   return print.finish();
 }

@@ -1,6 +1,7 @@
 // Planar layers: the part cut by level planes, the tool upright. What conformal paths are compared with.
 #pragma once
 
+#include "core/progress.h"
 #include "geometry/mesh.h"
 #include "toolpath/program.h"
 
@@ -18,6 +19,7 @@ struct PlanarPlan {
   double filament_diameter = 0;  ///< [m]
   double temperature = 0;        ///< [K]
   double fan = 0;                ///< 0..1
+  Progress progress = {};
 };
 
 struct PlanarProgram {

@@ -32,6 +32,7 @@ std::vector<std::vector<Vec3>> section_rows(const geometry::Mesh& mesh, const Se
           fmt::format("row {} of {}, through {}: {}", i + 1, rows.count, in_mm(point), error.what()));
     }
     if (i % 2 == 1) std::reverse(curves.back().begin(), curves.back().end());
+    tell(rows.progress, curves.size(), static_cast<std::size_t>(rows.count), "cutting rows");
   }
   return curves;
 }

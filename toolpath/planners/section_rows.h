@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/progress.h"
 #include "geometry/mesh.h"
 
 namespace understudy::toolpath {
@@ -14,6 +15,7 @@ struct SectionRows {
   int count = 1;
   double pitch = 0;                   ///< [m], from plane to plane
   double tilt_min = 0, tilt_max = 0;  ///< [rad], as clip_by_tilt takes them
+  Progress progress = {};
 };
 
 /// section_curve and clip_by_tilt for each plane, along the normal; every second curve runs backwards, so

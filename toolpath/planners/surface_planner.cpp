@@ -89,6 +89,7 @@ Program plan_surface(const geometry::Mesh& mesh, const std::vector<std::vector<V
   for (const auto& curve : curves) {
     paths.push_back(sample_curve(mesh, curve, {outermost, plan.step, plan.chord_tolerance}));
     if (!plan.upright) check_tilt(paths.back(), plan.tilt_max);
+    tell(plan.progress, paths.size(), curves.size(), "laying curves on the surface");
   }
   ProgramBuilder program(plan.cuts ? 1.0 : plan.filament_diameter);
   for (int layer = 0; layer < layers; ++layer) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/progress.h"
 #include "geometry/mesh.h"
 #include "toolpath/bead.h"
 #include "toolpath/program.h"
@@ -27,6 +28,7 @@ struct SurfacePlan {
   /// An end mill, its face on the surface: nothing is laid, filament, heater and gap do not count, and layers
   /// are passes from the outermost inwards, bead_height apart.
   bool cuts = false;
+  Progress progress = {};
 };
 
 /// `curve` is a polyline near the surface. Its smooth stretches are divided into equal steps, each point is

@@ -29,12 +29,13 @@ class LayerStack {
   LayerStack(const geometry::Mesh& part, const StructuralLine& line, const LayerRange& range)
       : part_(part), line_(line), range_(range) {}
 
-  std::vector<CurvedLayer> build() {
+  std::vector<CurvedLayer> build(const Progress& progress) {
     foot_.origin = line_.at(0);
     double s = 0;
     // The last layer may stand out by half its height.
     while (s + 0.5 * range_.layer <= line_.length()) {
       s = add(s);
+      if (progress) progress(std::min(1.0, s / line_.length()), "cutting layers");
       if (layers_.size() > kMostLayers)
         throw InputError(
             fmt::format("the part has more than {} layers of {:g} mm", kMostLayers, to_mm(range_.layer)));
@@ -145,13 +146,13 @@ CurvedLayer::Height CurvedLayer::over(const Vec2& q) const {
 }
 
 std::vector<CurvedLayer> curved_layers(const geometry::Mesh& part, const StructuralLine& line,
-                                       const LayerRange& range) {
+                                       const LayerRange& range, const Progress& progress) {
   check_positive("layer height", to_mm(range.layer), "mm");
   check_positive("thinnest layer", to_mm(range.thinnest), "mm");
   if (!(range.thinnest <= range.layer && range.layer <= range.thickest))
     throw InputError(fmt::format("a layer of {:g} mm is outside of {:g} to {:g} mm", to_mm(range.layer),
                                  to_mm(range.thinnest), to_mm(range.thickest)));
-  return LayerStack(part, line, range).build();
+  return LayerStack(part, line, range).build(progress);
 }
 
 }  // namespace understudy::toolpath

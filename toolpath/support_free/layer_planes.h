@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/progress.h"
 #include "toolpath/support_free/flat_section.h"
 #include "toolpath/support_free/structural_line.h"
 
@@ -35,6 +36,6 @@ struct CurvedLayer {
 /// Throws InputError, with place and value, where a layer leans by more than `lag` against the plane across
 /// the line, and where the part ends before the line does.
 std::vector<CurvedLayer> curved_layers(const geometry::Mesh& part, const StructuralLine& line,
-                                       const LayerRange& range);
+                                       const LayerRange& range, const Progress& progress = {});
 
 }  // namespace understudy::toolpath

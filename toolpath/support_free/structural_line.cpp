@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kSamePlace = 1 * kMicrometre;
 constexpr int kRefinements = 3;
+constexpr double kWalked = 0.3;  // of the work, as progress tells it
 constexpr std::size_t kMostPoints = 100000;
 // Of a step, by which the middle of the section may move sidewards: more shows that the plane runs into the
 // end of the part or into a branch. A part may lean from its foot on, until the line has found its direction.
@@ -28,24 +29,34 @@ constexpr double kLastStep = 0.02;            // of a step, to which the end of 
 /// Walks up the part from its foot.
 class LineFinder {
  public:
-  LineFinder(const geometry::Mesh& part, double step, double tolerance)
-      : part_(part), step_(step), tolerance_(tolerance) {}
+  LineFinder(const geometry::Mesh& part, double step, double tolerance, const Progress& progress)
+      : part_(part), step_(step), tolerance_(tolerance), progress_(progress) {}
 
   StructuralLine find() {
     start();
     double step = step_;
     while (step > kLastStep * step_) {
       if (!advance(step)) step /= 2;
+      tell_walk();
       if (points_.size() > kMostPoints)
         throw InputError(
             fmt::format("the structural line has more than {} points: a larger --step", kMostPoints));
     }
     end();
-    for (int i = 0; i < kRefinements; ++i) refine();
+    for (int i = 0; i < kRefinements; ++i)
+      refine(stage_of(progress_, kWalked + (1 - kWalked) * i / kRefinements,
+                      kWalked + (1 - kWalked) * (i + 1) / kRefinements));
     return StructuralLine(points_);
   }
 
  private:
+  // A straight part is as long as its box; on the way along a longer one the share stays.
+  void tell_walk() const {
+    const double box = (part_.upper() - part_.lower()).norm();
+    const double walked = step_ * static_cast<double>(points_.size());
+    if (progress_) progress_(kWalked * std::min(1.0, walked / box), "finding the part's line");
+  }
+
   void start() {
     const double z = part_.lower().z();
     SectionFrame foot;
@@ -104,12 +115,13 @@ class LineFinder {
   }
 
   /// Sections across the line as it is by now, at its own points; its ends stay.
-  void refine() {
+  void refine(const Progress& progress) {
     const StructuralLine line(even(points_));
     std::vector<Vec3> better{line.points().front()};
     SectionFrame frame;
     const auto count = static_cast<int>(std::ceil(line.length() / step_));
     for (int i = 1; i < count; ++i) {
+      tell(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(count), "smoothing the line");
       const double s = line.length() * i / count;
       frame = frame.carried_to(line.at(s), line.tangent(s));
       const auto section = section_at(part_, frame);
@@ -133,6 +145,7 @@ class LineFinder {
 
   const geometry::Mesh& part_;
   double step_, tolerance_;
+  const Progress& progress_;
   SectionFrame frame_;
   std::vector<Vec3> points_;
 };
@@ -188,13 +201,14 @@ Vec3 StructuralLine::tangent(double s) const {
       .normalized();
 }
 
-StructuralLine find_structural_line(const geometry::Mesh& part, double step, double tolerance) {
+StructuralLine find_structural_line(const geometry::Mesh& part, double step, double tolerance,
+                                    const Progress& progress) {
   check_positive("step of the structural line", to_mm(step), "mm");
   check_within("tolerance of the structural line", to_mm(tolerance), 0, 10, "mm");
   if (part.open_edges() > 0)
     throw InputError(
         fmt::format("the part has {} open edges, a part to slice must have 0", part.open_edges()));
-  return LineFinder(part, step, tolerance).find();
+  return LineFinder(part, step, tolerance, progress).find();
 }
 
 }  // namespace understudy::toolpath

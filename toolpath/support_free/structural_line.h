@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "core/progress.h"
 #include "geometry/mesh.h"
 
 namespace understudy::toolpath {
@@ -36,6 +37,7 @@ class StructuralLine {
 /// its end: the smoothest line within `tolerance` [m] of the centroids of the sections across it, so that it
 /// does not turn with the facets of a mesh. Throws InputError for an open part, and where the part forks, so
 /// that no section continues the line.
-StructuralLine find_structural_line(const geometry::Mesh& part, double step, double tolerance);
+StructuralLine find_structural_line(const geometry::Mesh& part, double step, double tolerance,
+                                    const Progress& progress = {});
 
 }  // namespace understudy::toolpath

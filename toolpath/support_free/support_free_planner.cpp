@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kOnTable = 1 * kMicrometre;  // single precision of an STL
 constexpr double kShortest = 1 * kMicrometre;
-constexpr double kOverlap = 0.15;  // of a bead, by which the ends of the filling lines reach into the wall
+constexpr double kLayersDone = 0.5;  // of the work, as progress tells it
+constexpr double kOverlap = 0.15;    // of a bead, by which the ends of the filling lines reach into the wall
 
 void check(const geometry::Mesh& part, const SupportFreePlan& plan) {
   check_bead(plan.bead_width, plan.range.layer);
@@ -217,7 +218,8 @@ void check_overhangs(const std::vector<CurvedLayer>& layers, double bead_width) 
 SupportFreeProgram plan_support_free(const geometry::Mesh& part, const StructuralLine& line,
                                      const SupportFreePlan& plan) {
   check(part, plan);
-  const std::vector<CurvedLayer> layers = curved_layers(part, line, plan.range);
+  const std::vector<CurvedLayer> layers =
+      curved_layers(part, line, plan.range, stage_of(plan.progress, 0, kLayersDone));
   double covered = 0;
   for (const CurvedLayer& layer : layers)
     covered += layer.section.area * layer.over(layer.section.centroid).thickness;
@@ -228,7 +230,11 @@ SupportFreeProgram plan_support_free(const geometry::Mesh& part, const Structura
         100 * covered / part.volume(), 100 * kLeastCovered));
   check_overhangs(layers, plan.bead_width);
   SupportFreePrint print(plan);
-  for (const CurvedLayer& layer : layers) print.add(layer);
+  const Progress progress = stage_of(plan.progress, kLayersDone, 1);
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    print.add(layers[k]);
+    tell(progress, k + 1, layers.size(), "filling the layers");
+  }
   return print.finish();
 }
 

@@ -1,6 +1,7 @@
 // Layers across a part's structural line, so that nothing overhangs: the support-free method of Han 2024.
 #pragma once
 
+#include "core/progress.h"
 #include "toolpath/program.h"
 #include "toolpath/support_free/layer_planes.h"
 
@@ -15,6 +16,7 @@ struct SupportFreePlan {
   double filament_diameter = 0;        ///< [m]
   double temperature = 0;              ///< [K]
   double fan = 0;                      ///< 0..1
+  Progress progress = {};
 };
 
 struct SupportFreeProgram {

@@ -8,6 +8,7 @@
 
 #include "core/frames.h"
 #include "core/random.h"
+#include "tests/told_progress.h"
 
 namespace understudy::calibration {
 namespace {
@@ -81,6 +82,14 @@ TEST(TrimmedSearch, FindsNothingWhereNoStartCanBeFitted) {
 TEST(TrimmedSearch, NamesWhatIsLeftOutFromOneOn) {
   EXPECT_EQ(rejection_warning({true, true}), "");
   EXPECT_EQ(rejection_warning({false, true, true, false}), "rejected as outliers: poses 1, 4");
+}
+
+TEST(TrimmedSearch, TellsHowManyStartsAreTried) {
+  MeanOfPoses model(24, 1);
+  test::ToldProgress told;
+  (void)agreeing_poses(model, {24, 6, 50, 1, told.teller()});
+  EXPECT_EQ(told.stages(), (std::set<std::string>{"fits to a few poses", "poses that join"}));
+  EXPECT_GE(told.times(), 60u);
 }
 
 }  // namespace

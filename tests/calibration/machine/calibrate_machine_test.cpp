@@ -14,6 +14,7 @@
 #include "core/units.h"
 #include "machine/file/calibration_section.h"
 #include "tests/calibration/machine/measured_machine.h"
+#include "tests/told_progress.h"
 
 namespace understudy::calibration {
 namespace {
@@ -241,6 +242,18 @@ TEST_F(Calibrate, APoseAtFaultIsNamedByItsLine) {
   } catch (const InputError& error) {
     EXPECT_EQ(error.place().line, 17);
     EXPECT_THAT(error.what(), HasSubstr("poses.csv:17"));
+  }
+}
+
+TEST_F(Calibrate, TellsItsStages) {
+  for (const std::string machine : {"hexapod", "arm"}) {
+    test::ToldProgress told;
+    CalibrationRequest request;
+    request.machine = machine;
+    request.measurements = table(machine, 4, 24);
+    request.progress = told.teller();
+    (void)calibrate_machine(request);
+    EXPECT_EQ(told.stages(), (std::set<std::string>{"fitting 24 poses", "where the tip goes"})) << machine;
   }
 }
 

@@ -155,5 +155,21 @@ TEST(ChildProcess, BrokenPipesAreNoSignalToUs) {
   EXPECT_FALSE(sigismember(&pending, SIGPIPE));
 }
 
+TEST(ChildProcess, TellsTheShareOfItsTimeThatIsUsed) {
+  double last = 0;
+  std::string said;
+  ProcessLimits limits;
+  limits.time = 10;
+  const ProcessRun run = run_process("sleep 0.5", "", limits, [&](double share, const std::string& what) {
+    EXPECT_GE(share, last);
+    last = share;
+    said = what;
+  });
+  EXPECT_EQ(said, "the plug-in, 10 s at most");
+  // Told every 20 ms of half a second, and never more than the whole run.
+  EXPECT_GE(last, 0.045);
+  EXPECT_LE(last, run.seconds / limits.time);
+}
+
 }  // namespace
 }  // namespace understudy::calibration

@@ -76,6 +76,44 @@ TEST_F(ExportVideo, WhatCannotBeMadeIsRefusedInOneLine) {
   refused(out() + " -o " + exported(), "replay");
 }
 
+void expect_cannot_write(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 3) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.err, MatchesRegex("understudy: [^\n]*\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("cannot write"));
+}
+
+TEST_F(ExportVideo, AFullDiskIsOneLineAndLeavesNothing) {
+  if (!can_make_disks()) GTEST_SKIP() << "needs the right to mount a file system";
+  ASSERT_LE(rehearse(kLine).status, 1);
+  const std::string words = "export video " + out() + " --quiet --seconds 1 --fps 6 --size 640x360 -o ";
+  const std::string disk = folder_ / "disk";
+  fs::create_directory(disk);
+
+  // Where the film is encoded: before a frame is drawn.
+  const Outcome encoded =
+      understudy_after("TMPDIR=" + disk + " " + with_small_disk(disk, 16), words + film());
+  expect_cannot_write(encoded);
+  EXPECT_EQ(encoded.out, "") << "nothing stays on the disk";
+  EXPECT_FALSE(fs::exists(film()));
+  // Where it shall lie: nothing under its name, and nothing beside it.
+  const Outcome placed = understudy_after(with_small_disk(disk, 16), words + disk + "/line.mp4");
+  expect_cannot_write(placed);
+  EXPECT_EQ(placed.out, "");
+}
+
+TEST_F(ExportVideo, AFullDiskCostsARehearsalItsFilmAlone) {
+  if (!can_make_disks()) GTEST_SKIP() << "needs the right to mount a file system";
+  const std::string disk = folder_ / "disk";
+  fs::create_directory(disk);
+  const Outcome outcome = understudy_after("TMPDIR=" + disk + " " + with_small_disk(disk, 16),
+                                           "rehearse \"" + folder_.write("line.gcode", kLine) +
+                                               "\" --quiet --engine quasistatic --gap-control off --out " +
+                                               out() + " --video " + film());
+  expect_cannot_write(outcome);
+  EXPECT_FALSE(fs::exists(film()));
+  EXPECT_TRUE(fs::exists(out() + "/report.html") && fs::exists(out() + "/manifest.sha256"));
+}
+
 TEST_F(ExportVideo, AnInterruptLeavesNoHalfFile) {
   ASSERT_LE(rehearse(kLine).status, 1);
   const Outcome outcome = understudy_interrupted("export video " + out() + " -o " + exported(), 4);

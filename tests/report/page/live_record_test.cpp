@@ -47,6 +47,24 @@ TEST(LiveRecord, GrowsWithTheRun) {
   EXPECT_EQ(nlohmann::json::parse(live.progress_json()), report.at("live"));
 }
 
+TEST(LiveRecord, OfAMotionAloneNobodyKnowsTheErrors) {
+  LiveRecord live;
+  live.begins_motion(described(), "the rehearsal comes");
+  live.moved(at(0.5));
+  live.progress(0, "receiving");
+  auto report = read(live);
+  EXPECT_EQ(report.at("live").dump(), R"({"note":"the rehearsal comes","share":0.0,"what":"receiving"})");
+  EXPECT_TRUE(report.at("trace").at("columns").contains("x_mm"));
+  for (const char* unknown : {"gap_mm", "tip_error_um", "orientation_error_mrad"})
+    EXPECT_FALSE(report.at("trace").at("columns").contains(unknown)) << unknown;
+  live.begins(described());  // of what was received
+  report = read(live);
+  EXPECT_FALSE(report.contains("trace")) << "its time begins anew";
+  EXPECT_FALSE(report.at("live").contains("note"));
+  live.moved(at(0.1));
+  EXPECT_TRUE(read(live).at("trace").at("columns").contains("gap_mm"));
+}
+
 TEST(LiveRecord, KeepsAtMostItsCapacityOverTheWholeRun) {
   LiveRecord live(8);
   live.begins(described());

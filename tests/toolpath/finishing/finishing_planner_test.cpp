@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "geometry/inflated.h"
 #include "tests/geometry/test_solids.h"
+#include "tests/told_progress.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::toolpath {
@@ -163,6 +164,15 @@ TEST(FinishingPlanner, RefusesWhatCannotBeMilled) {
   FinishingPlan plan = plan_of();
   plan.rings[0].from = from_mm(15);
   EXPECT_THAT(refusal(*plus(), plan), HasSubstr("into the part: it needs a longer end mill"));
+}
+
+TEST(FinishingPlanner, TellsEachLayer) {
+  test::ToldProgress told;
+  FinishingPlan plan = plan_of();
+  plan.progress = told.teller();
+  planned(*box_mm(Vec3(-20, -15, 0), Vec3(20, 15, 20)), plan);
+  EXPECT_EQ(told.times(), 4u);  // 12, 14, 16, 18
+  told.expect_even(0.2501);
 }
 
 }  // namespace

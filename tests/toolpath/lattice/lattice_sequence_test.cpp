@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/random_vector.h"
 #include "core/units.h"
+#include "tests/told_progress.h"
 #include "tests/toolpath/lattice/arm_tool.h"
 #include "toolpath/lattice/lattice_fill.h"
 #include "toolpath/lattice/lattice_json.h"
@@ -389,6 +390,17 @@ TEST(LatticeSequence, EveryValueIsChecked) {
   Lattice hanging = lattice;
   for (LatticeNode& n : hanging.nodes) n.grounded = false;
   EXPECT_THAT(rejection(hanging, plan()), HasSubstr("not connected to a grounded node"));
+}
+
+TEST(LatticeSequence, TellsHowFarTheSearchIs) {
+  const Lattice lattice = cubes(15e-3, 10e-3, 10e-3, 5e-3);
+  understudy::test::ToldProgress told;
+  LatticePlan told_plan = plan();
+  told_plan.limits.progress = told.teller();
+  plan_lattice(lattice, told_plan);
+  EXPECT_EQ(told.stages(), (std::set<std::string>{"looking at each strut alone", "finding an order",
+                                                  "leaving room at joints"}));
+  told.expect_even(0.05);  // each strut, in each of four passes
 }
 
 }  // namespace

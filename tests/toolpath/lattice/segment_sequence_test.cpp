@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "models/parts/block_part.h"
+#include "tests/told_progress.h"
 #include "tests/toolpath/lattice/arm_tool.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/lattice/lattice_planner.h"
@@ -209,6 +210,16 @@ TEST(SegmentSequence, RandomBlocksAreRunIntoNowhere) {
     const SegmentLattice segments = lattice_of(cubes);
     expect_clear(segments, plan_segments(segments, plan()));
   }
+}
+
+TEST(SegmentSequence, TellsEachStrut) {
+  const SegmentLattice segments = lattice_of({{0, 0, 0}, {0, 0, 1}});
+  understudy::test::ToldProgress told;
+  LatticePlan told_plan = plan();
+  told_plan.limits.progress = told.teller();
+  plan_segments(segments, told_plan);
+  EXPECT_EQ(told.times(), segments.lattice.struts.size());
+  told.expect_even(1.01 / static_cast<double>(segments.lattice.struts.size()));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "tests/geometry/test_solids.h"
+#include "tests/told_progress.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -133,6 +134,15 @@ TEST(PlanarSlicer, WhatCannotBeSlicedIsRefused) {
   auto t = geometry::box(Vec3(0, 0, 0), Vec3(0.01, 0.01, 0.01));
   t.triangles.pop_back();
   EXPECT_THAT(rejection(Mesh(t.vertices, t.triangles), plan()), HasSubstr("the part has 3 open edges"));
+}
+
+TEST(PlanarSlicer, TellsEachLayer) {
+  test::ToldProgress told;
+  PlanarPlan p = plan();
+  p.progress = told.teller();
+  plan_planar(box(10e-3, 6e-3, 0, 1e-3), nullptr, p);
+  EXPECT_EQ(told.times(), 5u);
+  told.expect_even(0.2001);
 }
 
 }  // namespace

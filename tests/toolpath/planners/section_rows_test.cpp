@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/told_progress.h"
 #include "toolpath/planners/surface_planner.h"
 
 namespace understudy::toolpath {
@@ -58,6 +59,34 @@ TEST(SectionRows, RunToAndFroAPitchApartAndLayersGrowAlongTheNormal) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("row 1 of 200"));
   }
+}
+
+TEST(SectionRows, TellEachRowAndEachCurve) {
+  const auto crown = geometry::read_stl(UNDERSTUDY_SOURCE_DIR "/models/parts/crown_core.stl");
+  test::ToldProgress rows_told, curves_told;
+  SectionRows rows;
+  rows.count = 4;
+  rows.pitch = 0.45e-3;
+  rows.tilt_min = -15 * kDegree;
+  rows.tilt_max = 15 * kDegree;
+  rows.progress = rows_told.teller();
+  const auto curves = section_rows(*crown, rows);
+  rows_told.expect_even(0.2501);
+  SurfacePlan p;
+  p.gap = p.bead_height = 0.13e-3;
+  p.standoff = 2e-3;
+  p.clearance = 5e-3;
+  p.step = 1e-3;
+  p.chord_tolerance = 3e-6;
+  p.feed = 5e-3;
+  p.approach_feed = 1e-3;
+  p.bead_width = 0.48e-3;
+  p.filament_diameter = 1.75e-3;
+  p.tilt_max = 30 * kDegree;
+  p.progress = curves_told.teller();
+  plan_surface(*crown, curves, 1, p);
+  EXPECT_EQ(curves_told.times(), 4u);
+  curves_told.expect_even(0.2501);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "models/parts/block_part.h"
+#include "tests/told_progress.h"
 #include "tests/toolpath/support_free/bent_parts_for_test.h"
 #include "toolpath/gcode/gcode.h"
 
@@ -208,6 +209,19 @@ TEST(SupportFreeRefusals, PartsThatTheLayersDoNotHold) {
   for (int i = 0; i <= 20; ++i) half.push_back(swept_pose(one_bend(), i * 1e-3).translation());
   EXPECT_THAT(refusal(*part, StructuralLine(half), coarse()),
               HasSubstr("% of the part's volume, less than 90 %"));
+}
+
+TEST_P(SupportFree, TellsHowFarEachStageIs) {
+  const auto& [name, outline, pieces] = GetParam();
+  const auto part = swept_part(outline, pieces);
+  test::ToldProgress line_told, layers_told;
+  const auto line = find_structural_line(*part, 1e-3, 20e-6, line_told.teller());
+  EXPECT_EQ(line_told.stages(), (std::set<std::string>{"finding the part's line", "smoothing the line"}));
+  SupportFreePlan plan = coarse();
+  plan.progress = layers_told.teller();
+  plan_support_free(*part, line, plan);
+  EXPECT_EQ(layers_told.stages(), (std::set<std::string>{"cutting layers", "filling the layers"}));
+  layers_told.expect_even(0.05);  // of a hundred layers, each twice
 }
 
 }  // namespace

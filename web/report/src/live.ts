@@ -10,6 +10,7 @@ class LivePage {
   private readonly bar = element('progress', { max: 1, 'aria-label': 'Share of the rehearsal that is done' });
   private readonly note = element('p', { class: 'reason', role: 'status' });
   private readonly title = element('h1');
+  private readonly verdict = element('strong', {}, 'running');
   private readonly causes = element('div', { class: 'desk alone' });
   private plots: HTMLElement | null = null;
   private fetched_ms = 0;
@@ -17,13 +18,14 @@ class LivePage {
 
   constructor(private readonly report: Report, private readonly page: HTMLElement, theme: HTMLElement) {
     page.append(element('header', {}, element('div', { class: 'top' }, element('p', { class: 'eyebrow' }, 'Understudy rehearsal'), theme), this.title,
-      element('div', { class: 'verdict running' }, element('strong', {}, 'running'), element('div', {}, this.note, this.bar))));
+      element('div', { class: 'verdict running' }, this.verdict, element('div', {}, this.note, this.bar))));
     this.draw();
   }
 
-  tell(live: { share: number; what: string }) {
+  tell(live: NonNullable<Report['live']>) {
     this.bar.value = live.share;
-    this.note.textContent = Math.floor(100 * live.share) + '\u00a0%, ' + live.what + '. Replay, pictures and verdict come with the end of the run.';
+    this.note.textContent = (live.note && !live.share ? '' : Math.floor(100 * live.share) + '\u00a0%, ') + live.what + '. '
+      + (live.note || 'Replay, pictures and verdict come with the end of the run.');
   }
 
   async fetch() {
@@ -37,6 +39,11 @@ class LivePage {
       this.busy = false;
       this.fetched_ms = performance.now();
     }
+  }
+
+  end(words: string) {
+    this.verdict.textContent = 'done';
+    this.stop(words);
   }
 
   stop(why: string) {
@@ -71,6 +78,10 @@ export function follow(report: Report, page: HTMLElement, theme: HTMLElement) {
     void live.fetch();
   });
   events.addEventListener('done', () => { events.close(); location.reload(); });
+  events.addEventListener('ended', (event) => {
+    events.close();
+    live.end(JSON.parse((event as MessageEvent<string>).data).what);
+  });
   const ended = (why: string) => () => { events.close(); live.stop(why); };
   events.addEventListener('stopped', ended('The run was stopped before its end.'));
   events.addEventListener('error', ended('The run cannot be reached any more: it has failed, or was stopped before its end. Its terminal says why.'));

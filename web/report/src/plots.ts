@@ -1,20 +1,13 @@
 // Curves over time and along the path, with the instant of the replay on each; a press moves the replay there.
 import uPlot from 'uplot';
+import { beyondNote, kAxisColours, nearlyAll, type Chart, type Curve } from './chart';
 import { element } from './elements';
 import { format } from './format';
 import { styleColour } from './colours';
+import { chartsOverTime } from './over_time';
 import { lastNotAbove } from './pack';
 import type { Clock } from './clock';
 import type { Finding, Numbers, Report, Trace } from './record';
-
-interface Curve { label: string; colour: string; dash?: number[]; width?: number; x: number[]; y: (number | null)[] }
-interface Chart {
-  title: string; note: string; curves: Curve[]; unit: string; decimals: number; xLabel: string; yLabel: string; range?: [number, number];
-  band?: [number, number]; belief?: { x: number[]; low: (number | null)[]; high: (number | null)[] }; lines?: { at: number; colour: string; dash: number[] }[];
-  log?: boolean; onPath?: boolean; ofSurface?: boolean; before?: Node | null;
-}
-
-const kAxisColours = ['curve-1', 'curve-2', 'curve-3', 'curve-4', 'curve-5', 'curve-6', 'curve-7', 'curve-8'];
 
 export function drawPlots(report: Report, clock: Clock | null, calibrationTable: () => Node | null): HTMLElement | null {
   if (!report.trace) {
@@ -28,7 +21,8 @@ export function drawPlots(report: Report, clock: Clock | null, calibrationTable:
       + 'Drag to enlarge, press twice to see all.'));
     const grid = element('div', { class: 'plot-grid' });
     node.append(grid);
-    for (const chart of [calibration(report, calibrationTable), gap(report), tip(report), orientation(report), speed(trace), profile(report), ...axes(report)]) {
+    for (const chart of [calibration(report, calibrationTable), gap(report), tip(report), orientation(report), speed(trace), ...chartsOverTime(report), profile(report),
+      ...axes(report)]) {
       if (!chart) continue;
       const host = element('div', { class: 'chart' });
       grid.append(element('figure', {}, element('figcaption', {}, element('b', {}, chart.title), ' ', chart.note), chart.before || null, host));
@@ -56,6 +50,7 @@ function alongPath(trace: Trace, column: string): { x: number[]; y: (number | nu
 }
 
 function pathCurves(report: Report, column: string): Curve[] | null {
+  if (!report.trace!.columns[column]) return null;  // of a machine whose true tip nobody knows
   const off = report.names.gap_control === 'off';
   const curves: Curve[] = [];
   if (report.trace_without_gap_control)
@@ -78,22 +73,6 @@ function beliefNote(report: Report, drawn: boolean): string {
   return ' Blue band: what the controller believes, three of its stated sigmas to either side (' + report.gap_belief_note + ').' +
     (inside === undefined ? '' : ' Median sigma ' + format.quantity(sigma, 'um') + '; the true gap is inside on ' + format.percent(inside) + ' of the path.');
 }
-
-/** What holds nearly all of the values: a few spikes do not flatten the rest. `note` says what is beyond. */
-function nearlyAll(curves: Curve[], include: number[]): { range: [number, number]; beyond: number } {
-  const values = curves.flatMap((curve) => curve.y).filter((y): y is number => typeof y === 'number' && isFinite(y)).sort((a, b) => a - b);
-  if (!values.length) return { range: [0, 1], beyond: 0 };
-  const at = (share: number) => values[Math.min(values.length - 1, Math.floor(share * values.length))];
-  let low = Math.min(...include, values[0]), high = Math.max(...include, values[values.length - 1]);
-  const [from, to] = [Math.min(...include, at(0.01)), Math.max(...include, at(0.99))];
-  const span = to - from || 1;
-  if (high > to + 1.5 * span) high = to;
-  if (low < from - 1.5 * span) low = from;
-  const pad = 0.06 * (high - low || 1);
-  return { range: [low === 0 ? 0 : low - pad, high + pad], beyond: values.filter((v) => v > high || v < low).length };
-}
-
-function beyondNote(beyond: number): string { return beyond ? ' ' + format.plural(beyond, 'sample') + ' beyond the scale.' : ''; }
 
 function gap(report: Report): Chart | null {
   const curves = pathCurves(report, 'gap_mm');
@@ -298,5 +277,9 @@ function overlay(u: uPlot, chart: Chart, marks: Finding[], x: ((time: number) =>
       ctx.fillStyle = styleColour(finding.severity === 'error' ? 'no-go' : 'warn');
       ctx.fillRect(u.valToPos(x(finding.time_s), 'x', true) - ratio, bbox.top, 2 * ratio, 8 * ratio);
     }
+  for (const { time, colour } of chart.ticks || []) {
+    ctx.fillStyle = colour;
+    ctx.fillRect(u.valToPos(time, 'x', true) - ratio, bbox.top + bbox.height - 8 * ratio, 2 * ratio, 8 * ratio);
+  }
   ctx.restore();
 }

@@ -35,6 +35,11 @@ export interface ReplayData {
   lines: { time_s: Column; line: string }; key_time_s: Column; bodies: Body[]; machine_frame?: PoseColumns; table?: { form: Form; pose: PoseData }; part?: MeshData;
   part_left_out_triangles?: number; beads?: BeadData; program: { text: string; left_out_bytes?: number };
 }
+export interface SpanColumns { low: Column; high: Column }
+export interface OverTime {
+  begin_s: Column; end_s: Column; nozzle_c?: SpanColumns; interface_c?: SpanColumns; glass_transition_c?: number; nozzle_clearance_mm?: Column;
+  drives?: ({ axis: string; unit: string } & SpanColumns)[]; flips?: { count: number; time_s: Column; axis: string };
+}
 export interface Summary {
   grade: 'go' | 'go-with-warnings' | 'no-go'; findings: Finding[]; finding_groups: FindingGroup[]; passed_over?: [number, number][];
   [section: string]: any;
@@ -44,8 +49,9 @@ export interface Report {
   gap_band?: { min_mm: number; max_mm: number; aim_mm: number };
   axes: { name: string; min?: number; max?: number }[];
   trace?: Trace; trace_without_gap_control?: Trace; trace_before_calibration?: Trace; gap_belief_note?: string;
+  over_time?: OverTime;
   strands?: any[]; profile?: { position_mm: number[]; height_um: number[]; note: string }; deviation_note?: string;
-  live?: { share: number; what: string };  // of a run that goes on
+  live?: { share: number; what: string; note?: string };  // of a run that goes on
   replay?: ReplayData; frames: Frame[]; pictures: { caption?: string; width: number; height: number; image: string }[];
 }
 
