@@ -32,6 +32,15 @@ constexpr double kMargin = 15e-3;  // [s] of motion that is queued when a frame 
 
 /// A port of which every call stops the watch: what it counts is the controller's time.
 class TimedPort : public machine::MachinePort {
+ private:
+  template <typename Call>
+  auto stopped(Call call) const {
+    counted_ += std::chrono::duration<double>(Clock::now() - running_since_).count();
+    auto answer = call();
+    running_since_ = Clock::now();
+    return answer;
+  }
+
  public:
   explicit TimedPort(machine::MachinePort& port) : port_(port) {
     cycles.reserve(1 << 20);
@@ -79,13 +88,6 @@ class TimedPort : public machine::MachinePort {
   std::vector<double> ages;    ///< [s], of the port's clock, from the middle of the exposure to these
 
  private:
-  template <typename Call>
-  auto stopped(Call call) const {
-    counted_ += std::chrono::duration<double>(Clock::now() - running_since_).count();
-    auto answer = call();
-    running_since_ = Clock::now();
-    return answer;
-  }
   void end_of_cycle() {
     static_cast<void>(stopped([] { return 0; }));
     if (fed_) cycles.push_back(counted_ - cycle_began_);

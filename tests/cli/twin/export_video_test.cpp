@@ -14,6 +14,7 @@ namespace understudy::cli_test {
 namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 
 std::vector<cv::Mat> frames_of(const std::string& file) {
   cv::VideoCapture video(file, cv::CAP_FFMPEG);
@@ -91,10 +92,10 @@ TEST_F(ExportVideo, AFullDiskIsOneLineAndLeavesNothing) {
 
   // Where the film is encoded: before a frame is drawn.
   const Outcome encoded =
-      understudy_after("TMPDIR=" + disk + " " + with_small_disk(disk, 16), words + film());
+      understudy_after("TMPDIR=" + disk + " " + with_small_disk(disk, 16), words + exported());
   expect_cannot_write(encoded);
   EXPECT_EQ(encoded.out, "") << "nothing stays on the disk";
-  EXPECT_FALSE(fs::exists(film()));
+  EXPECT_FALSE(fs::exists(exported()));
   // Where it shall lie: nothing under its name, and nothing beside it.
   const Outcome placed = understudy_after(with_small_disk(disk, 16), words + disk + "/line.mp4");
   expect_cannot_write(placed);
@@ -108,9 +109,9 @@ TEST_F(ExportVideo, AFullDiskCostsARehearsalItsFilmAlone) {
   const Outcome outcome = understudy_after("TMPDIR=" + disk + " " + with_small_disk(disk, 16),
                                            "rehearse \"" + folder_.write("line.gcode", kLine) +
                                                "\" --quiet --engine quasistatic --gap-control off --out " +
-                                               out() + " --video " + film());
+                                               out() + " --video " + exported());
   expect_cannot_write(outcome);
-  EXPECT_FALSE(fs::exists(film()));
+  EXPECT_FALSE(fs::exists(exported()));
   EXPECT_TRUE(fs::exists(out() + "/report.html") && fs::exists(out() + "/manifest.sha256"));
 }
 
