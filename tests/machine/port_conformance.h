@@ -226,7 +226,7 @@ TEST_P(PortConformance, HoldBrakesAndKeepsTheQueueUntilResume) {
   EXPECT_FALSE(port().state().moving);
   EXPECT_LT(port().state().executed, 400U);
   ASSERT_EQ(port().urgent(UrgentCommand::resume), Status::ok);
-  ASSERT_EQ(wait(2), Status::ok);
+  ASSERT_EQ(wait(2 + trial().latency), Status::ok);
   EXPECT_EQ(port().state().executed, 800U);
   EXPECT_NEAR(position(), kSpeed * 0.7, slack());
 }

@@ -30,4 +30,4 @@ run benchmark calibration --trials 2 --poses 12 --disturbances none --estimators
 run benchmark gap --part bottle --machines 1 --out gap
 run scenario run line.yaml --out scenarios
 run campaign lines.yaml --workers 1 --out campaign
-run sweep line.yaml --samples 2 --budget --out budget
+run sweep line.yaml --samples 8 --budget --out budget

@@ -141,10 +141,18 @@ TEST_F(RecordedReplayTest, WhatIsNoRecordIsRefusedInOneLine) {
 // A column that lost its end, or a letter, is not read as a shorter one.
 TEST_F(RecordedReplayTest, DamagedColumnsAreRefused) {
   const std::string whole = page();
-  std::size_t refused = 0, tried = 0;
+  const std::size_t curves = whole.find("\"over_time\":");  // these are for the page alone
+  std::size_t after = curves, refused = 0, tried = 0;
+  if (curves != std::string::npos) {
+    int open = 0;
+    do {
+      after = whole.find_first_of("{}", after + 1);
+      open += whole[after] == '{' ? 1 : -1;
+    } while (open > 0);
+  }
   for (std::size_t at = whole.find("\"data\":\""); at != std::string::npos;
        at = whole.find("\"data\":\"", at + 1)) {
-    if (++tried % 7 != 0) continue;
+    if ((at > curves && at < after) || ++tried % 7 != 0) continue;
     std::string cut = whole;
     cut.erase(at + 12, 9);
     write_file(folder_ / "report.html", cut);
