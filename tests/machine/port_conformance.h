@@ -226,7 +226,8 @@ TEST_P(PortConformance, HoldBrakesAndKeepsTheQueueUntilResume) {
   EXPECT_FALSE(port().state().moving);
   EXPECT_LT(port().state().executed, 400U);
   ASSERT_EQ(port().urgent(UrgentCommand::resume), Status::ok);
-  ASSERT_EQ(wait(2 + trial().latency), Status::ok);
+  // Starting again is many short blocks: a controller that takes a line late takes each of them late.
+  ASSERT_EQ(wait(2 + 3 * trial().latency), Status::ok);
   EXPECT_EQ(port().state().executed, 800U);
   EXPECT_NEAR(position(), kSpeed * 0.7, slack());
 }
