@@ -4,8 +4,8 @@
 
 #include "core/assert.h"
 #include "core/error.h"
+#include "rehearsal/observers/trace_observer.h"
 #include "rehearsal/preparation.h"
-#include "rehearsal/trace_observer.h"
 #include "sim/collision/collision.h"
 #include "sim/plant/plant.h"
 #include "sim/sensors/microscope.h"

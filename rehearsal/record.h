@@ -16,8 +16,8 @@
 #include "core/library_versions.h"
 #include "machine/port.h"
 #include "rehearsal/findings/finding.h"
+#include "rehearsal/observers/run_curves.h"
 #include "rehearsal/replay.h"
-#include "rehearsal/run_curves.h"
 #include "rehearsal/scene.h"
 
 namespace understudy::sim {

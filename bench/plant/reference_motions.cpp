@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "sim/plant/load_flips.h"
 
 namespace understudy::sim {
 namespace {
@@ -166,23 +167,10 @@ double median(std::vector<double> distances) {
 }
 
 int load_flips(const MotionTrace& trace, double timestep, int axes) {
-  constexpr double kWindow = 0.03;    // [s]
-  constexpr double kThreshold = 0.5;  // [N] or [N m]
-  const auto window = static_cast<std::size_t>(std::lround(kWindow / timestep));
-  int flips = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
-    int side = 0;
-    double sum = 0;
-    for (std::size_t k = 0; k < trace.load.size(); ++k) {
-      sum += trace.load[k][i];
-      if (k >= window) sum -= trace.load[k - window][i];
-      const double load = sum / static_cast<double>(std::min(k + 1, window));
-      const int now = load > kThreshold ? 1 : load < -kThreshold ? -1 : side;
-      if (side != 0 && now != side) ++flips;
-      side = now;
-    }
-  }
-  return flips;
+  LoadFlips flips(axes);
+  for (std::size_t k = 0; k < trace.load.size(); ++k)
+    flips.add(static_cast<double>(k) * timestep, trace.load[k]);
+  return static_cast<int>(flips.count());
 }
 
 }  // namespace understudy::sim

@@ -50,9 +50,7 @@ std::vector<double> distances(const std::vector<Vec3>& a, const std::vector<Vec3
 double peak(const std::vector<double>& distances);
 double median(std::vector<double> distances);
 
-/// How often an axis' load changed its sign: from beyond 0.5 N (N m) to beyond -0.5 or back, as a mean over
-/// 30 ms. That is half of what a strut of the shipped hexapod carries at home. Blows, with which a part meets
-/// its stop, are shorter, and a strut on its way through its play carries 0.1 N, its nut.
+/// How often the load of one of the first `axes` changed its side (sim/plant/load_flips.h).
 int load_flips(const MotionTrace& trace, double timestep, int axes);
 
 }  // namespace understudy::sim

@@ -5,7 +5,7 @@
 
 #include "machine/accepted_errors.h"
 #include "rehearsal/findings/finding.h"
-#include "rehearsal/trace_observer.h"
+#include "rehearsal/observers/trace_observer.h"
 
 namespace understudy::rehearsal {
 

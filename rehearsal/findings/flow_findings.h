@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "rehearsal/fill_watch.h"
 #include "rehearsal/findings/finding.h"
-#include "rehearsal/flow_watch.h"
+#include "rehearsal/observers/fill_watch.h"
+#include "rehearsal/observers/flow_watch.h"
 
 namespace understudy::rehearsal {
 

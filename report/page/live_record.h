@@ -8,8 +8,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "rehearsal/observers/thinned_series.h"
 #include "rehearsal/run_listener.h"
-#include "rehearsal/thinned_series.h"
 
 namespace understudy::report {
 

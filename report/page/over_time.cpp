@@ -78,7 +78,7 @@ Json drives(const rehearsal::Record& record) {
 Json flips(const RunCurves& curves) {
   std::vector<double> times;
   std::vector<std::int64_t> axes;
-  for (const rehearsal::LoadFlip& flip : curves.flips) {
+  for (const sim::LoadFlip& flip : curves.flips) {
     times.push_back(flip.time);
     axes.push_back(flip.axis);
   }

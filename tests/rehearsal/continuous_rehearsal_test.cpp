@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "machine/description.h"
+#include "rehearsal/observers/trace_observer.h"
 #include "rehearsal/rehearse.h"
-#include "rehearsal/trace_observer.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -88,7 +88,7 @@ Record sample_large(int moves) {
   }
   const double longer = record.trace.back().time / record.curves.stretches.back().end;
   for (CurveStretch& stretch : record.curves.stretches) stretch.begin *= longer, stretch.end *= longer;
-  for (LoadFlip& flip : record.curves.flips) flip.time *= longer;
+  for (sim::LoadFlip& flip : record.curves.flips) flip.time *= longer;
   for (std::size_t i = 0; i < record.findings.size(); ++i) {
     record.findings[i].gcode_line = static_cast<int>(1 + i * static_cast<std::size_t>(moves) / 40);
     record.findings[i].time_s = 0.05 * record.findings[i].gcode_line;

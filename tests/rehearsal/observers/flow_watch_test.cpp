@@ -1,4 +1,4 @@
-#include "rehearsal/flow_watch.h"
+#include "rehearsal/observers/flow_watch.h"
 
 #include <gtest/gtest.h>
 

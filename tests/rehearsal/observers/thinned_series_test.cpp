@@ -1,4 +1,4 @@
-#include "rehearsal/thinned_series.h"
+#include "rehearsal/observers/thinned_series.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kinematics/axis_vector.h"
-#include "rehearsal/load_flips.h"
+#include "sim/plant/load_flips.h"
 
 namespace understudy::rehearsal {
 
@@ -40,7 +40,7 @@ struct CurveStretch {
 
 struct RunCurves {
   std::vector<CurveStretch> stretches;  ///< in order, none between them
-  std::vector<LoadFlip> flips;          ///< of struts in closed loops: the first ones
+  std::vector<sim::LoadFlip> flips;     ///< of struts in closed loops: the first ones
   std::size_t flip_count = 0;
   double glass_transition = 0;  ///< [K]; an interface below it does not weld. 0: nothing of the kind
 };

@@ -1,13 +1,18 @@
-#include "rehearsal/load_flips.h"
+#include "sim/plant/load_flips.h"
 
-namespace understudy::rehearsal {
+namespace understudy::sim {
+namespace {
+
+constexpr double kRounding = 1e-9;  // [s], of instants that are told as multiples of a step
+
+}  // namespace
 
 LoadFlips::LoadFlips(int axes) : axes_(static_cast<std::size_t>(axes)) {}
 
 void LoadFlips::add(double time, const kinematics::AxisVector& load) {
   window_.push_back({time, load});
   for (std::size_t i = 0; i < axes_; ++i) sum_[i] += load[i];
-  while (time - window_.front().time > kWindow) {
+  while (time - window_.front().time > kWindow - kRounding) {
     for (std::size_t i = 0; i < axes_; ++i) sum_[i] -= window_.front().load[i];
     window_.pop_front();
   }
@@ -22,4 +27,4 @@ void LoadFlips::add(double time, const kinematics::AxisVector& load) {
   }
 }
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::sim

@@ -6,7 +6,7 @@
 
 #include "kinematics/axis_vector.h"
 
-namespace understudy::rehearsal {
+namespace understudy::sim {
 
 struct LoadFlip {
   double time = 0;  ///< [s]
@@ -44,4 +44,4 @@ class LoadFlips {
   std::size_t count_ = 0;
 };
 
-}  // namespace understudy::rehearsal
+}  // namespace understudy::sim

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "control/print.h"
+#include "rehearsal/observers/thinned_series.h"
 #include "rehearsal/record.h"
-#include "rehearsal/thinned_series.h"
 #include "sim/deposition/deposition.h"
 #include "sim/observer.h"
 #include "toolpath/gcode/rewritten_path.h"

@@ -1,4 +1,4 @@
-#include "rehearsal/curves_observer.h"
+#include "rehearsal/observers/curves_observer.h"
 
 #include <cmath>
 #include <memory>

@@ -1,11 +1,11 @@
-#include "rehearsal/load_flips.h"
+#include "sim/plant/load_flips.h"
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-namespace understudy::rehearsal {
+namespace understudy::sim {
 namespace {
 
 constexpr double kStep = 2e-3;  // [s], between snapshots
@@ -43,4 +43,4 @@ TEST(LoadFlips, OfVeryManyTheFirstAreKeptAndAllAreCounted) {
 }
 
 }  // namespace
-}  // namespace understudy::rehearsal
+}  // namespace understudy::sim

@@ -1,4 +1,4 @@
-#include "rehearsal/fill_watch.h"
+#include "rehearsal/observers/fill_watch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "rehearsal/trace_observer.h"
+#include "rehearsal/observers/trace_observer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Keeps the curves of a run in bounded memory: of each stretch of time the least and the most.
 #pragma once
 
-#include "rehearsal/run_curves.h"
+#include "rehearsal/observers/run_curves.h"
 #include "sim/collision/collision.h"
 #include "sim/deposition/deposition.h"
 #include "sim/observer.h"
@@ -26,7 +26,7 @@ class CurvesObserver : public sim::Observer {
 
   const sim::DepositionObserver& deposition_;
   const sim::CollisionObserver* collision_;
-  LoadFlips flips_;
+  sim::LoadFlips flips_;
   std::size_t capacity_;
   std::size_t stride_ = 1, in_last_ = 0;  ///< snapshots a stretch, and in the newest one
   std::vector<CurveStretch> stretches_;
