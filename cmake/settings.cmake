@@ -8,6 +8,7 @@ endif()
 
 option(UNDERSTUDY_WERROR "Warnings are errors" OFF)
 option(UNDERSTUDY_PRECOMPILE "Precompile the headers that most sources include, which hides missing includes" OFF)
+option(UNDERSTUDY_JOIN "Compile sources of a target together, which takes less time but hides missing includes" OFF)
 set(UNDERSTUDY_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
 # Paths below the source folder are hashed relative to it, so clones in other folders share objects. What a source
@@ -26,6 +27,8 @@ add_compile_options(
   # The same in a precompiled header. Preset dev has none and keeps these; AddressSanitizer finds the true ones.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${UNDERSTUDY_PRECOMPILE}>>:-Wno-array-bounds>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${UNDERSTUDY_PRECOMPILE}>>:-Wno-stringop-overflow>
+  # Where sources are joined, a type of one source looks like a type of a header. Preset dev keeps this one too.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${UNDERSTUDY_JOIN}>>:-Wno-subobject-linkage>
   $<$<BOOL:${UNDERSTUDY_WERROR}>:-Werror>)
 # A program loads only the libraries of the sources that it takes from an archive: OpenCV's pictures alone are 130 more.
 add_link_options(LINKER:--as-needed)
@@ -36,6 +39,11 @@ if(UNDERSTUDY_SANITIZE)
   add_compile_definitions(UNDERSTUDY_SANITIZED)
 endif()
 
+# A test's own code runs for milliseconds and is half of all sources.
+set(UNDERSTUDY_TEST_OPTIONS $<$<CONFIG:Release>:-O1>
+  # A local name of one source hides a constant of another where they are joined. Preset dev keeps this one.
+  $<$<BOOL:${UNDERSTUDY_JOIN}>:-Wno-shadow>)
+
 # What every room's users inherit: C++20, and headers found from the top, here or where they are installed.
 set(UNDERSTUDY_HEADERS include/understudy)
 add_library(understudy_settings INTERFACE)
@@ -45,20 +53,24 @@ target_include_directories(understudy_settings INTERFACE
 set_property(TARGET understudy_settings PROPERTY EXPORT_NAME settings)
 set_property(GLOBAL APPEND PROPERTY UNDERSTUDY_LIBRARIES understudy_settings)
 
-# understudy_precompiled(TARGET): one precompiled header for every room and test; one more for rooms that a shared
-# object is made of, since GCC takes it only where it was compiled alike.
+# understudy_precompiled(TARGET): one precompiled header for every room and one for every test; one more for rooms that
+# a shared object is made of, since GCC takes it only where it was compiled alike.
 function(understudy_precompiled target)
   if(NOT UNDERSTUDY_PRECOMPILE)
     return()
   endif()
-  if(NOT TARGET understudy_precompiled)
-    understudy_precompile(understudy_precompiled)
-    understudy_precompile(understudy_precompiled_shared POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
-  endif()
   get_target_property(shared ${target} POSITION_INDEPENDENT_CODE)
   set(header understudy_precompiled)
   if(shared)
-    string(APPEND header _shared)
+    set(header understudy_precompiled_shared)
+    set(properties POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+  elseif(target MATCHES "_test$")
+    set(header understudy_precompiled_test)
+    set(options ${UNDERSTUDY_TEST_OPTIONS})
+  endif()
+  if(NOT TARGET ${header})
+    understudy_precompile(${header} ${properties})
+    target_compile_options(${header} PRIVATE ${options})
   endif()
   target_precompile_headers(${target} REUSE_FROM ${header})
   # GCC uses the header only where every macro that it mentions is what it was.
@@ -72,7 +84,10 @@ function(understudy_precompile name)
   find_package(GTest REQUIRED)
   file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/${name}.cpp CONTENT "")
   add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/${name}.cpp)
-  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX ${ARGN})
+  if(ARGN)
+    set_target_properties(${name} PROPERTIES ${ARGN})
+  endif()
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_link_libraries(${name} PRIVATE understudy_settings Eigen3::Eigen GTest::gmock)
   target_precompile_headers(${name} PRIVATE
     <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>

@@ -24,15 +24,15 @@ std::string bars(const std::string& title, const std::string& unit, double full,
   if (all.empty()) return "";
   double most = full;
   for (const Bar& bar : all) most = std::max(most, bar.value);
-  constexpr double kRow = 20, kLeft = 240, kWide = 640;
-  SvgDrawing drawing(1060, kRow * static_cast<double>(all.size()) + 6);
+  constexpr double row = 20, left = 240, widest = 640;
+  SvgDrawing drawing(1060, row * static_cast<double>(all.size()) + 6);
   double y = 0;
   for (const Bar& bar : all) {
-    const double wide = kWide * bar.value / most;
-    drawing.text({kLeft - 8, y + 14}, bar.name, "end");
-    drawing.rect({kLeft, y + 3}, {wide, 14}, fmt::format("fill=\"{}\"", series_colour(bar.marked ? 1 : 0)));
-    drawing.text({kLeft + wide + 6, y + 14}, fmt::format("{:.1f} {}", bar.value, unit), "start");
-    y += kRow;
+    const double wide = widest * bar.value / most;
+    drawing.text({left - 8, y + 14}, bar.name, "end");
+    drawing.rect({left, y + 3}, {wide, 14}, fmt::format("fill=\"{}\"", series_colour(bar.marked ? 1 : 0)));
+    drawing.text({left + wide + 6, y + 14}, fmt::format("{:.1f} {}", bar.value, unit), "start");
+    y += row;
   }
   return fmt::format("<section><h2>{}</h2>{}</section>\n", html_text(title), drawing.finish());
 }

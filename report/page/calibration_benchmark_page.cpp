@@ -46,7 +46,7 @@ std::vector<Family> families(const CalibrationBenchmark& benchmark) {
   std::vector<Family> all;
   for (const ConditionScore& c : benchmark.conditions) {
     const auto same = [&](const Family& f) {
-      const Condition& a = f.front()->condition;
+      const studies::Condition& a = f.front()->condition;
       return a.disturbance == c.condition.disturbance && a.noise.position == c.condition.noise.position &&
              a.noise.rotation == c.condition.noise.rotation;
     };
@@ -111,7 +111,7 @@ std::string chart(const CalibrationBenchmark& benchmark, const Family& family, c
   plot.line(bound, "stroke=\"#5a6570\" stroke-dasharray=\"5 4\"");
   plot.line(before, "stroke=\"#5a6570\" stroke-dasharray=\"1 4\" stroke-width=\"2\"");
   for (std::size_t e = 0; e < benchmark.entrants.size(); ++e) draw_entrant(benchmark, family, e, plot);
-  const Condition& c = family.front()->condition;
+  const studies::Condition& c = family.front()->condition;
   const bool pixels = benchmark.request.from == MeasuredFrom::pixels;
   std::string caption = described(c.disturbance, pixels);
   if (!pixels)

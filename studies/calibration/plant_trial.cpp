@@ -26,9 +26,9 @@ constexpr double kWarmingThought = 100e-6;  // [m] of growth that a lab thinks p
 constexpr std::size_t kRegistrationPoses = 20;
 constexpr double kRangeMargin = 4e-3;  // [m], of a strut: joints and offsets are off by some 0.5 mm each
 
-class PlantTrials : public TrialRunner {
+class TrialsOnPlant : public TrialRunner {
  public:
-  explicit PlantTrials(const TrialSetting& setting)
+  explicit TrialsOnPlant(const TrialSetting& setting)
       : setting_(setting),
         machine_(*setting.machine),
         nominal_(machine_.hexapod().geometry),
@@ -79,7 +79,7 @@ class PlantTrials : public TrialRunner {
   std::vector<Pose> held_out_, registration_;
 };
 
-std::vector<Pose> PlantTrials::within_ranges(std::size_t count, const char* purpose) const {
+std::vector<Pose> TrialsOnPlant::within_ranges(std::size_t count, const char* purpose) const {
   Random random(setting_.seed, std::string("calibration benchmark/") + purpose);
   const PoseRegion region = reference_region(machine_.X_BT_home);
   std::vector<Pose> poses;
@@ -96,7 +96,7 @@ std::vector<Pose> PlantTrials::within_ranges(std::size_t count, const char* purp
   return poses;
 }
 
-sim::AsBuilt PlantTrials::built(const Condition& condition, int machine) const {
+sim::AsBuilt TrialsOnPlant::built(const Condition& condition, int machine) const {
   sim::AsBuilt as_built = sim::make_as_built(machine_, "manufactured", machine_seed(machine));
   if (condition.disturbance == Disturbance::deviation) as_built.hexapod.deviation -= kDeviationError;
   if (condition.disturbance == Disturbance::play) {
@@ -110,8 +110,8 @@ sim::AsBuilt PlantTrials::built(const Condition& condition, int machine) const {
   return as_built;
 }
 
-std::vector<Pose> PlantTrials::chosen(const Condition& condition, int machine,
-                                      const MeasuringStand& stand) const {
+std::vector<Pose> TrialsOnPlant::chosen(const Condition& condition, int machine,
+                                        const MeasuringStand& stand) const {
   Random random(setting_.seed, fmt::format("calibration benchmark/poses/{}/{}", machine, condition.poses));
   const bool designed = setting_.choice == PoseChoice::d_optimal;
   const std::size_t count = designed ? std::max<std::size_t>(300, 4 * condition.poses) : condition.poses;
@@ -124,8 +124,8 @@ std::vector<Pose> PlantTrials::chosen(const Condition& condition, int machine,
   return poses;
 }
 
-SessionOptions PlantTrials::session_options(const Condition& condition,
-                                            const std::vector<std::vector<double>>& stops) const {
+SessionOptions TrialsOnPlant::session_options(const Condition& condition,
+                                              const std::vector<std::vector<double>>& stops) const {
   SessionOptions options;
   options.engine = setting_.engine;
   if (condition.disturbance == Disturbance::drift) set_warming(machine_, kWarming, stops, options);
@@ -133,7 +133,7 @@ SessionOptions PlantTrials::session_options(const Condition& condition,
 }
 
 /// What a controller knows before any picture.
-BundleProblem PlantTrials::bundle_of(const MeasuringStand& stand) const {
+BundleProblem TrialsOnPlant::bundle_of(const MeasuringStand& stand) const {
   BundleProblem problem;
   problem.rig = stand.designed();
   problem.uncertainty = stand.description().uncertainty;
@@ -145,9 +145,9 @@ BundleProblem PlantTrials::bundle_of(const MeasuringStand& stand) const {
   return problem;
 }
 
-PlantTrials::Measured PlantTrials::measure(const Condition& condition, int machine,
-                                           const MeasuringStand& stand, renderer::CalibrationView& view,
-                                           std::unique_ptr<PlantSession>& session, Trial& trial) const {
+TrialsOnPlant::Measured TrialsOnPlant::measure(const Condition& condition, int machine,
+                                               const MeasuringStand& stand, renderer::CalibrationView& view,
+                                               std::unique_ptr<PlantSession>& session, Trial& trial) const {
   const std::vector<Pose> asked = chosen(condition, machine, stand);
   std::vector<std::vector<double>> stops;
   for (const Pose& X_BT : asked) {
@@ -195,7 +195,7 @@ PlantTrials::Measured PlantTrials::measure(const Condition& condition, int machi
   return measured;
 }
 
-BundleProblem PlantTrials::bundle_for(const Method& method, const BundleProblem& measured) const {
+BundleProblem TrialsOnPlant::bundle_for(const Method& method, const BundleProblem& measured) const {
   BundleProblem problem = measured;
   problem.drives = drive_tolerance(machine_, method.with_play);
   problem.drives.warming = kWarmingThought;
@@ -204,8 +204,8 @@ BundleProblem PlantTrials::bundle_for(const Method& method, const BundleProblem&
   return problem;
 }
 
-bool PlantTrials::drive(PlantSession& session, const DrivenModel& model, std::span<const Pose> asked,
-                        std::vector<Vec3>& errors) const {
+bool TrialsOnPlant::drive(PlantSession& session, const DrivenModel& model, std::span<const Pose> asked,
+                          std::vector<Vec3>& errors) const {
   const Pose X_BW = machine_.X_WB.inverse();
   for (const Pose& X_BT : asked) {
     StrutLengths displacement;
@@ -222,8 +222,8 @@ bool PlantTrials::drive(PlantSession& session, const DrivenModel& model, std::sp
 }
 
 /// The Cramer-Rao bound's RMS of the tip in W [m], at the poses held out, of all that bundle_with_play finds.
-double PlantTrials::bound(const MeasuringStand& stand, const sim::AsBuilt& as_built,
-                          const Measured& measured) const {
+double TrialsOnPlant::bound(const MeasuringStand& stand, const sim::AsBuilt& as_built,
+                            const Measured& measured) const {
   const BundleProblem problem = bundle_for({"", false, nullptr, true}, measured.bundle);
   BundleState truth = start_of(problem);
   truth.cameras = stand.built().cameras;
@@ -259,8 +259,8 @@ void state(const std::vector<Vec3>& errors, const std::vector<Mat3>& covariances
   }
 }
 
-Answer PlantTrials::answer(const Method& method, const Measured& measured, PlantSession& session,
-                           const std::vector<double>& uncalibrated) const {
+Answer TrialsOnPlant::answer(const Method& method, const Measured& measured, PlantSession& session,
+                             const std::vector<double>& uncalibrated) const {
   Answer result;
   DrivenModel model;
   BundleProblem problem;
@@ -303,7 +303,7 @@ Answer PlantTrials::answer(const Method& method, const Measured& measured, Plant
   return result;
 }
 
-Trial PlantTrials::run(const Condition& condition, int machine, renderer::CalibrationView* view) const {
+Trial TrialsOnPlant::run(const Condition& condition, int machine, renderer::CalibrationView* view) const {
   StandOptions options = setting_.stand_options;
   options.seed = machine_seed(machine);
   const MeasuringStand stand(machine_, options, 1);
@@ -323,7 +323,7 @@ Trial PlantTrials::run(const Condition& condition, int machine, renderer::Calibr
 }  // namespace
 
 std::unique_ptr<TrialRunner> make_plant_trials(const TrialSetting& setting) {
-  return std::make_unique<PlantTrials>(setting);
+  return std::make_unique<TrialsOnPlant>(setting);
 }
 
 }  // namespace understudy::studies

@@ -13,7 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 const std::string kBottleLine = kSource + "/scenarios/song-bottle.gcode";
 
 /// Bad input: exit status 2, one line that holds each of `parts`, nothing on stdout, nothing written.

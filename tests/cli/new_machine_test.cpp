@@ -93,18 +93,21 @@ TEST(NewMachine, BadInputIsOneLineAndLeavesNothing) {
 /// A program named xacro that stands before all others.
 class FakeXacro : public testing::Test {
  protected:
+  void TearDown() override { ::setenv("PATH", path_.c_str(), 1); }
   void install(const std::string& script) {
     fs::create_directories(folder_ / "bin");
     const std::string program = folder_.write("bin/xacro", "#!/bin/sh\n" + script);
     fs::permissions(program, fs::perms::owner_all);
-    const char* path = std::getenv("PATH");
-    ::setenv("PATH", ((folder_ / "bin") + ":" + (path ? path : "")).c_str(), 1);
+    ::setenv("PATH", ((folder_ / "bin") + ":" + path_).c_str(), 1);
   }
   Outcome make() const {
     return understudy("new-machine " + folder_.write("arm.xacro", read_file(kUrdf)) + " -o " +
                       (folder_ / "new"));
   }
   Folder folder_;
+
+ private:
+  const std::string path_ = std::getenv("PATH") ? std::getenv("PATH") : "";
 };
 
 TEST_F(FakeXacro, IsRunAndItsUrdfTaken) {

@@ -6,6 +6,8 @@
 
 namespace understudy::cli_test {
 
+inline const std::string kSource = UNDERSTUDY_SOURCE_DIR;
+
 struct Outcome {
   int status = -1;  ///< exit status, or 128 + signal
   std::string out, err;

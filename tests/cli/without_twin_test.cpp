@@ -14,8 +14,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
-
 TEST(WithoutTwin, SaysWhatItLeavesOut) {
   EXPECT_THAT(
       understudy("--help").out,

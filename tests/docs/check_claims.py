@@ -21,6 +21,7 @@ test = "strand.X.Y"    its name for CTest
 """
 
 import argparse
+import json
 import os
 import re
 import subprocess
@@ -106,11 +107,21 @@ def wrong_figures(arguments, command):
 
 
 def missing_tests(arguments, claims):
-    listed = subprocess.run(["ctest", "--test-dir", arguments.tests, "-N"], text=True, stdout=subprocess.PIPE,
+    """Claims whose test is none of CTest's, and none of a suite that is one of CTest's."""
+    listed = subprocess.run(["ctest", "--test-dir", arguments.tests, "--show-only=json-v1"], text=True, stdout=subprocess.PIPE,
                             check=True).stdout
-    names = set(re.findall(r"Test +#\d+: (\S+)", listed))
-    return [f"{place(arguments.claims, t)}: there is no test {t['test']}"
-            for t in claims.get("test", []) if t["test"] not in names]
+    commands = {test["name"]: test.get("command", []) for test in json.loads(listed)["tests"]}
+
+    def exists(name):
+        if name in commands:
+            return True
+        suite, _, test = name.rpartition(".")
+        if not commands.get(suite):
+            return False
+        program, only = commands[suite][0], f"--gtest_filter={suite.partition('.')[2]}.{test}"
+        return bool(subprocess.run([program, "--gtest_list_tests", only], text=True, stdout=subprocess.PIPE, check=True).stdout.strip())
+
+    return [f"{place(arguments.claims, t)}: there is no test {t['test']}" for t in claims.get("test", []) if not exists(t["test"])]
 
 
 def main():

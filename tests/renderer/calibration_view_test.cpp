@@ -42,7 +42,7 @@ Camera bent_lens() {
   return c;
 }
 
-Region around(const Vec2& p, int half) {
+Region square_around(const Vec2& p, int half) {
   return {static_cast<int>(std::lround(p.x())) - half, static_cast<int>(std::lround(p.y())) - half,
           2 * half + 1, 2 * half + 1};
 }
@@ -109,7 +109,7 @@ TEST(CalibrationView, ABoardsCornerIsLitAsGeometrySays) {
     const auto corners = true_corners(s);
     const auto lit = [&](const Vec2& p) { return board_lit(s, p); };
     for (const std::size_t corner : {0u, 40u, 107u}) {
-      const Image image = view.render(s, around(*corners[corner], 3));
+      const Image image = view.render(s, square_around(*corners[corner], 3));
       for (int y = 0; y < 7; y += 2) {
         for (int x = 0; x < 7; x += 2) {
           const double expected =
@@ -137,7 +137,7 @@ TEST(CalibrationView, ASpheresOutlineHasItsAreaAndItsCentre) {
   for (const Vec3& c : {Vec3(3e-3, -2e-3, 0.41), Vec3(60e-3, 45e-3, 0.38)}) {
     s.centres_C = {c};
     const Vec2 centre = *true_outline_centre(s.camera, c, s.radius);
-    const Image image = view.render(s, around(centre, 80));
+    const Image image = view.render(s, square_around(centre, 80));
     double area = 0, x_moment = 0, y_moment = 0;
     for (int y = 0; y < image.height(); ++y) {
       for (int x = 0; x < image.width(); ++x) {

@@ -14,7 +14,7 @@ constexpr std::size_t kShown = 40;  // characters of a line in a message
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
 class LineLexer {
@@ -41,7 +41,7 @@ class LineLexer {
 
  private:
   void skip_blanks() {
-    while (at_ < line_.size() && is_blank(line_[at_])) ++at_;
+    while (at_ < line_.size() && is_space(line_[at_])) ++at_;
   }
   /// Up to the parenthesis that belongs to the first; where none does, up to the next.
   void skip_comment() {
@@ -61,7 +61,7 @@ class LineLexer {
     if (upper(line_[at_]) == 'O') fail_language("O words (subroutines, loops, branches)");
     word.letter = upper(line_[at_++]);
     word.column = static_cast<int>(start) + 1;
-    const bool apart = at_ >= line_.size() || is_blank(line_[at_]) || line_[at_] == ';' || line_[at_] == '(';
+    const bool apart = at_ >= line_.size() || is_space(line_[at_]) || line_[at_] == ';' || line_[at_] == '(';
     const std::size_t after_letter = at_;
     skip_blanks();
     word.bare = apart && !begins_number();
@@ -138,7 +138,7 @@ class LineLexer {
 
   [[noreturn]] void fail_number(std::size_t word_start) {
     std::size_t end = at_;
-    while (end < line_.size() && !is_blank(line_[end]) && line_[end] != ';' && line_[end] != '(') ++end;
+    while (end < line_.size() && !is_space(line_[end]) && line_[end] != ';' && line_[end] != '(') ++end;
     std::string text;
     for (const char c : line_.substr(word_start, std::min<std::size_t>(end - word_start, kShown)))
       text += plain(c);

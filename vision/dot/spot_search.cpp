@@ -27,22 +27,22 @@ cv::Mat spot_response(const Image& image, double expected_radius) {
   return fine - coarse;
 }
 
-struct Blob {
+struct Speck {
   double misfit = 0;  // of its size
   double light = 0;
   Vec2 centre{0, 0};
 
-  bool better_than(const Blob& other) const {
+  bool better_than(const Speck& other) const {
     if (std::abs(misfit - other.misfit) > kSameSize) return misfit < other.misfit;
     return light > other.light;
   }
 };
 
-std::vector<Blob> blobs_above(const cv::Mat& response, double level, double expected_radius) {
+std::vector<Speck> blobs_above(const cv::Mat& response, double level, double expected_radius) {
   const cv::Mat mask = response > level;
   cv::Mat labels;
   const int count = cv::connectedComponents(mask, labels, 8, CV_32S);
-  std::vector<Blob> blobs(static_cast<std::size_t>(std::max(0, count - 1)));
+  std::vector<Speck> blobs(static_cast<std::size_t>(std::max(0, count - 1)));
   std::vector<double> peak(blobs.size(), 0.0), area(blobs.size(), 0.0);
   const auto for_pixels = [&](const auto& visit) {
     for (int y = 0; y < labels.rows; ++y) {
@@ -77,8 +77,8 @@ std::optional<SpotGuess> find_spot(const Image& image, const DotOptions& options
   if (!(strongest > kFaintest * options.contrast_min)) return std::nullopt;
   const auto blobs = blobs_above(response, kBlobLevel * strongest, options.expected_radius_px);
   if (blobs.empty()) return std::nullopt;
-  const Blob* best = &blobs.front();
-  for (const Blob& blob : blobs) {
+  const Speck* best = &blobs.front();
+  for (const Speck& blob : blobs) {
     if (blob.better_than(*best)) best = &blob;
   }
   return SpotGuess{best->centre};

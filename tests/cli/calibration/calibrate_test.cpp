@@ -18,7 +18,6 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 const std::string kSample = kSource + "/scenarios/calibration/hexapod-24-poses.csv";
 
 json summary(const Folder& folder, const std::string& name) {

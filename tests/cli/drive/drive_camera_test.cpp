@@ -26,7 +26,6 @@ namespace {
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 constexpr std::chrono::milliseconds kFrame{30};
 
 /// Repeats something every 30 ms until the test is over.

@@ -23,8 +23,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
-
 /// Layers of a square, 8 mm wide, with a retraction between them: slow, so that a setpoint at its end holds
 /// little.
 std::string square_layers(int layers) {

@@ -17,7 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 const std::string kBottle = kSource + "/scenarios/song-bottle.gcode --fixture bottle --gap-control off ";
 
 /// The setpoints that a port took, in order, and the last note.

@@ -26,7 +26,6 @@ namespace {
 
 using machine::Status;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 constexpr double kTwinClock = 2e-3;  // [s], of the quasistatic twin
 
 /// What the twin's port took and showed.

@@ -17,8 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
-
 TEST(PlanLattice, FillsABoxWithThePapersCubes) {
   const Folder folder;
   const Outcome outcome = understudy("plan lattice box:20x20x15 --strut 5 -o " + (folder / "lattice.gcode"));

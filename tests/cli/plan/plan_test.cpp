@@ -17,8 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
-
 std::string without_comments(const std::string& gcode) {
   std::string kept;
   for (std::size_t at = 0; at < gcode.size();) {

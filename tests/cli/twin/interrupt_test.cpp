@@ -27,7 +27,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 constexpr milliseconds kTick{2};
 constexpr milliseconds kStart{60'000};  // for a command to begin its work on a busy machine
 constexpr milliseconds kSettle{300};    // where nothing tells that it has begun

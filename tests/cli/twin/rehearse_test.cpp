@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 const std::string kBottle = "rehearse " + kSource + "/scenarios/song-bottle.gcode --fixture bottle ";
 
 /// The summary without what names the output folder.

@@ -17,8 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
-
 /// The shipped scenario with one replacement, in a folder of its own.
 std::string changed(const Folder& folder, const std::string& what, const std::string& by) {
   std::string yaml = read_file(kSource + "/scenarios/song-bottle.yaml");

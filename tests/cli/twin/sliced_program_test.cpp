@@ -16,7 +16,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
 constexpr int kLayers = 5;
 
 /// The box up to its fifth layer, with `from` replaced by `to` wherever it stands.

@@ -13,8 +13,6 @@
 namespace understudy::cli_test {
 namespace {
 
-const std::string kSource = UNDERSTUDY_SOURCE_DIR;
-
 struct Replacement {
   std::string what, by;  ///< regular expressions of std::regex
 };

@@ -167,7 +167,7 @@ TEST(FinishingPlanner, RefusesWhatCannotBeMilled) {
 }
 
 TEST(FinishingPlanner, TellsEachLayer) {
-  test::ToldProgress told;
+  understudy::test::ToldProgress told;
   FinishingPlan plan = plan_of();
   plan.progress = told.teller();
   planned(*box_mm(Vec3(-20, -15, 0), Vec3(20, 15, 20)), plan);

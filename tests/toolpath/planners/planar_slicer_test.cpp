@@ -137,7 +137,7 @@ TEST(PlanarSlicer, WhatCannotBeSlicedIsRefused) {
 }
 
 TEST(PlanarSlicer, TellsEachLayer) {
-  test::ToldProgress told;
+  understudy::test::ToldProgress told;
   PlanarPlan p = plan();
   p.progress = told.teller();
   plan_planar(box(10e-3, 6e-3, 0, 1e-3), nullptr, p);

@@ -63,7 +63,7 @@ TEST(SectionRows, RunToAndFroAPitchApartAndLayersGrowAlongTheNormal) {
 
 TEST(SectionRows, TellEachRowAndEachCurve) {
   const auto crown = geometry::read_stl(UNDERSTUDY_SOURCE_DIR "/models/parts/crown_core.stl");
-  test::ToldProgress rows_told, curves_told;
+  understudy::test::ToldProgress rows_told, curves_told;
   SectionRows rows;
   rows.count = 4;
   rows.pitch = 0.45e-3;

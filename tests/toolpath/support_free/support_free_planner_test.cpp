@@ -214,7 +214,7 @@ TEST(SupportFreeRefusals, PartsThatTheLayersDoNotHold) {
 TEST_P(SupportFree, TellsHowFarEachStageIs) {
   const auto& [name, outline, pieces] = GetParam();
   const auto part = swept_part(outline, pieces);
-  test::ToldProgress line_told, layers_told;
+  understudy::test::ToldProgress line_told, layers_told;
   const auto line = find_structural_line(*part, 1e-3, 20e-6, line_told.teller());
   EXPECT_EQ(line_told.stages(), (std::set<std::string>{"finding the part's line", "smoothing the line"}));
   SupportFreePlan plan = coarse();

@@ -57,7 +57,9 @@ function temperature(data: OverTime, x: number[]): Chart | null {
   if (data.nozzle_c) curves.push({ label: 'nozzle', colour: styleColour('curve-2'), dash: [6, 3], x, y: ends(data.nozzle_c, null) });
   if (data.interface_c) curves.push({ label: 'bead on bead', colour: styleColour('with'), x, y: ends(data.interface_c, null) });
   if (!curves.length) return null;
-  const glass = data.glass_transition_c, { range } = nearlyAll(curves, glass === undefined ? [] : [glass - 10]);
+  // A scale of 10 K at least: the steps of the record are 0.1 K.
+  const first = curves[0].y.find((y): y is number => typeof y === 'number' && isFinite(y)) ?? 0;
+  const glass = data.glass_transition_c, { range } = nearlyAll(curves, [first - 5, first + 5, ...(glass === undefined ? [] : [glass - 10])]);
   return { title: 'Temperature', curves, unit: '°C', decimals: 1, xLabel: 'time (s)', yLabel: 'temperature (°C)', range,
     lines: glass === undefined ? [] : [{ at: glass, colour: styleColour('limit'), dash: [6, 4] }],
     note: 'Of the nozzle' + (data.interface_c ? ', and where a bead meets the one that it is laid on' + (glass === undefined ? '.'

@@ -1,0 +1,43 @@
+# After a test program is linked: writes what CTest reads of it. A suite is one CTest test, since the start of a
+# process costs more than most tests; each test of a suite whose name starts with Slow is one, with the label slow.
+# PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [EACH=ON: every test is one, so that one can be left out]
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY TIMEOUT 60)
+string(REGEX REPLACE "[[;]|]" "" listed "${listed}")
+string(REPLACE "\n" ";" listed "${listed}")
+set(text "")
+
+# add(NAME FILTER TESTS [property value ...]): a test that may take its own time, and some for each one further.
+macro(add name filter tests)
+  math(EXPR seconds "${TIMEOUT} + 20 * (${tests} - 1)")
+  string(APPEND text "add_test([==[${PREFIX}.${name}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${filter}]==])\n"
+    "set_tests_properties([==[${PREFIX}.${name}]==] PROPERTIES TIMEOUT ${seconds} ${PROPERTIES} ${ARGN})\n")
+endmacro()
+macro(end_suite)
+  if(count GREATER 0)
+    add("${suite}" "${suite}.*" ${count})
+  endif()
+  set(count 0)
+endmacro()
+
+set(count 0)
+foreach(line IN LISTS listed)
+  if(line MATCHES "^([^ ]+)\\.")
+    set(next ${CMAKE_MATCH_1})
+    end_suite()
+    set(suite ${next})
+  elseif(line MATCHES "^  ([^ ]+)" AND NOT "${suite}.${CMAKE_MATCH_1}" MATCHES "DISABLED_")
+    set(test ${CMAKE_MATCH_1})
+    if(suite MATCHES "^Slow")
+      set(own ${TIMEOUT})
+      set(TIMEOUT 3600)
+      add("${suite}.${test}" "${suite}.${test}" 1 LABELS slow)
+      set(TIMEOUT ${own})
+    elseif(EACH)
+      add("${suite}.${test}" "${suite}.${test}" 1)
+    else()
+      math(EXPR count "${count} + 1")
+    endif()
+  endif()
+endforeach()
+end_suite()
+file(WRITE ${OUT} "${text}")
