@@ -1,8 +1,9 @@
-# understudy_room(NAME [RECURSE] [EXCLUDE regex] [SOURCES extra ...] [USES room ...] [PUBLIC lib ...] [PRIVATE lib ...])
+# understudy_room(NAME [RECURSE] [APART] [EXCLUDE regex] [SOURCES extra ...] [USES room ...] [PUBLIC lib ...] [PRIVATE lib ...])
 # One static library a folder: understudy::NAME, of every source in it (RECURSE: in its sub-rooms too). USES names
-# our own rooms, the rest are third-party targets.
+# our own rooms, the rest are third-party targets. APART: each source is compiled on its own, where most of them are
+# Eigen's expressions, which take longer together.
 function(understudy_room name)
-  cmake_parse_arguments(ROOM "RECURSE" "EXCLUDE" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "RECURSE;APART" "EXCLUDE" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
   understudy_sources(sources "${ROOM_RECURSE}" "${ROOM_EXCLUDE}")
   add_library(understudy_${name} STATIC ${sources} ${ROOM_SOURCES})
   add_library(understudy::${name} ALIAS understudy_${name})
@@ -16,7 +17,9 @@ function(understudy_room name)
   set_target_properties(understudy_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
   set_property(GLOBAL APPEND PROPERTY UNDERSTUDY_LIBRARIES understudy_${name})
   understudy_precompiled(understudy_${name})
-  understudy_join_sources(understudy_${name} 16)
+  if(NOT ROOM_APART)
+    understudy_join_sources(understudy_${name} 16)
+  endif()
 endfunction()
 
 # The sources of the folder that calls, without those that match EXCLUDE.
