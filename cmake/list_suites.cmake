@@ -8,7 +8,7 @@ set(text "")
 
 # add(NAME FILTER TESTS [property value ...]): a test that may take its own time, and some for each one further.
 macro(add name filter tests)
-  math(EXPR seconds "${TIMEOUT} + 20 * (${tests} - 1)")
+  math(EXPR seconds "${TIMEOUT} + 60 * (${tests} - 1)")
   string(APPEND text "add_test([==[${PREFIX}.${name}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${filter}]==])\n"
     "set_tests_properties([==[${PREFIX}.${name}]==] PROPERTIES TIMEOUT ${seconds} ${PROPERTIES} ${ARGN})\n")
 endmacro()
