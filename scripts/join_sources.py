@@ -109,12 +109,13 @@ def main():
     count, sources = int(sys.argv[1]), sys.argv[2:]
     groups = []
     for source in sources:
+        names = declared(source)
         alone = stands_alone(source)
-        group = None if alone else next((g for g in groups if g.takes(*declared(source))), None)
+        group = None if alone else next((g for g in groups if g.takes(*names)), None)
         if group is None:
             group = Group(1 if alone else count)
             groups.append(group)
-        group.add(source, *declared(source))
+        group.add(source, *names)
     for number, group in enumerate(groups):
         for source in group.sources:
             print(f"{number}>{source}")

@@ -52,7 +52,8 @@ class JoinSources(unittest.TestCase):
         self.assertTrue(self.apart("#define SIZE 2\n", anonymous("constexpr int SIZE = 3;")))
 
     def test_decompositions_stand_alone(self):
-        self.assertTrue(self.apart("#include <Eigen/SVD>\n", "int a();\n"))
+        for header in ("<Eigen/SVD>", "<Eigen/Cholesky>", '"core/decompositions.h"'):
+            self.assertTrue(self.apart(f"#include {header}\n", "int a();\n"), header)
         self.assertTrue(self.apart("int a();\n", "#include <Eigen/Eigenvalues>\n"))
         self.assertFalse(self.apart("int a();\n", "#include <Eigen/Core>\n"))
 
