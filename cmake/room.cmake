@@ -70,6 +70,7 @@ function(understudy_list_suites name timeout lock)
   if(lock)
     string(APPEND properties " RESOURCE_LOCK ${lock}")
   endif()
+  set_property(TARGET ${name}_test APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake)
   set(tests ${CMAKE_CURRENT_BINARY_DIR}/${name}_tests.cmake)
   add_custom_command(TARGET ${name}_test POST_BUILD VERBATIM
     COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${name}_test> -DPREFIX=${name} -DTIMEOUT=${timeout}
