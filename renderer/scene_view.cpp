@@ -245,9 +245,6 @@ Picture render_picture(const PictureScene& scene) {
   draw_shadows(gl, lights, solids, geometry.casters.empty() ? solids : casters, atlas, lamp);
 
   const Drawing drawing{scene, geometry, lights, solids, ground, creases};
-  const GlTarget half_size(gl, GL_RGBA32F, (scene.width + 1) / 2, (scene.height + 1) / 2);
-  draw_sky(gl, drawing, atlas, half_size);
-
   const GlSmoothTarget target(gl, scene.width, scene.height);
   target.bind();
   const auto& b = scene.background;
@@ -255,6 +252,9 @@ Picture render_picture(const PictureScene& scene) {
   gl.ClearBufferfv(GL_COLOR, 0, behind);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   solids.fill(without_hidden(geometry.solids, eye_clip(scene, geometry), draw_farthest(gl, drawing, target)));
+
+  const GlTarget half_size(gl, GL_RGBA32F, (scene.width + 1) / 2, (scene.height + 1) / 2);
+  draw_sky(gl, drawing, atlas, half_size);
   target.bind();
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_picture(gl, drawing, half_size, lamp);

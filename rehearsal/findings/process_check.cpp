@@ -10,11 +10,11 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "sim/deposition/bead_section.h"
 
 namespace understudy::rehearsal {
 namespace {
 
-constexpr double kWidestBores = 5;           // a bead wider and higher than that many bores is a mistake
 constexpr double kLongestRetraction = 0.05;  // [m]
 constexpr double kShortestPath = 1e-3;       // [m]: on less, what is fed is a blob
 constexpr double kLongestPrime = 0.1;        // [m] of filament fed at a standstill or nearly
@@ -98,12 +98,12 @@ class Checker {
                    "filament at a standstill", to_mm(fresh), to_mm(kLongestPrime), "mm"};
     }
     const double area = fresh * filament_area / path;
-    const double limit = kWidestBores * kWidestBores * bore * bore;
+    const double limit = sim::kWidestLine * sim::kWidestLine * bore * bore;
     if (area <= limit) return std::nullopt;
     return Fault{
         fmt::format("feeds {:.3f} mm of filament over {:.3f} mm: a bead of {:.2f} mm2, more than {:.2f} mm2 "
                     "({:g} bores of {:g} mm wide and high)",
-                    to_mm(fresh), to_mm(path), area * 1e6, limit * 1e6, kWidestBores, to_mm(bore)),
+                    to_mm(fresh), to_mm(path), area * 1e6, limit * 1e6, sim::kWidestLine, to_mm(bore)),
         "bead", area * 1e6, limit * 1e6, "mm2"};
   }
 

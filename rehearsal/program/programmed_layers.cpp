@@ -34,7 +34,9 @@ std::array<float, 3> floats(const Vec3& v) {
 class Stack {
  public:
   Stack(const machine::MachineDescription& machine, const std::shared_ptr<const geometry::Mesh>& part)
-      : workpiece_(part), flat_(machine.tool.flat_diameter) {}
+      : workpiece_(part),
+        flat_(machine.tool.flat_diameter),
+        widest_(sim::kWidestLine * machine.tool.nozzle_diameter) {}
 
   double gap(const Vec3& tip_W, const Mat3& R) const {
     const auto below = workpiece_.below(make_pose(R, tip_W), fresh_from_);
@@ -50,9 +52,9 @@ class Stack {
   }
 
   void add(const Vec3& from_W, const Vec3& to_W, const Vec3& axis_W, double gap, double area, int line) {
-    const double strand = std::sqrt(4 * area / std::numbers::pi);
+    const double strand = std::min(widest_, std::sqrt(4 * area / std::numbers::pi));
     const bool lies = gap > 0 && gap < kMostLayer;
-    last_width_ = sim::bead_width(area, lies ? gap : 0);
+    last_width_ = lies ? std::min(widest_, sim::bead_width(area, gap)) : strand;
     sim::Bead bead;
     bead.height = static_cast<float>(lies ? std::min(gap, last_width_) : strand);
     bead.width = std::max(bead.height, static_cast<float>(last_width_));
@@ -67,7 +69,7 @@ class Stack {
 
  private:
   sim::Workpiece workpiece_;
-  double flat_;
+  double flat_, widest_;              // [m]
   double path_ = 0, last_width_ = 0;  // [m]
   std::deque<double> ends_;           // path at the end of each bead that is still under the nozzle
   std::size_t fresh_from_ = 0;

@@ -10,6 +10,7 @@
 
 #include "geometry/printed_clearance.h"
 #include "sim/deposition/bead_builder.h"
+#include "sim/deposition/bead_section.h"
 #include "sim/deposition/extruder.h"
 #include "sim/deposition/gap_sums.h"
 #include "sim/deposition/lone_strand.h"
@@ -23,7 +24,6 @@ constexpr double kRounding = 1e-9;   // [m], of a gap: coordinates of 0.1 m thro
 constexpr double kThinnest = 1e-6;   // [m]: what is thinner has a volume but is in nobody's way
 constexpr double kFills = 0.99;      // of the gap
 constexpr double kSide = 0.35;       // of the width, where an overhang is felt for
-constexpr double kWidestLine = 5;    // bores: nobody asks for wider, see process_check
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PathPoint between(const PathPoint& a, const PathPoint& b, double f, double gap) {

@@ -12,13 +12,9 @@
 #include "core/random_vector.h"
 #include "machine/default_machine.h"
 #include "machine/description.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::calibration {
-
-inline const machine::MachineDescription& hexapod() {
-  static const machine::MachineDescription machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 struct DrawnSetting {
   vision::BoardTolerance boards{0.2e-3, 2e-3, 0, 1e-3, 0.05e-3};

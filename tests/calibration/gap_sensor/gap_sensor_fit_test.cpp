@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "machine/optics_mounting.h"
 #include "tests/calibration/gap_sensor/pinhole_sensor.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::calibration {
 namespace {
@@ -17,11 +18,6 @@ namespace {
 constexpr double kDotSigma = 0.1;  // [px] of one coordinate: docs/gap-control.md#figures
 constexpr double kAim = 0.13e-3;   // [m]
 constexpr int kSensors = 200;
-
-const machine::MachineDescription& hexapod() {
-  static const auto machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 const Vec2& centre() { return hexapod().microscope.camera.centre_px; }
 

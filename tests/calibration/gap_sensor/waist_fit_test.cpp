@@ -9,17 +9,13 @@
 #include "calibration/gap_sensor/calibrate_gap_sensor.h"
 #include "machine/optics_mounting.h"
 #include "tests/calibration/gap_sensor/pinhole_sensor.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::calibration {
 namespace {
 
 constexpr double kShare =
     0.07;  // 1 sigma of a second moment under speckle, a share of it (docs/gap-control.md)
-
-const machine::MachineDescription& hexapod() {
-  static const auto machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 /// Of rays a standard deviation beside the beam's axis, the blur, and a pixel's own square.
 Eigen::Matrix2d spread_of(double waist, const Vec2& slope, double gap) {

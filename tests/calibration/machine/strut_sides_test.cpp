@@ -9,11 +9,10 @@
 #include "calibration/synthetic.h"
 #include "core/random.h"
 #include "core/units.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::calibration {
 namespace {
-
-machine::MachineDescription hexapod() { return machine::load_machine("hexapod"); }
 
 /// Sum of the forces [N] along z that the struts put on the platform: their loads by the slopes of their
 /// lengths.

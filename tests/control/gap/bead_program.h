@@ -3,16 +3,12 @@
 
 #include "control/print.h"
 #include "tests/control/gap/gap_rig.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::control {
 
 constexpr double kTable = 0.05;   // [m], height of the surface under the home tip
 constexpr double kGap = 0.13e-3;  // [m], programmed
-
-inline const machine::MachineDescription& hexapod() {
-  static const auto machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 inline toolpath::Step step_to(toolpath::StepKind kind, const Vec3& p, double feed, int line,
                               double filament = 0) {

@@ -11,6 +11,7 @@
 #include "core/units.h"
 #include "geometry/mesh.h"
 #include "tests/control/gap/dot_world.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::control {
 namespace {
@@ -18,11 +19,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kBottleRadius = 15.5e-3;  // [m], Song 2015, 6.2
-
-const machine::MachineDescription& hexapod() {
-  static const auto machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 vision::DotMeasurement dot_at(const Vec2& pixel, double sigma_px = 0.1) {
   vision::DotMeasurement dot;

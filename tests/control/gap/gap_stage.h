@@ -4,17 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/control/gap/gap_rig.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::control {
 
 constexpr double kBottleRadius = 15.5e-3;   // [m]
 constexpr double kProgrammedGap = 0.13e-3;  // [m], of S over the nominal part
 constexpr double kStandoff = 2e-3;          // [m]
-
-inline const machine::MachineDescription& hexapod() {
-  static const auto machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 /// A start on a part: S and the part's surface below it as the controller believes them.
 struct Start {

@@ -50,6 +50,12 @@ TEST(ProgrammedLayers, ATravelHasTheLayerOfTheLineBeforeIt) {
   EXPECT_NEAR(layers.band(1).low, 0.1e-3, 1e-9) << "nothing was printed yet";
 }
 
+// As a program's jumps do whose rotary words are meant for another kind of machine.
+TEST(ProgrammedLayers, MuchFilamentOnHardlyAnyPathMakesNoLine) {
+  const ProgrammedLayers layers = layers_of(rows({0.2}) + "G1 X20.06 Z0.23 E8\n" + rows({0.5}));
+  EXPECT_NEAR(layers.band(44).low, 0.15e-3, 1e-6) << "0.3 mm above the first";
+}
+
 TEST(ProgrammedLayers, ALineOverAHollowHasTheLayerOfThoseBeside) {
   std::string text = rows({0.2, 0.5});
   text += "G0 X0 Y10 Z0.8\nG1 X20 E2.314\n" + rows({0.8}).substr(12);

@@ -6,14 +6,10 @@
 
 #include "sim/as_built/as_built.h"
 #include "sim/as_built/as_built_file.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::sim {
 namespace {
-
-const machine::MachineDescription& hexapod() {
-  static const machine::MachineDescription machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 std::string text(AsBuilt built) {
   built.seed = 0;

@@ -8,14 +8,11 @@
 #include "core/error.h"
 #include "sim/deposition/bead_temperature.h"
 #include "sim/strand/strand.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::sim {
 namespace {
 
-const machine::MachineDescription& hexapod() {
-  static const auto machine = machine::load_machine("hexapod");
-  return machine;
-}
 const machine::Material& pla() {
   static const auto material = machine::load_material("pla");
   return material;

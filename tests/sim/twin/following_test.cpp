@@ -16,7 +16,6 @@
 namespace understudy::sim {
 namespace {
 
-using control::hexapod;
 using testing::AllOf;
 using testing::HasSubstr;
 

@@ -14,14 +14,10 @@
 #include "sim/as_built/as_built.h"
 #include "studies/calibration/calibration_benchmark.h"
 #include "studies/calibration/sample_poses.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::studies {
 namespace {
-
-const machine::MachineDescription& hexapod() {
-  static const machine::MachineDescription machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 /// Two layers of eleven: a fifth of the time, and twice the error.
 const MeasuringStand& stand() {

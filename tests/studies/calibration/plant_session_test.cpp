@@ -8,13 +8,12 @@
 #include "calibration/pose_choice.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::studies {
 namespace {
 
 using kinematics::StrutLengths;
-
-machine::MachineDescription hexapod() { return machine::load_machine("hexapod"); }
 
 std::vector<double> lengths_at(const machine::MachineDescription& machine, const Pose& X_BT) {
   std::vector<double> axes(6);

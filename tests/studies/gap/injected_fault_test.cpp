@@ -6,14 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "kinematics/hexapod/hexapod.h"
+#include "tests/shipped_hexapod.h"
 
 namespace understudy::studies {
 namespace {
-
-const machine::MachineDescription& hexapod() {
-  static const auto machine = machine::load_machine("hexapod");
-  return machine;
-}
 
 FaultWindow window() {
   const Pose X_WT =
