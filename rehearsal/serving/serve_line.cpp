@@ -4,6 +4,7 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -23,6 +24,8 @@ namespace understudy::rehearsal {
 namespace {
 
 constexpr int kSlowClient = 2000;  // [ms]
+constexpr int kLastWords = 500;    // [ms], at most, that a sender has to read the last answer
+constexpr int kLook = 10;          // [ms]
 constexpr std::size_t kChunk = 4096;
 
 bool ready(int file, short what, int milliseconds) {
@@ -129,6 +132,7 @@ class PtyLine final : public ServeLine {
     if (error) throw InputError(fmt::format("--port pty:{}: {}", address.path, error.message()));
   }
   ~PtyLine() override {
+    let_read();
     std::error_code ignored;
     std::filesystem::remove(link_, ignored);
   }
@@ -154,6 +158,17 @@ class PtyLine final : public ServeLine {
   }
 
  private:
+  /// As a terminal hangs up, what its reader has not fetched is lost.
+  void let_read() {
+    if (!connected()) return;
+    const Descriptor end(::open(slave_.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    int waiting = 1;
+    for (int waited = 0; end.is_open() && waiting > 0 && waited < kLastWords; waited += kLook) {
+      ::poll(nullptr, 0, kLook);  // the kernel passes on what was written a moment later
+      if (::ioctl(end.get(), FIONREAD, &waiting) != 0) return;
+    }
+  }
+
   /// As a serial port without echo and without meaning in its characters; Ctrl-X and ! are data.
   void set_raw() const {
     const Descriptor slave(::open(slave_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));

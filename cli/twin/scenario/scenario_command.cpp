@@ -20,6 +20,14 @@ int list(const ScenarioRequest& request) {
   return kGood;
 }
 
+void add_no_pictures(CLI::App& command, const std::shared_ptr<ScenarioRequest>& request) {
+  command
+      .add_flag(
+          "!--no-pictures", request->pictures,
+          "leave the drawings of machine and part out of the reports, which take most of a short run's time")
+      ->needs("--out");
+}
+
 void add_run(CLI::App& command, const std::shared_ptr<ScenarioRequest>& request, Action& action) {
   auto* run = command.add_subcommand(
       "run", "Run scenarios: status 0 when every expectation holds, 1 when one does not");
@@ -30,6 +38,7 @@ void add_run(CLI::App& command, const std::shared_ptr<ScenarioRequest>& request,
   run->add_option("--junit", request->junit, "also write JUnit XML to this file");
   run->add_option("--out", request->folder,
                   "also write each rehearsal's report below this folder, and an index page");
+  add_no_pictures(*run, request);
   run->add_flag("--resume", request->resume,
                 "take what a stopped run finished from --out where its inputs are the same");
   run->add_option("--baseline", request->baseline,
@@ -48,6 +57,7 @@ void add_outcome(CLI::App& command, const std::shared_ptr<ScenarioRequest>& requ
   one->add_option("paths", request->paths)->required()->expected(1);
   one->add_option("--outcome", *outcome)->required();
   one->add_option("--out", request->folder);
+  add_no_pictures(*one, request);
   add_jobs(*one, request->threads);
   one->callback([=, &action] { action = [=] { return run_for_outcome(*request, *outcome); }; });
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,10 +36,12 @@ using regression::Scenario;
 using regression::ScenarioOutcome;
 
 /// With the program that a plan has made: nobody else has it.
-regression::RecordSink results_in(const fs::path& folder, const std::string& planned) {
-  return [folder, &planned](const rehearsal::Record& record) {
+regression::RecordSink results_in(const fs::path& folder, bool pictures, const std::string& planned) {
+  return [folder, pictures, &planned](const rehearsal::Record& record) {
     OutputFolder out(folder);
-    report::write_results(record, report::draw_scene(*record.scene), out.path());
+    std::vector<report::Illustration> drawn;
+    if (pictures) drawn = report::draw_scene(*record.scene);
+    report::write_results(record, drawn, out.path());
     if (!planned.empty()) write_file(out.path() / regression::kPlannedProgram, planned);
     out.commit();
   };
@@ -52,17 +55,17 @@ regression::Metrics figures_in(const Scenario& scenario, const fs::path& folder)
                          folder.empty() ? scratch->path() / "results" : folder / scenario.file.stem());
 }
 
-/// In this process. `folder`: of all scenarios' reports; empty: none is written.
-ScenarioOutcome run_here(const Scenario& scenario, const fs::path& folder, int threads,
-                         const Progress& progress) {
-  regression::ScenarioRun how{threads, {}, progress, {}, {}};
+/// In this process. Without a folder in the request no report is written.
+ScenarioOutcome run_here(const Scenario& scenario, const ScenarioRequest& request, const Progress& progress) {
+  const fs::path folder = request.folder;
+  regression::ScenarioRun how{request.threads, {}, progress, {}, {}};
   how.command = [&](const Scenario& each) { return figures_in(each, folder); };
   std::string planned;
   how.plan = [&](const Scenario& each, const fs::path& output) {
     write_planned(each, output);
     planned = read_file(output);
   };
-  if (!folder.empty()) how.sink = results_in(folder / scenario.file.stem(), planned);
+  if (!folder.empty()) how.sink = results_in(folder / scenario.file.stem(), request.pictures, planned);
   return regression::run_scenario(scenario, how);
 }
 
@@ -76,6 +79,7 @@ ScenarioOutcome run_in_process(const Scenario& scenario, const fs::path& outcome
                                  "-j",
                                  std::to_string(std::max(1, request.threads / request.processes))};
   if (!request.folder.empty()) words.insert(words.end(), {"--out", request.folder});
+  if (!request.pictures) words.emplace_back("--no-pictures");
   std::error_code ignored;
   fs::remove(outcome, ignored);
   if (const ProcessEnd end = run_own_process(words); end.status != kGood) {
@@ -157,9 +161,9 @@ class Runner {
 
   ScenarioOutcome here(const Scenario& scenario, const std::string& inputs) {
     ProgressLine line(!request_.output.quiet);
-    ScenarioOutcome outcome = run_here(
-        scenario, request_.folder, request_.threads,
-        [&](double share, const std::string& what) { line.show(share, scenario.name + ": " + what); });
+    ScenarioOutcome outcome = run_here(scenario, request_, [&](double share, const std::string& what) {
+      line.show(share, scenario.name + ": " + what);
+    });
     write_file(outcome_file(outcomes_, scenario), regression::outcome_text(scenario, outcome, inputs));
     return outcome;
   }
@@ -266,8 +270,7 @@ int run_for_outcome(const ScenarioRequest& request, const fs::path& outcome) {
   end_with_parent();
   const Scenario scenario = regression::load_scenario(request.paths.at(0));
   const std::string inputs = regression::outcome_inputs(scenario, sources_sha256(scenario));
-  write_file(outcome, regression::outcome_text(
-                          scenario, run_here(scenario, request.folder, request.threads, {}), inputs));
+  write_file(outcome, regression::outcome_text(scenario, run_here(scenario, request, {}), inputs));
   return kGood;
 }
 

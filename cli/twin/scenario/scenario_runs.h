@@ -15,6 +15,7 @@ struct ScenarioRequest {
   int threads = 0;
   int processes = 1;
   bool resume = false;
+  bool pictures = true;  ///< in the reports below `folder`
   bool update_golden = false;
   OutputOptions output;
 };

@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+const std::string kPlain = " --no-pictures --out ";
+
 /// A short line on the bottle; three of them take seconds.
 class ScenarioRuns : public ::testing::Test {
  protected:
@@ -62,10 +64,10 @@ TEST_F(ScenarioRuns, WhenQuietOnlyFailuresAreTold) {
 }
 
 TEST_F(ScenarioRuns, OneJsonDocumentHoldsAllResults) {
-  run(at("one.yaml") + " --out " + at("before"));
+  run(at("one.yaml") + kPlain + at("before"));
   write("one", 2, "0.01");
   const Outcome told = understudy("scenario run --json " + at("one.yaml") + " --baseline " + at("before") +
-                                  " --out " + at("out"));
+                                  kPlain + at("out"));
   EXPECT_EQ(told.status, 1);
   const auto json = nlohmann::json::parse(told.out);
   EXPECT_EQ(json["schema"], "understudy.scenarios/1");
@@ -82,8 +84,8 @@ TEST_F(ScenarioRuns, OneJsonDocumentHoldsAllResults) {
 
 TEST_F(ScenarioRuns, ProcessesAnswerAsOneAfterTheOther) {
   const std::string both = at("one.yaml") + " " + at("two.yaml");
-  const std::string here = run(both + " --out " + at("a"));
-  const std::string apart = run(both + " --processes 2 --out " + at("b"));
+  const std::string here = run(both + kPlain + at("a"));
+  const std::string apart = run(both + " --processes 2" + kPlain + at("b"));
   for (const std::string name : {"one", "two"}) {
     const auto checks = [&](const std::string& text) {
       return told_of(name, text).substr(0, text.find("time"));
@@ -104,7 +106,7 @@ TEST_F(ScenarioRuns, OneThatCannotRunFailsBesideThoseThatCan) {
 }
 
 TEST_F(ScenarioRuns, ResumeRunsOnlyWhatIsNotThereOrHasOtherInputs) {
-  const std::string out = " --out " + at("out");
+  const std::string out = kPlain + at("out");
   run(at("one.yaml") + out);
   const std::string both = at("one.yaml") + " " + at("two.yaml") + out + " --resume";
   std::string told = run(both);
@@ -138,7 +140,7 @@ TEST_F(ScenarioRuns, ResumeTakesTheResultOfAStudyWhoseCommandAndFilesAreTheSame)
 }
 
 TEST_F(ScenarioRuns, ABaselineShowsWhatDiffers) {
-  run(at("one.yaml") + " --out " + at("before"));
+  run(at("one.yaml") + kPlain + at("before"));
   EXPECT_THAT(run(at("one.yaml") + " --baseline " + at("before")), Not(HasSubstr("diff")));
   write("one", 9);
   EXPECT_THAT(run(at("one.yaml") + " --baseline " + at("before")), HasSubstr("diff gap.start_mm was "));
@@ -165,11 +167,11 @@ TEST_F(ScenarioRuns, GoldenFiguresAreWrittenHeldAndKept) {
 
 TEST_F(ScenarioRuns, AFailureTellsTheCommandThatRunsItAlone) {
   write("one", 1, "0.0001");
-  const std::string told = run(at("one.yaml") + " --junit " + at("j.xml") + " --out " + at("out"), 1);
+  const std::string told = run(at("one.yaml") + " --junit " + at("j.xml") + kPlain + at("out"), 1);
   EXPECT_THAT(told, HasSubstr("alone: understudy scenario run " + at("one.yaml")));
   EXPECT_THAT(read_file(at("j.xml")), HasSubstr(at("out/one/report.html")));
   EXPECT_THAT(read_file(at("out/index.html")), HasSubstr("one/report.html"));
-  run(at("one.yaml") + " --out " + at("out"), 1);
+  run(at("one.yaml") + kPlain + at("out"), 1);
   EXPECT_THAT(read_file(at("out/index.html")), HasSubstr("in 2 runs"));
 }
 
@@ -194,6 +196,19 @@ TEST_F(ScenarioRuns, ACommandsFiguresAreHeldToTheirBounds) {
   EXPECT_THAT(run(study("calibrate a.csv", reachable + "min: 0.5"), 2),
               HasSubstr("'calibrate' is none of the studies"));
   EXPECT_EQ(understudy("sweep " + at("study.yaml")).status, 2);
+}
+
+TEST_F(ScenarioRuns, PicturesAreDrawnUnlessTheyAreLeftOut) {
+  const std::string both = at("one.yaml") + " " + at("two.yaml");
+  run(at("one.yaml") + " --out " + at("drawn"));
+  EXPECT_TRUE(fs::exists(at("drawn/one/pictures/picture-01.png")));
+  EXPECT_THAT(read_file(at("drawn/index.html")), HasSubstr("one/pictures/picture-01.png"));
+  run(both + " --processes 2" + kPlain + at("plain"));
+  EXPECT_FALSE(fs::exists(at("plain/one/pictures")));
+  EXPECT_TRUE(fs::exists(at("plain/one/report.html")));
+  EXPECT_THAT(read_file(at("plain/index.html")), Not(HasSubstr("picture-01.png")));
+  EXPECT_EQ(read_file(at("drawn/one/trace.csv")), read_file(at("plain/one/trace.csv")));
+  EXPECT_THAT(run(both + " --no-pictures", 2), HasSubstr("--no-pictures requires --out"));
 }
 
 TEST_F(ScenarioRuns, APageThatIsNotOursStays) {
