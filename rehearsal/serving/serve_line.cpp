@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kSlowClient = 2000;  // [ms]
 constexpr int kLastWords = 500;    // [ms], at most, that a sender has to read the last answer
-constexpr int kLook = 10;          // [ms]
+constexpr int kLook = 10;          // [ms], between two looks whether it has
 constexpr std::size_t kChunk = 4096;
 
 bool ready(int file, short what, int milliseconds) {
