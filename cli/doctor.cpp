@@ -8,6 +8,7 @@
 #include "core/simd.h"
 #include "core/version.h"
 #include "machine/description.h"
+#include "vision/formats/formats.h"
 
 namespace understudy::cli {
 namespace {
@@ -16,6 +17,11 @@ std::string try_models() {
   const auto names = machine::machine_names();
   for (const auto& name : names) machine::load_machine(name);
   return fmt::format("{} machines in {}", names.size(), machine::models_folder().string());
+}
+
+std::string try_formats() {
+  static_cast<void>(vision::formats());
+  return vision::formats_file().string();
 }
 
 }  // namespace
@@ -31,6 +37,7 @@ HealthCheck attempt(const std::string& name, const std::function<std::string()>&
 std::vector<HealthCheck> self_test() {
   std::vector<HealthCheck> checks{{"understudy", true, kVersion},
                                   attempt("models", try_models),
+                                  attempt("formats", try_formats),
                                   attempt("simd", [] { return std::string(word(simd())); })};
   for (const HealthCheck& check : twin_self_test()) checks.push_back(check);
   return checks;

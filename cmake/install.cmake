@@ -26,7 +26,7 @@ if(TARGET understudy AND CMAKE_GENERATOR STREQUAL Ninja AND Python3_FOUND AND DP
   set(bill ${PROJECT_BINARY_DIR}/understudy.cdx.json ${PROJECT_BINARY_DIR}/third-party-notices.txt)
   list(GET bill 0 materials)
   list(GET bill 1 notices)
-  add_custom_command(OUTPUT ${bill} VERBATIM DEPENDS understudy ${script} ${PROJECT_BINARY_DIR}/embedded.txt
+  add_custom_command(OUTPUT ${bill} VERBATIM DEPENDS understudy understudy_formats ${script} ${PROJECT_BINARY_DIR}/embedded.txt
     COMMAND Python3::Interpreter ${script} ${PROJECT_BINARY_DIR} -o ${materials} --notices ${notices} --release ${PROJECT_VERSION}
       --optional)
   add_custom_target(bill-of-materials ALL DEPENDS ${bill})

@@ -5,8 +5,8 @@ and licences; and the npm packages that are bundled into its pages.
 
 usage: bill_of_materials.py BUILD -o FILE [--notices FILE] [--release VERSION] [--optional]
 
-BUILD/cli/understudy is the command, BUILD/embedded.txt lists what it embeds. --notices writes the copyright files of
-what is compiled in or embedded, which licences want beside a copy. Status 1, and nothing written: a file belongs to no
+BUILD/cli/understudy is the command, BUILD/lib/understudy has the modules that it loads, BUILD/embedded.txt lists what
+it embeds. --notices writes the copyright files of what is compiled in or embedded, which licences want beside a copy. Status 1, and nothing written: a file belongs to no
 package, or a package states no licence. With --optional that is a warning, for builds with libraries of their own.
 """
 import argparse
@@ -132,8 +132,9 @@ def components(roles):
 def package_roles(build):
     """package -> set of words that say how it came in."""
     roles = {}
-    program = str(Path(build) / "cli/understudy")
-    for role, files in (("loaded", loaded_files(program)), ("compiled in", compiled_in(build))):
+    programs = [Path(build) / "cli/understudy", *sorted(Path(build).glob("lib/understudy/*.so"))]
+    loaded = sorted({file for program in programs for file in loaded_files(str(program))})
+    for role, files in (("loaded", loaded), ("compiled in", compiled_in(build))):
         package_of = owners(files)
         strangers = [f for f in files if f not in package_of]
         if strangers:

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -14,9 +13,9 @@
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "core/error.h"
+#include "vision/formats/formats.h"
 #include "vision/picture/picture_file.h"
 
 namespace understudy::cli {
@@ -25,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 using drivers::TimedImage;
 
-constexpr int kOpenWithin = 5000, kReadWithin = 2000;  // [ms]
-constexpr double kStampSane = 2.0;                     // [s], age of a driver's stamp that is believed
+constexpr vision::NetworkLimits kNetwork{.open = 5, .read = 2};  // [s]
+constexpr double kStampSane = 2.0;  // [s], age of a driver's stamp that is believed
 
 Image grey(const cv::Mat& picture) {
   cv::Mat one;
@@ -95,14 +94,10 @@ class FolderSource : public drivers::FrameSource {
 /// Reads in a thread of its own, so that the newest frame is at hand and none waits in a buffer.
 class VideoSource : public drivers::FrameSource {
  public:
-  VideoSource(const std::string& word, const std::string& place, int backend) : word_(word) {
-    const bool network = backend != cv::CAP_V4L2;
-    const std::vector<int> limits{cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kOpenWithin, cv::CAP_PROP_READ_TIMEOUT_MSEC,
-                                  kReadWithin};
-    if (!(network ? video_.open(place, backend, limits) : video_.open(place, backend)))
-      throw InputError(fmt::format("--camera {}: no camera answers there", word));
-    if (!network) video_.set(cv::CAP_PROP_BUFFERSIZE, 1);
-    thread_ = std::thread([this, network] { read(network); });
+  VideoSource(const std::string& word, std::unique_ptr<vision::VideoReader> video, bool stamped)
+      : word_(word), video_(std::move(video)), stamped_(stamped) {
+    if (!video_) throw InputError(fmt::format("--camera {}: no camera answers there", word));
+    thread_ = std::thread([this] { read(); });
   }
   ~VideoSource() override {
     stop_ = true;
@@ -115,16 +110,16 @@ class VideoSource : public drivers::FrameSource {
   std::string ended() const override { return ended_ ? word_ + ": the camera delivers no more" : ""; }
 
  private:
-  void read(bool network) {
+  void read() {
     cv::Mat picture;
     for (std::uint64_t number = 0; !stop_; ++number) {
-      if (!video_.read(picture) || picture.empty()) break;
+      if (!video_->read(picture)) break;
       const double came = drivers::wall_clock();
       double age = 0;
-      if (!network) {
+      if (stamped_) {
         const double steady =
             std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-        age = steady - 1e-3 * video_.get(cv::CAP_PROP_POS_MSEC);
+        age = steady - video_->position();
         if (!(age >= 0 && age < kStampSane)) age = 0;
       }
       TimedImage image{grey(picture), came - age, number};
@@ -135,7 +130,8 @@ class VideoSource : public drivers::FrameSource {
   }
 
   std::string word_;
-  cv::VideoCapture video_;
+  std::unique_ptr<vision::VideoReader> video_;
+  bool stamped_;  // frames carry the time at which they were exposed
   std::mutex mutex_;
   std::optional<TimedImage> newest_;
   std::atomic<bool> stop_ = false, ended_ = false;
@@ -154,12 +150,10 @@ std::unique_ptr<drivers::FrameSource> open_camera(const std::string& word) {
   }
   if (const std::string device = after("v4l2:"); !device.empty()) {
     if (!fs::exists(device)) throw InputError(fmt::format("--camera {}: no such device", word));
-    return std::make_unique<VideoSource>(word, device, cv::CAP_V4L2);
+    return std::make_unique<VideoSource>(word, vision::formats().open_device(device), true);
   }
-  if (word.starts_with("http://") || word.starts_with("https://")) {
-    static_cast<void>(::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0));  // what went wrong is said here, once
-    return std::make_unique<VideoSource>(word, word, cv::CAP_FFMPEG);
-  }
+  if (word.starts_with("http://") || word.starts_with("https://"))
+    return std::make_unique<VideoSource>(word, vision::formats().open_network(word, kNetwork), false);
   throw InputError(fmt::format("--camera {}: one of folder:DIR, v4l2:/dev/videoN, http://...", word));
 }
 

@@ -168,6 +168,7 @@ void ChainMechanism::check(const Pose& X_ST, std::span<const double> axes,
     violations.push_back(
         {LimitKind::joint_limit, "axis " + axis.name, axes[i], limit, axis.angle ? "rad" : "m"});
   }
+  if (description_.condition_max == kEndless) return;
   const double condition = condition_number(X_ST, axes);
   if (condition > description_.condition_max)
     violations.push_back({LimitKind::singularity, "tool pose", condition, description_.condition_max, "1"});

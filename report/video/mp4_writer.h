@@ -2,12 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include <opencv2/core.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "core/file/scratch_folder.h"
+#include "vision/formats/formats.h"
 
 namespace understudy::report {
 
@@ -24,7 +25,7 @@ class Mp4Writer {
  private:
   ScratchFolder folder_;
   std::filesystem::path file_;
-  cv::VideoWriter writer_;
+  std::unique_ptr<vision::VideoWriter> writer_;
   std::string codec_;
   int frames_ = 0;
 };

@@ -17,20 +17,12 @@ namespace {
 
 using Versions = std::map<std::string, std::string>;
 
-const Versions kPackagesOfTheController{{"Boost", "libboost-math-dev"},
-                                        {"CLI11", "libcli11-dev"},
-                                        {"Clipper", "libpolyclipping-dev"},
-                                        {"Eigen", "libeigen3-dev"},
-                                        {"OpenCV", "libopencv-dev"},
-                                        {"OpenSSL", "libssl-dev"},
-                                        {"assimp", "libassimp-dev"},
-                                        {"fmt", "libfmt-dev"},
-                                        {"glibc", "libc6"},
-                                        {"lib2geom", "lib2geom-dev"},
-                                        {"nlohmann-json", "nlohmann-json3-dev"},
-                                        {"tinyxml2", "libtinyxml2-dev"},
-                                        {"urdfdom", "liburdfdom-dev"},
-                                        {"yaml-cpp", "libyaml-cpp-dev"}};
+const Versions kPackagesOfTheController{
+    {"Boost", "libboost-math-dev"},  {"CLI11", "libcli11-dev"},     {"Clipper", "libpolyclipping-dev"},
+    {"Eigen", "libeigen3-dev"},      {"OpenCV", "libopencv-dev"},   {"OpenSSL", "libssl-dev"},
+    {"assimp", "libassimp-dev"},     {"fmt", "libfmt-dev"},         {"glibc", "libc6"},
+    {"libpng", "libpng-dev"},        {"lib2geom", "lib2geom-dev"},  {"nlohmann-json", "nlohmann-json3-dev"},
+    {"tinyxml2", "libtinyxml2-dev"}, {"urdfdom", "liburdfdom-dev"}, {"yaml-cpp", "libyaml-cpp-dev"}};
 const Versions kPackagesOfTheTwin{{"Bullet", "libbullet-dev"}, {"FCL", "libfcl-dev"},
                                   {"LLVM", "libllvm15"},       {"Mesa", "libosmesa6-dev"},
                                   {"MuJoCo", "libmujoco-dev"}, {"tinygltf", "libtinygltf-dev"},

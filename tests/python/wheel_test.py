@@ -30,7 +30,10 @@ def main(wheel):
         run(sys.executable, "-m", "venv", "--system-site-packages", str(venv))
         run(str(venv / "bin/python"), "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", wheel)
         run(str(venv / "bin/python"), "-c", SCRIPT)
-        run(str(venv / "bin/understudy"), "--version")
+        told = subprocess.run((str(venv / "bin/understudy"), "doctor"), capture_output=True, text=True, cwd=folder,
+                              env=environment).stdout
+        [module] = [line.split()[-1] for line in told.splitlines() if "understudy-formats.so" in line]
+        assert str(venv.resolve()) in str(Path(module).resolve()), told
 
 
 if __name__ == "__main__":

@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "core/file/read_file.h"
 #include "tests/cli/twin/exported_print.h"
+#include "vision/formats/formats.h"
 
 namespace understudy::cli_test {
 namespace {
@@ -16,10 +16,11 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
-std::vector<cv::Mat> frames_of(const std::string& file) {
-  cv::VideoCapture video(file, cv::CAP_FFMPEG);
+std::vector<cv::Mat> pictures_of(const std::string& file) {
+  const auto video = vision::formats().open_file(file);
   std::vector<cv::Mat> frames;
-  for (cv::Mat frame; video.read(frame);) frames.push_back(frame.clone());
+  if (!video) return frames;
+  for (cv::Mat frame; video->read(frame);) frames.push_back(frame.clone());
   return frames;
 }
 
@@ -45,7 +46,7 @@ TEST_F(ExportVideo, TheBeadsGrowFromTheFirstFrameToTheLast) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_THAT(outcome.out, HasSubstr("6 frames of 640 x 360 pixels"));
-  const auto frames = frames_of(exported());
+  const auto frames = pictures_of(exported());
   ASSERT_EQ(frames.size(), 6U);
   for (const cv::Mat& frame : frames) EXPECT_EQ(frame.size(), cv::Size(640, 360));
   // The path to come is a line two pixels wide, beads are several times as wide.

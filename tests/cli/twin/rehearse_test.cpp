@@ -91,7 +91,7 @@ TEST(Rehearse, TheSameCommandAndSeedGiveTheSameBytes) {
             comparable(read_file(folder / "b/summary.json")));
   EXPECT_EQ(read_file(folder / "a/trace.csv"), read_file(folder / "b/trace.csv"));
   // Another seed is another machine.
-  ASSERT_LE(understudy(kBottle + "--seed 6 --out " + (folder / "c")).status, 1);
+  ASSERT_LE(understudy(kBottle + "--seed 6 --no-pictures --out " + (folder / "c")).status, 1);
   EXPECT_NE(read_file(folder / "a/trace.csv"), read_file(folder / "c/trace.csv"));
 }
 
@@ -108,8 +108,10 @@ TEST(SlowRehearse, ThreadsOfTheRendererDoNotChangeTheBytes) {
 
 TEST(Rehearse, WithoutGapControlTheStartIsOpenLoop) {
   const Folder folder;
-  ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "with")).status, 1);
-  ASSERT_LE(understudy(kBottle + "--seed 5 --gap-control off --out " + (folder / "without")).status, 1);
+  ASSERT_LE(understudy(kBottle + "--seed 5 --no-pictures --out " + (folder / "with")).status, 1);
+  ASSERT_LE(
+      understudy(kBottle + "--seed 5 --no-pictures --gap-control off --out " + (folder / "without")).status,
+      1);
   const auto with = nlohmann::json::parse(read_file(folder / "with/summary.json"));
   const auto without = nlohmann::json::parse(read_file(folder / "without/summary.json"));
   // The same machine, printed without gap control, either way it is asked for.
@@ -121,7 +123,7 @@ TEST(Rehearse, WithoutGapControlTheStartIsOpenLoop) {
 TEST(Rehearse, APoseOutOfReachIsANoGoThatNamesTheStrutAndHowMuch) {
   const Folder folder;
   const auto file = folder.write("far.gcode", "G21\nG90\nG0 X0 Y0 Z60 W1 I0 J0 K0\nG1 X0 Y0 Z110 F600\n");
-  const Outcome outcome = understudy("rehearse " + file + " --out " + (folder / "out"));
+  const Outcome outcome = understudy("rehearse " + file + " --no-pictures --out " + (folder / "out"));
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   const auto summary = nlohmann::json::parse(read_file(folder / "out/summary.json"));
   EXPECT_EQ(summary["verdict"], "no-go");
@@ -145,7 +147,8 @@ TEST(Rehearse, ALimitBrokenOnTheLastLineLeavesTheRestSimulated) {
     const auto file = folder.write(name + ".gcode", program);
     const Outcome outcome =
         understudy("rehearse " + file +
-                   " --machine five-axis --as-built nominal --engine quasistatic --out " + (folder / name));
+                   " --machine five-axis --as-built nominal --engine quasistatic --no-pictures --out " +
+                   (folder / name));
     return std::pair(outcome.status, nlohmann::json::parse(read_file(folder.path() / name / "summary.json")));
   };
   const auto [status, whole] = run("whole", bead + "G0 Z150\n");
@@ -200,7 +203,7 @@ TEST(Rehearse, ATipErrorBeyondTheToleranceIsANoGo) {
   const Folder folder;
   const std::string command =
       "rehearse " + kSource +
-      "/scenarios/arm-square.gcode --machine arm --engine quasistatic --as-built nominal ";
+      "/scenarios/arm-square.gcode --machine arm --engine quasistatic --as-built nominal --no-pictures ";
   ASSERT_EQ(understudy(command + "--out " + (folder / "loose")).status, 0);
   const Outcome outcome = understudy(command + "--tip-tolerance 0.01 --out " + (folder / "tight"));
   EXPECT_EQ(outcome.status, 1);
@@ -219,7 +222,7 @@ TEST(Rehearse, PrintingInTheAirIsANoGo) {
   const Folder folder;
   const auto file =
       folder.write("air.gcode", "G21\nG90\nM82\nM109 S230\nG0 X0 Y0 Z60 W1 I0 J0 K0\nG1 X5 E0.2 F300\n");
-  const Outcome outcome = understudy("rehearse " + file + " --out " + (folder / "out"));
+  const Outcome outcome = understudy("rehearse " + file + " --no-pictures --out " + (folder / "out"));
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   const auto summary = nlohmann::json::parse(read_file(folder / "out/summary.json"));
   ASSERT_FALSE(summary["findings"].empty());

@@ -25,6 +25,26 @@ TEST(TaskJacobian, EqualAxesShareAVelocityEqually) {
   EXPECT_TRUE(y.isApprox(Eigen::Vector4d(0.5, 0.5, 0.5, 0.25), 1e-14)) << y.transpose();
 }
 
+// Well conditioned square ones are solved by elimination, others by singular values: both sides of the bound
+// solve alike.
+TEST(TaskJacobian, SquareOnesAreSolvedWhateverTheirCondition) {
+  for (const double small : {1.0, 1e-3, 1e-5, 1e-7}) {
+    TaskJacobian J(3, 3);
+    J << 2, 1, 0,  //
+        0, 1, 1,   //
+        2, 2, 1 + small;
+    // Third row less the first two: small * y3.
+    AxisColumn y;
+    ASSERT_TRUE(solve_by_singular_values(J, Eigen::Vector3d(5, 5, 10 + 3 * small), y)) << small;
+    EXPECT_TRUE(y.isApprox(Eigen::Vector3d(1.5, 2, 3), 1e-15 / small * 30)) << small << ": " << y.transpose();
+  }
+  TaskJacobian J(2, 2);
+  J << 1, 1, 1, 1;
+  AxisColumn y;
+  EXPECT_FALSE(solve_by_singular_values(J, Eigen::Vector2d(1, 1), y));
+  EXPECT_TRUE(y.isApprox(Eigen::Vector2d(0.5, 0.5), 1e-14)) << y.transpose();
+}
+
 TEST(TaskJacobian, ALostDirectionIsLeftOutAndSaid) {
   AxisColumn y;
   EXPECT_FALSE(solve_by_singular_values(four_axes(1e-10), Eigen::Vector3d(1, 1, 1), y));
