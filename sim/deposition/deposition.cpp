@@ -6,6 +6,7 @@
 #include <deque>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "geometry/printed_clearance.h"
@@ -24,6 +25,8 @@ constexpr double kRounding = 1e-9;   // [m], of a gap: coordinates of 0.1 m thro
 constexpr double kThinnest = 1e-6;   // [m]: what is thinner has a volume but is in nobody's way
 constexpr double kFills = 0.99;      // of the gap
 constexpr double kSide = 0.35;       // of the width, where an overhang is felt for
+constexpr double kPlunge = 0.7;      // cosine to the tool axis, of a tip that goes ahead into what it feeds
+constexpr double kLongestHang = 10;  // bores, of path: slicers come down by 0.2 to 2 mm
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PathPoint between(const PathPoint& a, const PathPoint& b, double f, double gap) {
@@ -83,6 +86,7 @@ struct DepositionObserver::State {
         options(std::move(with)),
         filament_area(std::numbers::pi / 4 * machine.tool.filament_diameter * machine.tool.filament_diameter),
         nozzle_flat(machine.tool.flat_diameter),
+        longest_hang(kLongestHang * machine.tool.nozzle_diameter),
         stated(gap_band(machine.gap)),
         band(stated),
         extruder(machine.process.extruder_lag),
@@ -96,6 +100,7 @@ struct DepositionObserver::State {
   DepositionOptions options;
   double filament_area;  // [m^2]
   double nozzle_flat;    // [m]
+  double longest_hang;   // [m]
   GapBand stated, band;  // of the machine, and of the line that is printed
   Extruder extruder;
   BeadBuilder builder;
@@ -107,7 +112,9 @@ struct DepositionObserver::State {
   Ground ground;                                 // at `last`
   double most_filament = 0, first_filament = 0;  // [m]
   UnsupportedStretchRecorder::Conditions conditions;
-  double usual_height;  // [m], of the last element that sticks: what a fused one gets
+  double usual_height;      // [m], of the last element that sticks: what a fused one gets
+  double hanging = 0;       // [m^3], fed while the tip came down through the air: a drop at the nozzle
+  double hanging_path = 0;  // [m], of that way
   bool flows = false;
   bool started = false;
   bool emptied = false;  // the nozzle, after the end
@@ -253,6 +260,20 @@ struct DepositionObserver::State {
     }
   }
 
+  /// The tip comes down along the tool, from where nothing was in reach.
+  bool comes_down(const Snapshot& now, const Vec3& heading, const Ground& before) const {
+    return (hanging > 0 || before.gap > band.high + kRounding) &&
+           heading.dot(tool_axis(now.X_WT)) < -kPlunge * heading.norm();
+  }
+
+  /// The drop comes to lie where the tip came down to, at `last`.
+  void lay_hanging(const Ground& below) {
+    const PathPoint at{last->time, last->X_WT.translation(), tool_axis(last->X_WT), below.gap};
+    if (!started) totals.start_gap = at.gap;
+    started = true;
+    extrude(at, at, below, std::exchange(hanging, 0.0), last->line);
+  }
+
   void observe(const Snapshot& now) {
     const Vec3 heading = now.X_WT.translation() - last->X_WT.translation();
     const double step = heading.norm(), fed = now.filament - last->filament;
@@ -266,6 +287,16 @@ struct DepositionObserver::State {
     conditions.fan = now.fan;
     const double volume = flow.filament * filament_area;
     flows = volume > 0 && fed > 0;
+    const bool down = comes_down(now, heading, before);
+    hanging_path = down ? hanging_path + step : 0;
+    const bool may_hang = down && hanging_path <= longest_hang;
+    if (hanging > 0 && !may_hang) lay_hanging(before);
+    if (flows && may_hang) {
+      flows = false;
+      hanging += volume;
+      builder.pause(step);
+      return;
+    }
     if (!flows) {
       if (volume > 0) builder.ooze(volume);
       builder.pause(step);
@@ -297,6 +328,7 @@ void DepositionObserver::observe(const Snapshot& snapshot) {
 
 void DepositionObserver::finish() {
   State& s = *state_;
+  if (s.hanging > 0) s.lay_hanging(s.ground);
   if (s.started) s.builder.ooze(s.take_column());
   s.builder.close();
   s.unsupported.finish();
@@ -312,7 +344,7 @@ DepositionSummary DepositionObserver::summary() const {
   DepositionSummary summary = s.totals;
   s.sums.fill(summary);
   summary.extruded_volume = (s.most_filament - s.first_filament) * s.filament_area;
-  summary.column_volume = s.column() + s.builder.carried_volume();
+  summary.column_volume = s.column() + s.builder.carried_volume() + s.hanging;
   return summary;
 }
 

@@ -85,7 +85,7 @@ struct DepositionSummary {
   /// [m^3], fed at a standstill and left behind: elements without length, and drops that fall, which come out
   /// by themselves with nothing below and are shorter than wide.
   double standstill_volume = 0;
-  double column_volume = 0;  ///< [m^3], not laid: what still presses to come out
+  double column_volume = 0;  ///< [m^3], not laid: what still presses to come out, and a drop at the nozzle
   std::size_t beads = 0;
 };
 
@@ -104,6 +104,10 @@ struct DepositionOptions {
 /// stretches do not depend on the snapshots' rate where the true motion is. What lies below is the workpiece
 /// without the freshest material, which is still under the nozzle: the last nozzle flat and two bead widths
 /// of path.
+///
+/// What is fed while the tip comes down along the tool through the air, as after a travel, hangs from the
+/// nozzle, and comes to lie where the tip stops coming down. After ten bores of path it is laid on the way
+/// instead, as a strut that is drawn downwards, and the nozzle runs into it.
 ///
 /// Beyond one ray along the tool axis, an element whose middle has nothing in reach is held where half of
 /// its width has (an overhang).

@@ -15,17 +15,20 @@ const { chromium } = require('playwright-core');
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 const browser = await chromium.launch({ executablePath: program, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
 
-/** The page of a sample, and what its console complained of. */
+const withoutWebGl = () => { HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+  apply: (target, self, [type, ...rest]) => (/webgl/.test(type) ? null : Reflect.apply(target, self, [type, ...rest])) }); };
+
+/** The page of a sample, and what its console complained of. `flat`: without the picture of the machine, which takes most of the time. */
 async function open(name, options = {}) {
-  const { init, allow, ...context } = options;
+  const { flat, ...context } = options;
   const held = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...context });
   const page = await held.newPage();
   page.setDefaultTimeout(120000);  // beside other work a browser takes long
   page.faults = [];
-  page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text())) page.faults.push(message.text()); });
+  page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !(flat ? /creating WebGL context/ : /GPU stall|GL Driver/).test(message.text())) page.faults.push(message.text()); });
   page.on('pageerror', (error) => page.faults.push(String(error)));
   page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) page.faults.push('asks for ' + request.url()); });
-  if (init) await page.addInitScript(init);
+  if (flat) await page.addInitScript(withoutWebGl);
   page.session = await held.newCDPSession(page);
   await page.session.send('Performance.enable', { timeDomain: 'threadTicks' });
   await page.goto(pathToFileURL(name.includes('/') ? name : join(samples, name, 'report.html')).href);
@@ -48,7 +51,7 @@ const tests = {
     }
   },
   async 'a finding that is pressed moves replay, program and readings to its place'() {
-    const page = await open('no-go');
+    const page = await open('no-go', { flat: true });
     const record = await page.$eval('#record', (node) => JSON.parse(node.textContent));
     const groups = record.summary.finding_groups;
     for (const i of [1, 0]) {
@@ -61,7 +64,7 @@ const tests = {
     await page.context().close();
   },
   async 'causes are grouped, ahead of what comes of them, and each finding is folded'() {
-    const page = await open('no-go');
+    const page = await open('no-go', { flat: true });
     assert.equal(await page.textContent('.verdict strong'), 'NO-GO');
     assert.equal(await page.locator('.causes > ol .severity.error').count(), 2);
     assert.equal(await page.locator('.causes > ol .severity.warning').count(), 1);
@@ -74,11 +77,11 @@ const tests = {
     await page.context().close();
   },
   async 'curves before and after a calibration, and what the controller believes'() {
-    const page = await open('calibrated');
+    const page = await open('calibrated', { flat: true });
     assert.equal(await page.locator('.comparison').count(), 1);
     assert.match(await page.textContent('.comparison'), /100/);
     await page.context().close();
-    const other = await open('believing');
+    const other = await open('believing', { flat: true });
     assert.match(await other.textContent('.plots'), /Blue band: what the controller believes.*inside on 25\.0/s);
     await other.context().close();
     const stopped = await open('stopped');
@@ -148,7 +151,7 @@ const tests = {
     await page.context().close();
   },
   async 'loads, temperature and clearance are curves over time, and a press on each moves the replay'() {
-    const page = await open('go');
+    const page = await open('go', { flat: true });
     const figure = (title) => page.locator('.plot-grid figure', { has: page.locator('b', { hasText: title }) });
     for (const title of ['Clearance of the nozzle', 'Temperature', 'Strut forces']) {
       const over = figure(title).locator('.u-over');
@@ -164,13 +167,13 @@ const tests = {
     assert.match(await figure('Temperature').textContent(), /glass transition, 60\u00a0°C/);
     assert.deepEqual(page.faults, []);
     await page.context().close();
-    const older = await open('without-gap-control');
+    const older = await open('without-gap-control', { flat: true });
     assert.equal(await older.locator('.plot-grid b', { hasText: /Clearance of|Temperature|Strut forces/ }).count(), 0);
     assert.ok(await older.locator('.plot-grid figure').count() > 3);
     await older.context().close();
   },
   async 'a press on a curve moves the replay'() {
-    const page = await open('go');
+    const page = await open('go', { flat: true });
     const over = page.locator('.plot-grid figure').nth(-1).locator('.u-over');
     await over.scrollIntoViewIfNeeded();
     const before = await time(page), box = await over.boundingBox();
@@ -189,7 +192,7 @@ const tests = {
   },
   async 'nothing is wider than the screen, from a phone to a wall'() {
     for (const name of ['no-go', 'stopped', 'hostile']) {
-      const page = await open(name, { viewport: { width: 390, height: 844 } });
+      const page = await open(name, { flat: name !== 'no-go', viewport: { width: 390, height: 844 } });
       await page.evaluate(() => { for (const d of document.querySelectorAll('details')) d.open = true; });
       for (const width of [390, 1280, 1920]) {
         await page.setViewportSize({ width, height: 844 });
@@ -201,7 +204,7 @@ const tests = {
     }
   },
   async 'paper shows the pictures, every folded part and no controls'() {
-    const page = await open('no-go');
+    const page = await open('no-go', { flat: true });
     await page.emulateMedia({ media: 'print' });
     await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
     const seen = (selector) => page.locator(selector).first().isVisible();
@@ -213,7 +216,7 @@ const tests = {
   async 'axe finds nothing serious'() {
     for (const colorScheme of ['light', 'dark'])
       for (const name of ['no-go', 'stopped']) {
-        const page = await open(name, { colorScheme, bypassCSP: true });
+        const page = await open(name, { colorScheme, flat: colorScheme === 'dark', bypassCSP: true });
         await page.evaluate(() => { for (const d of document.querySelectorAll('details')) d.open = true; });
         await page.evaluate(axe);
         const found = await page.evaluate(() => axe.run());
@@ -224,8 +227,7 @@ const tests = {
       }
   },
   async 'without WebGL the rest of the page works and says so'() {
-    const page = await open('no-go', { init: () => { HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
-      apply: (target, self, [type, ...rest]) => (/webgl/.test(type) ? null : Reflect.apply(target, self, [type, ...rest])) }); } });
+    const page = await open('no-go', { flat: true });
     assert.match(await page.textContent('.no-webgl'), /no WebGL/);
     await page.click('.causes .cause');
     assert.ok(await line(page) > 0);
@@ -263,7 +265,7 @@ const tests = {
     await page.context().close();
   },
   async 'names and comments stay text'() {
-    const page = await open('hostile');
+    const page = await open('hostile', { flat: true });
     assert.equal(await page.evaluate(() => window.evil), undefined);
     assert.match(await page.textContent('.program'), /<\/script><script>/);
     assert.deepEqual(page.faults, []);
@@ -283,7 +285,7 @@ const tests = {
     for (const [name, [data, words]] of Object.entries(variants)) {
       const file = join(samples, 'damaged.html');
       writeFileSync(file, head + 'id="record">' + data.replace(/</g, '\\u003c') + rest.slice(end));
-      const page = await open(file);
+      const page = await open(file, { flat: name !== 'with a broken replay' });
       assert.match(await page.textContent('#page'), words, name);
       assert.deepEqual(page.faults.filter((fault) => !/invalid zlib|Error/.test(fault)), [], name);
       await page.context().close();

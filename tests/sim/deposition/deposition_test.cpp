@@ -215,6 +215,55 @@ TEST(Deposition, FilamentFedAtAStandstillGoesIntoTheElementThatFollows) {
   EXPECT_NEAR(observer.total_volume(), kFilamentArea * 2e-4, 1e-9 * observer.total_volume());
 }
 
+// After a travel a slicer feeds what the nozzle had lost while it comes down to the layer: 1.2 mm^3 over 2
+// mm. It hangs from the nozzle, and is pressed out where the line begins.
+TEST(Deposition, FilamentFedOnTheWayDownLiesWhereTheLineBegins) {
+  Laying observer(printer());
+  constexpr double kGap = 0.15e-3, kHung = 0.5e-3, kLine = 10e-3, kFed = 0.03;
+  observer.run(200, [&](double t) { return at(t, Vec3(0, 0, kGap + (1 - t) * 2e-3), t * kHung); });
+  observer.run(200, [&](double t) { return at(1 + t, Vec3(t * kLine, 0, kGap), kHung + t * kLine * kFed); });
+  EXPECT_TRUE(observer.unsupported_stretches().empty());
+  EXPECT_NEAR(observer.summary().start_gap, kGap, 1e-12);
+  EXPECT_NEAR(observer.summary().length, kLine, 1e-9);
+  EXPECT_NEAR(observer.total_volume(), kFilamentArea * (kHung + kLine * kFed), 1e-9 * kFilamentArea * kHung);
+  const LaidBead& disc = observer.beads().front();
+  EXPECT_NEAR(disc.from_W.norm(), 0, 1e-12);
+  // A disc of the volume, drawn out by the tenth of a millimetre in which the line begins.
+  EXPECT_NEAR(disc.width, std::sqrt(4 * kFilamentArea * kHung / (std::numbers::pi * kGap)), 0.06e-3);
+  for (const LaidBead& bead : observer.beads()) EXPECT_LE(bead.height, kGap * (1 + 1e-9));
+}
+
+// Without a line at its end the drop stays where the nozzle stopped; and it is part of what has not been laid
+// until then.
+TEST(Deposition, ADropFromTheWayDownStaysWhereTheNozzleStopped) {
+  Laying observer(printer());
+  constexpr double kGap = 0.15e-3, kHung = 0.5e-3;
+  observer.run(200, [&](double t) { return at(t, Vec3(0, 0, kGap + (1 - t) * 2e-3), t * kHung); });
+  EXPECT_NEAR(observer.observer().summary().column_volume, kFilamentArea * kHung,
+              1e-9 * kFilamentArea * kHung);
+  observer.observe(at(1.1, Vec3(20e-3, 0, kGap), kHung));
+  const auto& beads = observer.beads();
+  ASSERT_EQ(beads.size(), 1u);
+  EXPECT_EQ(beads[0].adhesion, Adhesion::sticks);
+  EXPECT_NEAR(beads[0].to_W.norm(), 0, 1e-12);
+  EXPECT_NEAR(observer.summary().standstill_volume, kFilamentArea * kHung, 1e-9 * kFilamentArea * kHung);
+}
+
+// Ten bores, 4 mm, are more than slicers lift a nozzle: a strut that is drawn downwards is in the nozzle's
+// way.
+TEST(Deposition, AStrutThatIsDrawnDownwardsIsLaidOnTheWay) {
+  Laying observer(printer());
+  constexpr double kFed = 1e-3, kWay = 20e-3, kHang = 4e-3;
+  observer.run(2000, [](double t) { return at(t, Vec3(0, 0, 0.15e-3 + (1 - t) * kWay), t * kFed); });
+  const auto stretches = observer.unsupported_stretches();
+  ASSERT_FALSE(stretches.empty());
+  double length = 0;
+  for (const auto& stretch : stretches) length += stretch.length;
+  // The band begins 0.05 mm above the end; the drop takes the first element, a tenth of a millimetre.
+  EXPECT_NEAR(length, kWay - kHang - 0.05e-3, 0.15e-3);
+  EXPECT_NEAR(observer.total_volume(), kFilamentArea * kFed, 1e-9 * kFilamentArea * kFed);
+}
+
 // Round a tight curve the elements are shorter than they are wide; the line has the section's width all
 // along.
 TEST(Deposition, AShortPieceOfALineIsAsWideAsTheLine) {
