@@ -75,8 +75,8 @@ void print_process(const rehearsal::Inspection& found) {
   if (found.nozzle) fmt::print(", {:.2f} mm for the slicer", to_mm(*found.nozzle));
   fmt::print("; ");
   const auto& temperatures = found.summary.temperatures;
-  if (temperatures.empty())
-    fmt::print("no temperature is set\n");
+  if (const auto& chosen = found.request.dialect.temperature_c; temperatures.empty())
+    fmt::print("no temperature is set{}\n", chosen ? fmt::format(", {:.0f} C is taken", *chosen) : "");
   else
     for (std::size_t i = 0; i < temperatures.size(); ++i)
       fmt::print("{}{:.0f}{}", i ? ", " : "", temperatures[i] - kCelsiusZero,

@@ -15,6 +15,7 @@
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "machine/material.h"
 #include "rehearsal/inspection/extruder_letter.h"
 #include "rehearsal/inspection/inspect_robot.h"
 #include "rehearsal/inspection/place_on_table.h"
@@ -188,6 +189,10 @@ class Inspector {
         result_.request.dialect.temperature_c = *said;
         return;
       }
+    if (result_.summary.printed && !machine_.process.material.empty()) {
+      const machine::Material material = machine::load_material(machine_.process.material);
+      result_.request.dialect.temperature_c = std::round(material.nozzle_temperature - kCelsiusZero);
+    }
   }
 
   /// Onto the table, and to its middle where it does not lie on it.

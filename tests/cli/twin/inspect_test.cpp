@@ -21,7 +21,7 @@ TEST(Inspect, SaysWhatAProgramUsesAndHowToRehearseIt) {
   EXPECT_THAT(seen.out, HasSubstr("unknown word 'START_PRINT': 1 line, the first is 2"));
   EXPECT_THAT(seen.out, HasSubstr("prints 2 moves from (100.00, 100.00, 0.30) to (120.00, 100.00, 0.50) mm"));
   EXPECT_THAT(seen.out, HasSubstr("the first 0.300 mm above z = 0, then 1 of 0.200 mm"));
-  EXPECT_THAT(seen.out, HasSubstr("0.40 mm for the slicer; no temperature is set"));
+  EXPECT_THAT(seen.out, HasSubstr("0.40 mm for the slicer; no temperature is set, 200 C is taken\n"));
   const auto command = seen.out.find("understudy rehearse");
   ASSERT_NE(command, std::string::npos);
   std::string words = seen.out.substr(command + 11);
@@ -30,6 +30,16 @@ TEST(Inspect, SaysWhatAProgramUsesAndHowToRehearseIt) {
   const Outcome rehearsed =
       understudy(words + " --engine quasistatic --no-pictures --out " + (folder / "out"));
   EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
+}
+
+// As FullControl writes programs: the command can be pasted all the same. 210 C: docs/reference.md, "Cooling".
+TEST(Inspect, WithoutATemperatureTheMaterialsOwnIsTaken) {
+  const Folder folder;
+  const std::string program =
+      folder.write("line.gcode", "M83\nG0 F3000 X-5 Y0 Z0.2\nG1 X5 E0.4 F600\nG0 Z9\n");
+  const Outcome seen = understudy("inspect " + program + " --machine five-axis");
+  EXPECT_THAT(seen.out, HasSubstr("no temperature is set, 210 C is taken\n"));
+  EXPECT_THAT(seen.out, HasSubstr(" --temperature 210 --out line"));
 }
 
 TEST(Inspect, WordsThatTheMachineLacksLeadToOneThatHasThem) {
