@@ -183,6 +183,9 @@ class Inspector {
     if (const auto nozzle = result_.nozzle; !dialect.nozzle_mm && nozzle && *nozzle > 0 && bore > 0 &&
                                             std::abs(to_mm(*nozzle) - bore) > kSameNozzle * bore)
       dialect.nozzle_mm = std::round(1e3 * to_mm(*nozzle)) / 1e3;
+    const auto filament = other_filament(machine_.tool, result_.slicer_facts);
+    if (filament && result_.request.machine.find('{') == std::string::npos)
+      result_.request.machine += fmt::format("{{tool.filament_diameter_mm: {:g}}}", *filament);
     if (!result_.summary.temperatures.empty() || dialect.temperature_c) return;
     for (const char* key : {"first_layer_temperature", "temperature"})
       if (const auto said = fact_number(result_.slicer_facts, key); said && *said > 0 && *said <= kWarmest) {
@@ -223,7 +226,8 @@ Inspection inspect(const std::string& program, const std::string& machine, const
 
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder) {
   const DialectRequest& dialect = request.dialect;
-  std::string command = fmt::format("understudy rehearse {} --machine {}", request.program, request.machine);
+  std::string command =
+      fmt::format("understudy rehearse {} --machine {}", quoted(request.program), quoted(request.machine));
   if (dialect.place_auto)
     command += " --place auto";
   else if (dialect.place_mm != std::array<double, 3>{0, 0, 0})

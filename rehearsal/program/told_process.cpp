@@ -76,6 +76,15 @@ std::optional<Finding> other_flow(const toolpath::Program& program,
                  kOtherFlow};
 }
 
+std::optional<double> other_filament(const machine::Tool& tool,
+                                     const std::map<std::string, std::string>& facts) {
+  const double filament = to_mm(tool.filament_diameter);
+  const auto said = fact_number(facts, "filament_diameter");
+  const bool other =
+      tool.prints() && said && *said > 0 && std::abs(*said - filament) > kSameFilament * filament;
+  return other ? said : std::nullopt;
+}
+
 std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,
                                       const std::map<std::string, std::string>& facts, double typical_layer) {
   std::vector<Finding> findings;
@@ -86,13 +95,13 @@ std::vector<Finding> process_warnings(const DialectRequest& dialect, const machi
         warning(*sliced, bore,
                 fmt::format("sliced for a nozzle of {:g} mm, rehearsed with one of {:g} mm", *sliced, bore),
                 kOtherNozzle));
-  const double filament = to_mm(tool.filament_diameter);
-  const auto sold = fact_number(facts, "filament_diameter");
-  if (tool.prints() && sold && *sold > 0 && std::abs(*sold - filament) > kSameFilament * filament)
-    findings.push_back(
-        warning(*sold, filament,
-                fmt::format("sliced for filament of {:g} mm, rehearsed with one of {:g} mm", *sold, filament),
-                kOtherFilament));
+  if (const auto sliced_for = other_filament(tool, facts)) {
+    const double filament = to_mm(tool.filament_diameter);
+    findings.push_back(warning(
+        *sliced_for, filament,
+        fmt::format("sliced for filament of {:g} mm, rehearsed with one of {:g} mm", *sliced_for, filament),
+        kOtherFilament));
+  }
   const double layer = to_mm(typical_layer);
   if (dialect.layer_mm && layer > 0 && std::abs(layer - *dialect.layer_mm) > kSameLayer * *dialect.layer_mm)
     findings.push_back(warning(layer, *dialect.layer_mm,

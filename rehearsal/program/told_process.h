@@ -23,6 +23,10 @@ void mount_nozzle(machine::Tool& tool, double bore);
 /// [m], of the request or the comments; 0: neither tells.
 double told_layer(const DialectRequest& dialect, const std::map<std::string, std::string>& facts);
 
+/// [mm] of the filament that the slicer worked for, where the tool has another.
+std::optional<double> other_filament(const machine::Tool& tool,
+                                     const std::map<std::string, std::string>& facts);
+
 /// Warnings: the slicer worked for another nozzle or filament than what is there; the request's layer is not
 /// the one [m] that most of the path has (0: none).
 std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,

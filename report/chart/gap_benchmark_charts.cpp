@@ -41,7 +41,7 @@ std::string bars(const std::string& title, const std::string& unit, double full,
 std::string gap_chart(const studies::BottleRow& row, const studies::GapBenchmark& b) {
   constexpr double kLow = -0.2, kHigh = 0.5;  // [mm], drawn
   const auto drawn = [&](double gap_mm) { return std::clamp(gap_mm, kLow, kHigh); };
-  SvgChart chart({360, 260, 56, 8, 8, 36}, Scale::linear(0, 100), Scale::linear(kLow, kHigh));
+  SvgChart chart({360, 260, 56, 16, 8, 36}, Scale::linear(0, 100), Scale::linear(kLow, kHigh));
   chart.band({{0, b.band_min_mm}, {100, b.band_min_mm}}, {{0, b.band_max_mm}, {100, b.band_max_mm}},
              series_colour(2));
   chart.y_axis("gap, mm");

@@ -115,7 +115,7 @@ std::string campaign_html(const Campaign& campaign, const CampaignResult& result
       html_text(campaign.name));
   html += kPageStyle;
   html += fmt::format(
-      "</style></head><body><main><p class=\"eyebrow\">understudy {}</p><h1>Campaign: {}</h1>\n<p "
+      "</style></head><body><main><p class=\"eyebrow\">Understudy {}</p><h1>Campaign: {}</h1>\n<p "
       "class=\"note\">{}</p>\n<p class=\"note\">{} of {} runs, plan {}, seeds {} to {}{}. Probabilities with "
       "exact "
       "intervals of {:g} % (GO: {:g} %, {} look{}), quantiles with intervals of {:g} % by bootstrap.</p>\n",

@@ -82,7 +82,7 @@ std::string comparison_html(const RehearsalComparison& comparison, const Recorde
   html += kPageStyle;
   html += kStyle;
   html += fmt::format(
-      "</style></head><body><main id=\"page\" data-ready><p class=\"eyebrow\">understudy {}</p><h1>Two "
+      "</style></head><body><main id=\"page\" data-ready><p class=\"eyebrow\">Understudy {}</p><h1>Two "
       "rehearsals: A {}, "
       "B {}</h1>\n"
       "<div class=\"verdict {}\"><strong>{}</strong><div><p class=\"reason\">{}.</p></div></div>\n"

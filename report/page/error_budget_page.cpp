@@ -55,7 +55,7 @@ std::string error_budget_html(const ErrorBudget& budget) {
       "<title>Error budget</title>\n<style>\n";
   html += kPageStyle;
   html += fmt::format(
-      "</style></head><body><main><p class=\"eyebrow\">understudy {}</p><h1>Error budget: {}</h1>\n"
+      "</style></head><body><main><p class=\"eyebrow\">Understudy {}</p><h1>Error budget: {}</h1>\n"
       "<p class=\"note\">{}, gap control {}. {} of them stopped early. <code>{}</code></p>\n"
       "<p class=\"note\">First: the share of the variance that goes when this group alone is known. Total: "
       "the share that stays when all others are known. Bars show 95 % intervals of a bootstrap.</p>\n",

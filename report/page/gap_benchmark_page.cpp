@@ -229,7 +229,7 @@ std::string gap_benchmark_html(const GapBenchmark& b) {
       "<title>Gap benchmark</title>\n<style>\n";
   html += kPageStyle;
   html += fmt::format(
-      "</style></head><body><main><p class=\"eyebrow\">understudy {}</p><h1>Gap benchmark: {}</h1>\n"
+      "</style></head><body><main><p class=\"eyebrow\">Understudy {}</p><h1>Gap benchmark: {}</h1>\n"
       "<p class=\"note\">Aim {:.3f} mm, accepted {:.2f} to {:.2f} mm, seed {}. <code>{}</code></p>\n",
       html_text(kVersion), html_text(b.request.machine), b.aim_mm, b.band_min_mm, b.band_max_mm,
       b.request.seed, html_text(b.request.command));

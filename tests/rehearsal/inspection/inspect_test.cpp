@@ -55,6 +55,15 @@ TEST_F(Inspect, FilamentOnALetterOfItsOwnStaysInTheCommand) {
   EXPECT_THAT(rehearse_command(found.request, "out"), HasSubstr(" --extruder-letter A "));
 }
 
+// The machine's filament of 1.75 mm would be a third of what the slicer counted with.
+TEST_F(Inspect, TheFilamentOfTheCommentsIsLoaded) {
+  const std::string text = "M104 S200\nM83\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n; filament_diameter = ";
+  EXPECT_THAT(rehearse_command(inspect(file(text + "2.85\n"), "corexy").request, "out"),
+              HasSubstr(" --machine 'corexy{tool.filament_diameter_mm: 2.85}' "));
+  EXPECT_THAT(rehearse_command(inspect(file(text + "1.75\n"), "corexy").request, "out"),
+              HasSubstr(" --machine corexy "));
+}
+
 TEST_F(Inspect, FeaturesOfCommentsAreMeasured) {
   const Inspection found = inspect(
       file("M83\nG0 X-5 Y0 Z0.3\n;TYPE:Skirt\nG1 X5 E1 F600\n;TYPE:Perimeter\nG1 Y30 E1\n"), "hexapod");

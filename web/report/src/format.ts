@@ -30,6 +30,11 @@ export const format = {
     return format.number(value, decimals) + gap + format.unit(unit);
   },
 
+  // As given, 0.1 stays 0.1, but to no more decimals than the unit has.
+  given(value: number, unit: string): string { return String(Number(value.toFixed(format.decimals[unit] ?? 3))).replace('-', '\u2212'); },
+
+  range(low: number, high: number, unit: string): string { return format.given(low, unit) + '\u2013' + format.given(high, unit) + '\u00a0' + format.unit(unit); },
+
   count(value: number): string { return String(value).replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f'); },
 
   // Rounded down: 100.0 % means all of it.

@@ -49,7 +49,7 @@ export function modesOf(report: Report, run: Run, sections: Sections, typeNames:
     const gap = along(run.gap);
     modes.push({
       name: 'gap', label: 'Gap', colour: (s) => (isFinite(gap(s)) ? aboutBand(gap(s) / 1000, band.min_mm, band.max_mm) : kUnknown),
-      legend: () => ramp('too near', 'too far; grey: ' + band.min_mm + '\u2013' + band.max_mm + '\u00a0mm', (share) =>
+      legend: () => ramp('too near', 'too far; grey: ' + format.range(band.min_mm, band.max_mm, 'mm'), (share) =>
         aboutBand(band.min_mm + (3 * share - 1) * (band.max_mm - band.min_mm), band.min_mm, band.max_mm)),
       text: (s) => format.quantity(gap(s) / 1000, 'mm'),
     });

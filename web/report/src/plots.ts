@@ -81,8 +81,8 @@ function gap(report: Report): Chart | null {
   const { range, beyond } = nearlyAll(curves, band ? [0, 1.25 * band.max_mm] : [0]);
   return { title: 'Gap along the path', curves, unit: 'mm', decimals: 3, xLabel: 'path (mm)', yLabel: 'gap (mm)', range, belief: held, onPath: true,
     band: band && [band.min_mm, band.max_mm], lines: [...(band ? [{ at: band.aim_mm, colour: styleColour('aim'), dash: [2, 3] }] : []), { at: 0, colour: styleColour('ink'), dash: [] }],
-    note: 'True distance from nozzle to surface along the tool axis.' + (band ? ' Green: the accepted band of ' + band.min_mm + '\u2013' + band.max_mm + '\u00a0mm; dotted: the aim, '
-      + band.aim_mm + '\u00a0mm.' : '') + beliefNote(report, Boolean(held)) + beyondNote(beyond) };
+    note: 'True distance from nozzle to surface along the tool axis.' + (band ? ' Green: the accepted band of ' + format.range(band.min_mm, band.max_mm, 'mm') + '; dotted: the aim, '
+      + format.given(band.aim_mm, 'mm') + '\u00a0mm.' : '') + beliefNote(report, Boolean(held)) + beyondNote(beyond) };
 }
 
 function tip(report: Report): Chart | null {

@@ -31,7 +31,7 @@ function drawKeyFigures(report: Report) {
     tile('Gap at the start', format.quantity(gap.start_mm, 'mm'),
       gap.open_loop_start_mm !== undefined ? 'without gap control ' + format.quantity(gap.open_loop_start_mm, 'mm') : '');
     tile('Path in the band', format.percent(gap.in_band_fraction),
-      band ? 'band ' + band.min_mm + '\u2013' + band.max_mm + '\u00a0mm' : '');
+      band ? 'band ' + format.range(band.min_mm, band.max_mm, 'mm') : '');
   }
   if (accuracy) {
     tile('Largest tip error', format.quantity(accuracy.tip_max_um, 'um'),
