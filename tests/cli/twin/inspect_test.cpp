@@ -32,7 +32,8 @@ TEST(Inspect, SaysWhatAProgramUsesAndHowToRehearseIt) {
   EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
 }
 
-// As FullControl writes programs: the command can be pasted all the same. 210 C: docs/reference.md, "Cooling".
+// As FullControl writes programs: the command can be pasted all the same. 210 C: docs/reference.md,
+// "Cooling".
 TEST(Inspect, WithoutATemperatureTheMaterialsOwnIsTaken) {
   const Folder folder;
   const std::string program =

@@ -30,8 +30,8 @@ void expect_promise(const CompensationStudy& study) {
   EXPECT_GE(study.play_reduction(), kPlayGone);
   for (const CompensatedPrint& print : study.prints)
     EXPECT_LE(print.compensated, kLargestRatio * print.calibrated) << "seed " << print.seed;
-  // A nominal controller is off by what manufacture leaves, or there would be nothing to compensate. Of fifty machines one
-  // may be as drawn by chance.
+  // A nominal controller is off by what manufacture leaves, or there would be nothing to compensate. Of fifty
+  // machines one may be as drawn by chance.
   EXPECT_GT(study.rms(&CompensatedPrint::drawn), 5 * study.rms(&CompensatedPrint::calibrated));
 }
 
