@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -48,6 +49,16 @@ std::string with_small_disk(const std::string& folder, int kilobytes) {
 bool can_make_disks() {
   const Folder folder;
   return std::system((with_small_disk(folder.path().string(), 8) + " true >/dev/null 2>&1").c_str()) == 0;
+}
+
+std::string without_progress(const std::string& err) {
+  std::istringstream lines(err);
+  std::string rest;
+  for (std::string line; std::getline(lines, line);) {
+    const auto after = line.find_first_not_of(" 0123456789");
+    if (after == std::string::npos || line.compare(after, 2, "% ") != 0) rest += line + "\n";
+  }
+  return rest;
 }
 
 Folder::Folder() {

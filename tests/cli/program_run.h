@@ -28,6 +28,10 @@ std::string with_small_disk(const std::string& folder, int kilobytes);
 /// Whether there can be such a disk here.
 bool can_make_disks();
 
+/// What a command wrote to standard error, less the lines that tell how far it is: in a pipe there is one
+/// after each ten seconds, which a slow computer needs.
+std::string without_progress(const std::string& err);
+
 /// A fresh folder that is removed with the object.
 class Folder {
  public:
