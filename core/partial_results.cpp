@@ -18,16 +18,26 @@ Registry& registry() {
   return *the;
 }
 
-constexpr int kRounds = 1000;
+constexpr int kRounds = 20;
 
-/// Other threads may still write into it when the process is ended: what came meanwhile goes in the next
-/// round.
-void take_away(const std::filesystem::path& path) {
+/// False where something came into it meanwhile, each time.
+bool remove_in_rounds(const std::filesystem::path& path) {
   std::error_code ignored;
   for (int round = 0; round < kRounds; ++round) {
     std::filesystem::remove_all(path, ignored);
-    if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return true;
   }
+  return false;
+}
+
+/// Other threads may still write into it when the process is ended. Those that are faster than its removal do
+/// not find it by another name.
+void take_away(const std::filesystem::path& path) {
+  if (remove_in_rounds(path)) return;
+  const std::filesystem::path aside = path.string() + ".removed";
+  std::error_code failed;
+  std::filesystem::rename(path, aside, failed);
+  static_cast<void>(remove_in_rounds(failed ? path : aside));
 }
 
 }  // namespace
