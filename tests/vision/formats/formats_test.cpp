@@ -35,7 +35,9 @@ TEST(Formats, ABitmapIsReadByItsLuminance) {
 TEST(Formats, WhatIsNoPictureAndNoVideoGivesNothing) {
   EXPECT_TRUE(formats().decode_grey("").empty());
   EXPECT_TRUE(formats().decode_grey("x_mm,y_mm\n1,2\n").empty());
+  testing::internal::CaptureStderr();
   EXPECT_TRUE(formats().decode_grey(bitmap().substr(0, 40)).empty());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "what is wrong is said once, by who asked";
   EXPECT_EQ(formats().open_file("absent.mp4"), nullptr);
   EXPECT_EQ(formats().open_device("/dev/null"), nullptr);
   EXPECT_EQ(formats().open_film("absent/film.mp4", "mp4v", 10, {64, 48}), nullptr);

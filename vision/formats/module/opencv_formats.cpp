@@ -1,3 +1,6 @@
+#include <cstdlib>
+#include <iostream>
+#include <string>
 #include <vector>
 
 #include <opencv2/core/utils/logger.hpp>
@@ -37,6 +40,18 @@ void silence() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
 }
 
+/// imdecode() tells std::cerr what it made of a picture that is cut short.
+class QuietStream {
+ public:
+  QuietStream() : told_(std::cerr.rdbuf(nullptr)) {}
+  ~QuietStream() { std::cerr.rdbuf(told_); }
+  QuietStream(const QuietStream&) = delete;
+  QuietStream& operator=(const QuietStream&) = delete;
+
+ private:
+  std::streambuf* told_;
+};
+
 int milliseconds(double seconds) { return static_cast<int>(1e3 * seconds); }
 
 class OpencvFormats : public Formats {
@@ -44,6 +59,7 @@ class OpencvFormats : public Formats {
   cv::Mat decode_grey(const std::string& bytes) const override {
     if (bytes.empty()) return {};
     const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    const QuietStream quiet;
     try {
       return cv::imdecode(raw, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     } catch (const cv::Exception&) {
