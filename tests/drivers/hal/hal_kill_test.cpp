@@ -100,11 +100,15 @@ void kill_and_see(int times, unsigned seed) {
     if (victim == 0) move_until_killed(hal, told[1]);
     ::close(told[1]);
     char ready = 0;
-    ASSERT_EQ(::read(told[0], &ready, 1), 1) << "the controller did not come to print";
+    int status = 0;
+    if (::read(told[0], &ready, 1) != 1) {
+      ::waitpid(victim, &status, 0);
+      FAIL() << "kill " << i << ": the controller did not come to print, and ended with " << status / 256
+             << " (3: fault or refused setpoints), signal " << status % 128;
+    }
     ::close(told[0]);
     std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution(20, 600)(random)));
     ::kill(victim, SIGKILL);
-    int status = 0;
     ASSERT_EQ(::waitpid(victim, &status, 0), victim);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) ++kills;
     // The lead, the watchdog, the brake, and what the samplers are behind.
