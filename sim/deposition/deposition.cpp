@@ -114,7 +114,7 @@ struct DepositionObserver::State {
   UnsupportedStretchRecorder::Conditions conditions;
   double usual_height;      // [m], of the last element that sticks: what a fused one gets
   double hanging = 0;       // [m^3], fed while the tip came down through the air: a drop at the nozzle
-  double hanging_path = 0;  // [m], of that way
+  double hanging_path = 0;  // [m], of that way, from where it began to feed
   bool flows = false;
   bool started = false;
   bool emptied = false;  // the nozzle, after the end
@@ -288,7 +288,8 @@ struct DepositionObserver::State {
     const double volume = flow.filament * filament_area;
     flows = volume > 0 && fed > 0;
     const bool down = comes_down(now, heading, before);
-    hanging_path = down ? hanging_path + step : 0;
+    const bool feeding = flows || hanging_path > 0;
+    hanging_path = down && feeding ? hanging_path + step : 0;
     const bool may_hang = down && hanging_path <= longest_hang;
     if (hanging > 0 && !may_hang) lay_hanging(before);
     if (flows && may_hang) {

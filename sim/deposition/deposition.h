@@ -106,8 +106,8 @@ struct DepositionOptions {
 /// of path.
 ///
 /// What is fed while the tip comes down along the tool through the air, as after a travel, hangs from the
-/// nozzle, and comes to lie where the tip stops coming down. After ten bores of path it is laid on the way
-/// instead, as a strut that is drawn downwards, and the nozzle runs into it.
+/// nozzle, and comes to lie where the tip stops coming down. After ten bores of such path it is laid on the
+/// way instead, as a strut that is drawn downwards, and the nozzle runs into it.
 ///
 /// Beyond one ray along the tool axis, an element whose middle has nothing in reach is held where half of
 /// its width has (an overhang).

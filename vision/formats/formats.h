@@ -30,7 +30,7 @@ class VideoWriter {
 
 /// Of an address: [s] after which no answer is a failure.
 struct NetworkLimits {
-  double open = 5, read = 2;
+  double open, read;
 };
 
 /// Each function returns nothing (an empty picture, a null pointer) where OpenCV cannot do it.

@@ -228,9 +228,21 @@ TEST(Deposition, FilamentFedOnTheWayDownLiesWhereTheLineBegins) {
   EXPECT_NEAR(observer.total_volume(), kFilamentArea * (kHung + kLine * kFed), 1e-9 * kFilamentArea * kHung);
   const LaidBead& disc = observer.beads().front();
   EXPECT_NEAR(disc.from_W.norm(), 0, 1e-12);
-  // A disc of the volume, drawn out by the tenth of a millimetre in which the line begins.
-  EXPECT_NEAR(disc.width, std::sqrt(4 * kFilamentArea * kHung / (std::numbers::pi * kGap)), 0.06e-3);
+  // Drawn out by the 0.1 mm L in which the line begins: L w + pi w^2 / 4 is the footprint, so w is less by 2
+  // L / pi. The line's own 0.6 % of the volume is in it.
+  const double round = std::sqrt(4 * kFilamentArea * kHung / (std::numbers::pi * kGap));
+  EXPECT_NEAR(disc.width, round - 2 / std::numbers::pi * 0.1e-3, 0.02e-3);
   for (const LaidBead& bead : observer.beads()) EXPECT_LE(bead.height, kGap * (1 + 1e-9));
+}
+
+// However far it came down before without feeding.
+TEST(Deposition, ALongWayDownBeforeTheFeedChangesNothing) {
+  Laying observer(printer());
+  constexpr double kGap = 0.15e-3, kHung = 0.5e-3;
+  observer.run(300, [&](double t) { return at(t, Vec3(0, 0, kGap + 2e-3 + (1 - t) * 30e-3), 0); });
+  observer.run(200, [&](double t) { return at(1 + t, Vec3(0, 0, kGap + (1 - t) * 2e-3), t * kHung); });
+  EXPECT_TRUE(observer.unsupported_stretches().empty());
+  EXPECT_NEAR(observer.summary().start_gap, kGap, 1e-12);
 }
 
 // Without a line at its end the drop stays where the nozzle stopped; and it is part of what has not been laid

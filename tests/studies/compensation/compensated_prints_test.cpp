@@ -28,10 +28,14 @@ constexpr double kLargestRatio = 1.3, kPlayGone = 0.5;
 void expect_promise(const CompensationStudy& study) {
   EXPECT_LE(study.ratio(), kLargestRatio);
   EXPECT_GE(study.play_reduction(), kPlayGone);
-  for (const CompensatedPrint& print : study.prints)
-    EXPECT_LE(print.compensated, kLargestRatio * print.calibrated) << "seed " << print.seed;
   // A nominal controller is off by what manufacture leaves, or there would be nothing to compensate. Of fifty
   // machines one may be as drawn by chance.
+  std::size_t as_drawn = 0;
+  for (const CompensatedPrint& print : study.prints) {
+    EXPECT_LE(print.compensated, kLargestRatio * print.calibrated) << "seed " << print.seed;
+    if (print.drawn <= 2 * print.calibrated) ++as_drawn;
+  }
+  EXPECT_LE(as_drawn, study.prints.size() / 50);
   EXPECT_GT(study.rms(&CompensatedPrint::drawn), 5 * study.rms(&CompensatedPrint::calibrated));
 }
 
