@@ -238,9 +238,11 @@ TEST(Deposition, FilamentFedOnTheWayDownLiesWhereTheLineBegins) {
 // However far it came down before without feeding.
 TEST(Deposition, ALongWayDownBeforeTheFeedChangesNothing) {
   Laying observer(printer());
-  constexpr double kGap = 0.15e-3, kHung = 0.5e-3;
-  observer.run(300, [&](double t) { return at(t, Vec3(0, 0, kGap + 2e-3 + (1 - t) * 30e-3), 0); });
-  observer.run(200, [&](double t) { return at(1 + t, Vec3(0, 0, kGap + (1 - t) * 2e-3), t * kHung); });
+  constexpr double kGap = 0.15e-3, kHung = 0.5e-3, kWay = 32e-3, kFeeding = 2e-3;
+  observer.run(3200, [&](double t) {
+    const double left = (1 - t) * kWay;
+    return at(t, Vec3(0, 0, kGap + left), std::max(0.0, 1 - left / kFeeding) * kHung);
+  });
   EXPECT_TRUE(observer.unsupported_stretches().empty());
   EXPECT_NEAR(observer.summary().start_gap, kGap, 1e-12);
 }
