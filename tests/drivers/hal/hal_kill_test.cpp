@@ -18,10 +18,11 @@ namespace {
 constexpr double kVictimLead = 0.3;  // [s]
 constexpr double kWatchdog = 0.05;   // [s]
 
-/// Moves all axes up and down without end on the HAL that runs; never returns.
-[[noreturn]] void move_until_killed(const HalMachine& hal, int told) {
+/// Moves all axes up and down from `home` without end on the HAL that runs; never returns. The first period comes from
+/// where the death before left the machine: without that it would climb from death to death until its limits refuse.
+[[noreturn]] void move_until_killed(const HalMachine& hal, const machine::AxisVector& home, int told) {
   const auto port = hal.attach(kVictimLead);
-  const machine::AxisVector start = port->state().position;
+  const machine::AxisVector left = port->state().position;
   constexpr double kPeriod = 0.5;  // [s]
   constexpr double kDepth = 2e-3;  // [m]
   double from = port->now();
@@ -31,12 +32,16 @@ constexpr double kWatchdog = 0.05;   // [s]
       const double phase = 2 * std::numbers::pi * i / 500;
       machine::Setpoint s;
       s.time = from + i * 1e-3;
-      s.position = start;
+      s.position = home;
       for (std::size_t axis = 0; axis < 6; ++axis) {
         // Each axis at its own phase about its place, so that never all of them rest.
         const double own = axis < 3 ? phase : 2 * phase;
         s.position[axis] += kDepth * (1 - std::cos(own)) / 2;
         s.velocity[axis] = kDepth * std::sin(own) / 2 * 2 * std::numbers::pi / kPeriod * (axis < 3 ? 1 : 2);
+        if (first) {
+          s.position[axis] += (left[axis] - home[axis]) * (1 + std::cos(phase / 2)) / 2;
+          s.velocity[axis] -= (left[axis] - home[axis]) * std::sin(phase / 2) / 2 * std::numbers::pi / kPeriod;
+        }
       }
       setpoints.push_back(s);
     }
@@ -87,6 +92,8 @@ void kill_and_see(int times, unsigned seed) {
   const HalMachine hal(options);
   const RunningHal running(hal);
   HalRecorder recorder(hal, 2);
+  machine::AxisVector home;
+  for (std::size_t axis = 0; axis < 6; ++axis) home[axis] = hal.settings().axes[axis].si(hal.settings().axes[axis].home);
   std::mt19937 random(seed);
   int worst_starved = 0, deepest = 0, kills = 0;
   std::size_t begin = 0;
@@ -97,7 +104,7 @@ void kill_and_see(int times, unsigned seed) {
     std::fflush(nullptr);
     const pid_t victim = ::fork();
     ASSERT_GE(victim, 0);
-    if (victim == 0) move_until_killed(hal, told[1]);
+    if (victim == 0) move_until_killed(hal, home, told[1]);
     ::close(told[1]);
     char ready = 0;
     int status = 0;
