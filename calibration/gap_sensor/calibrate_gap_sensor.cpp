@@ -90,7 +90,8 @@ void check_explained(const GapSensorResult& result) {
       {result.file, seen[index]->row.line, 0},
       fmt::format("the dot of {} is {:.2f} px ({:.1f} sigma) from where the fitted optics have it, "
                   "the worst of dots that they do not explain: chi-square {:.1f} of {} degrees of "
-                  "freedom, at most {:.1f}",
+                  "freedom, at most {:.1f}; look at it: where the nozzle hides a part of the dot, mount the "
+                  "microscope so that it sees the whole one, else measure that height again",
                   seen[index]->row.picture, fit.residual_px[index].norm(), *worst, fit.chi_square,
                   fit.degrees_of_freedom, limit));
 }
