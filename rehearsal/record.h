@@ -195,7 +195,7 @@ struct Record {
   std::vector<Finding> findings;  ///< errors first, then by line
   std::string title;              ///< "curved-line.gcode on hexapod"
   std::string program_name, machine_name, fixture_name, gap_control;
-  std::string machine_word;                   ///< as `--machine` took it
+  std::string program_word, machine_word;     ///< as the command line and `--machine` took them
   std::array<double, 3> place_mm{0, 0, 0};    ///< where the program's origin stands in W
   std::optional<PlacementFigures> placement;  ///< where the place was found, not given
   bool measures_gap = false;                  ///< the machine has laser and microscope

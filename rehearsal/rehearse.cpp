@@ -48,6 +48,7 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
                        : mode == control::GapControl::start ? "start"
                                                             : "continuous";
   record.as_built = sim::write_as_built(setup.as_built);
+  record.program_word = request.program;
   record.machine_word = request.machine;
   record.place_mm = request.dialect.place_mm;
   record.measures_gap = setup.machine.has_microscope;

@@ -3,7 +3,8 @@
 
     python3 scripts/real_programs.py build/release/cli/understudy --clones FOLDER > table.md
 
-Reads scripts/real_programs.csv: tool, repository (owner/name on GitHub), commit, path, machine, further options. FOLDER/owner+name is a clone
+Reads scripts/real_programs.csv: tool, repository (owner/name on GitHub), commit, path, machine, further options, and what is expected:
+read, refused, or `read: crossing 1 -1`, the reading of its rotary words that comes first. FOLDER/owner+name is a clone
 of the repository; one that is not there is fetched, without its files, from --from. Exit status 1: a program was answered otherwise than
 its line says.
 """
@@ -30,9 +31,15 @@ def text_of(clone, commit, path):
     return subprocess.run(["git", "-C", str(clone), "show", f"{commit}:{path}"], check=True, capture_output=True).stdout
 
 
+def reading_of(output):
+    """The first one: coordinates and signs, `crossing 1 -1`."""
+    first = re.search(r"^\s+((?:tip|machine|crossing|head|double-head)\S*)\s+(-?1)\s+(-?1\s)?", output, re.M)
+    return " ".join(word.strip() for word in first.groups() if word) if first else ""
+
+
 def answered(output, program):
     """What `inspect` says in one cell."""
-    reading = re.search(r"^\s+((?:tip|machine|crossing|head|double-head)\S*)\s+(-?1)\s", output, re.M)
+    reading = reading_of(output)
     printed = re.search(r"prints (\d+) moves", output)
     layers = re.search(r"layers: the first ([\d.]+) mm.*?, then (\d+) of ([\d.]+) mm", output)
     unknown = re.findall(r"unknown word '([^']+)': (\d+) line", output)
@@ -40,7 +47,7 @@ def answered(output, program):
     if layers:
         words.append(f"{int(layers[2]) + 1} layers of {float(layers[3]):g} mm, the first {float(layers[1]):g} mm")
     if reading:
-        words.append(f"rotary words read as `{reading[1]}`")
+        words.append(f"rotary words read as `{reading}`")
     if unknown:
         words.append("unknown: " + ", ".join(f"`{word}` ({count})" for word, count in unknown))
     return "; ".join(words)
@@ -74,9 +81,11 @@ def main():
             if run.returncode not in (0, 2):
                 sys.exit(f"{row['repository']} {row['path']}: exit status {run.returncode}\n{run.stderr}")
             status = "read" if run.returncode == 0 else "refused"
-            if status != row["expected"]:
+            _, _, reading = row["expected"].partition(": ")
+            seen = status + (f": {reading_of(run.stdout)}" if reading else "")
+            if seen != row["expected"]:
                 different += 1
-                print(f"{row['repository']} {row['path']}: {status}, {row['expected']} is expected", file=sys.stderr)
+                print(f"{row['repository']} {row['path']}: {seen}, {row['expected']} is expected", file=sys.stderr)
             if status == "read":
                 lines_all += lines
                 seconds_all += seconds

@@ -126,9 +126,9 @@ def table(machines):
         counts = "".join(f"{counted(count, len(prints)):>18}" for count in counts_of(prints))
         print(f"{case:12} {control:11} {len(prints):8}{counts}")
     for machine in machines:
-        unseen = [p["why"] for p in machine["prints"].values() if p["start_mm"] is None and p["path_mm"] == [None, None]]
-        if unseen:
-            print(f"machine {machine['seed']} did not print, {len(unseen)} times: {unseen[0]}")
+        last = list(machine["prints"].values())[-1]
+        if last["start_mm"] is None:
+            print(f"machine {machine['seed']} did not begin: {last['why']}")
     found = [machine["prints"]["registered off"]["registration"] for machine in machines if "registered off" in machine["prints"]]
     found = [f for f in found if f and f.get("normal_error_rms_um") is not None]
     if found:

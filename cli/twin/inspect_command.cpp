@@ -124,15 +124,15 @@ void print_readings(const rehearsal::Inspection& found) {
   fmt::print(
       "  readings of the rotary words, the most likely first:\n"
       "    X Y Z are             {:>3} {:>3}   longest printed step   path out of the layer (median)   "
-      "thickest "
-      "to thinnest bead\n",
+      "thickest to thinnest bead   in the air\n",
       letters.substr(0, 1), letters.substr(1));
   for (std::size_t i = 0; i < found.readings.size() && i < kReadingsShown; ++i) {
     const rehearsal::RotaryReading& reading = found.readings[i];
-    fmt::print("    {:<21} {:>3d} {:>3} {:>19.2f} mm {:>28.2f} deg {:>25.3g}\n", reading.coordinates,
-               reading.b_sign, letters.size() > 1 ? fmt::format("{}", reading.c_sign) : "",
+    fmt::print("    {:<21} {:>3d} {:>3} {:>19.2f} mm {:>28.2f} deg {:>25.3g} {:>10.1f} %\n",
+               reading.coordinates, reading.b_sign,
+               letters.size() > 1 ? fmt::format("{}", reading.c_sign) : "",
                to_mm(reading.quality.longest_step), to_deg(reading.quality.out_of_layer),
-               reading.quality.bead_spread);
+               reading.quality.bead_spread, 100 * reading.quality.floating);
   }
 }
 
@@ -149,7 +149,7 @@ void print_misfit(const rehearsal::Inspection& found) {
   fmt::print(
       "  does not fit there: {}; `understudy place {} --machine {}` looks for a place where it does, and "
       "`rehearse --place auto` puts it there\n",
-      why, found.request.program, found.request.machine);
+      why, shell_quoted(found.request.program), shell_quoted(found.request.machine));
 }
 
 int inspect(const std::string& program, const std::string& machine, const rehearsal::DialectRequest& told) {

@@ -26,7 +26,10 @@ constexpr double kJump = 10e-6;  // [m], beyond noise: the mechanism has moved, 
 constexpr int kStallsMax = 2;
 constexpr double kProbe = 0.1e-3;   // [m], a step while no reading has followed one yet
 constexpr double kBlind = 0.25e-3;  // [m], in all until then: two such steps, and noise
-constexpr double kStepMin = 1e-6;   // [m], about two microsteps: less is no motion
+constexpr double kLift = 1e-3;      // [m], upwards, where steps down have proved nothing: many plays long
+constexpr double kTakeUp =
+    0.2e-3;  // [m], down again before the sample, so that plays lie as after a step down
+constexpr double kStepMin = 1e-6;  // [m], about two microsteps: less is no motion
 
 /// Gap minus commanded height, averaged over the last samples: motion along the axis changes both alike, so
 /// samples at different heights add up.
@@ -112,6 +115,8 @@ class Approach {
   GapStop descend();
   GapStop take_sample(GapEstimate& estimate, std::optional<Expectation>& expected);
   GapStop judge(const GapEstimate& estimate);
+  bool without_response(const GapEstimate& estimate) const;
+  GapStop lift(GapEstimate& estimate);
   bool reached(const GapEstimate& estimate) const;
   double next_step(const GapEstimate& estimate) const;
   GapStop try_again_from_above();
@@ -134,6 +139,7 @@ class Approach {
   ApproachResponseTest response_;
   GapSensor sensor_;
   double height_;  ///< [m], commanded tip above S along the tool axis
+  bool lifted_ = false;
   GapOutcome outcome_;
 };
 
@@ -146,6 +152,11 @@ GapStop Approach::descend() {
     const double gap = estimate.gap(height_);
     outcome_.gap = gap;
     outcome_.sigma = estimate.sigma();
+    if (!lifted_ && without_response(estimate)) {
+      if (const GapStop s = lift(estimate); s != GapStop::none) return s;
+      expected.reset();
+      continue;
+    }
     if (const GapStop s = judge(estimate); s != GapStop::none) return s;
     if (reached(estimate)) return GapStop::none;
 
@@ -181,6 +192,35 @@ GapStop Approach::take_sample(GapEstimate& estimate, std::optional<Expectation>&
 
 bool Approach::reached(const GapEstimate& estimate) const {
   return estimate.full() && estimate.gap(height_) - aim_ <= options_.tolerance;
+}
+
+/// Readings have not followed the steps down, so far as these were told from play.
+bool Approach::without_response(const GapEstimate& estimate) const {
+  return response_.stalls() >= kStallsMax || (!reached(estimate) && response_.room(height_) < kStepMin);
+}
+
+/// A step down is as short as a play, which can take all of it up. Upwards the tool may go farther: the dot
+/// follows that, and what stands still in the picture does not.
+GapStop Approach::lift(GapEstimate& estimate) {
+  lifted_ = true;
+  const double top = height_ + kLift, end = height_ + play_ + kUnmodelled;
+  const double read = outcome_.gap;
+  response_.restart();
+  const auto unanswered = [&](const char* how) {
+    return stop_for(
+        GapStop::no_progress,
+        fmt::format("the gap read {:.3f} mm, and has not followed {}: what shines may not be the dot",
+                    to_mm(read), how));
+  };
+  const GapStop up = move_to(top + kTakeUp);
+  if (up == GapStop::unreachable) return unanswered("the steps down; the tool cannot rise to ask again");
+  if (up != GapStop::none) return up;
+  for (const double height : {top, end}) {
+    if (const GapStop s = move_to(height); s != GapStop::none) return s;
+    std::optional<Expectation> anywhere;
+    if (const GapStop s = take_sample(estimate, anywhere); s != GapStop::none) return s;
+  }
+  return response_.proved() ? GapStop::none : unanswered("the tool as it rose and came down again");
 }
 
 GapStop Approach::judge(const GapEstimate& estimate) {

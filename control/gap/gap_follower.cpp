@@ -295,7 +295,8 @@ GapFollower::Correction GapFollower::advance(double dt, double path, bool follow
   const double rate_max = options_.rate_max * (excited ? 1 - kExcitedShare : 1);
   const double acceleration_max = options_.acceleration_max * (excited ? 1 - kExcitedShare : 1);
   double rate = 0;
-  if (follow && known_ && !excitation_.suspects()) {
+  // Readings that disagree with the line do not move it, but they do forbid to go on along it.
+  if (follow && known_ && !contradicted() && !excitation_.suspects()) {
     const double wanted = options_.aim - predicted_error(path);
     const double target = std::clamp(wanted, lowest(), options_.travel_max);
     const double left = target - correction_.value;

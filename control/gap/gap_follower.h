@@ -116,6 +116,7 @@ class GapFollower {
   double line_end() const { return used_path_ + options_.extrapolated_max; }  // [m] of path
   bool lasting_step(double innovation, double variance);
   void judge_mixture(bool jump);
+  bool contradicted() const { return (jumps_ & 1) != 0; }  ///< by the last reading
   void begin(const GapObservation& o);
   void judge(const GapObservation& o);
   void judge_proof(const GapObservation& o);

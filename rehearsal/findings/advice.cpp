@@ -1,10 +1,14 @@
 #include "rehearsal/findings/advice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
+
+#include "core/text/shell_quoted.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -17,7 +21,8 @@ std::string place_higher(double height_mm, const Record& record) {
 }
 
 std::string show_reach(const Record& record) {
-  return fmt::format("`understudy workspace --machine {}` shows what it reaches", record.machine_word);
+  return fmt::format("`understudy workspace --machine {}` shows what it reaches",
+                     shell_quoted(record.machine_word));
 }
 
 std::string calibrate(const Record& record) {
@@ -25,7 +30,7 @@ std::string calibrate(const Record& record) {
       "calibrate: measure the tool's pose at the poses that `understudy sample-poses --machine {0} -o "
       "measured.csv` lists, then `understudy calibrate measured.csv --machine {0} -o calibrated.yaml` and "
       "rehearse with `--machine calibrated.yaml`",
-      record.machine_word);
+      shell_quoted(record.machine_word));
 }
 
 std::string move_into_reach(const Finding&, const Record& record) {
@@ -37,14 +42,14 @@ std::string print_less(const Finding&, const Record& record) {
   return fmt::format(
       "print it smaller or in parts, or on a larger machine; `understudy place {} --machine {} -o map.png` "
       "shows the margin over the table",
-      record.program_name, record.machine_word);
+      shell_quoted(record.program_word), shell_quoted(record.machine_word));
 }
 
 std::string lean_less(const Finding&, const Record& record) {
   return fmt::format(
       "lean the tool less there, or shift the program with `--place X,Y,Z` (mm); `understudy workspace "
       "--machine {} --tilt 20` shows where it may lean by 20 degrees",
-      record.machine_word);
+      shell_quoted(record.machine_word));
 }
 
 std::string avoid_singular_pose(const Finding&, const Record& record) {
@@ -81,7 +86,7 @@ std::string about_gap(const Finding& finding, const Record& record) {
         "the dot over "
         "a flat and run `understudy calibrate gap-sensor table.csv --machine {} -o ready.yaml` "
         "(docs/gap-sensor-calibration.md)",
-        record.machine_word);
+        shell_quoted(record.machine_word));
   if (finding.about == kUncontrolled)
     return "begin each bead with a straight move against the tool axis, as `understudy plan surface` does";
   if (finding.about == kUnmeasured)
@@ -103,7 +108,17 @@ std::string about_adhesion(const Finding& finding, const Record& record) {
   return "print lower there: a first layer's height within the accepted gap, or `--place X,Y,Z` (mm)";
 }
 
+/// The twin holds an axis at the end of its range: where the tip is and what it touches follows from that.
+bool axis_is_held(const Record& record) {
+  static const std::set<std::string> kinds{"strut_length", "joint_limit", "unreachable"};
+  return std::any_of(record.findings.begin(), record.findings.end(), [](const Finding& finding) {
+    return finding.severity == Severity::error && kinds.contains(finding.kind);
+  });
+}
+
 std::string about_accuracy(const Finding& finding, const Record& record) {
+  if (axis_is_held(record))
+    return "bring the axes within their ranges first: the tip is off where one is held at its end";
   constexpr double kTolerable = 2;  // times the limit: more is no question of tolerance
   if (finding.value > kTolerable * finding.limit) return calibrate(record);
   return fmt::format("{}; or accept it with `{} {:g}`", calibrate(record),
@@ -118,7 +133,7 @@ std::string about_registration(const Finding&, const Record& record) {
       "(`understudy calibrate`) and its gap sensor (`understudy calibrate gap-sensor`) calibrated? Is what "
       "`part` "
       "of the section tolerances of {} says of the clamped part true?",
-      record.machine_word);
+      shell_quoted(record.machine_word));
 }
 
 std::string about_flow(const Finding& finding, const Record&) {

@@ -13,6 +13,7 @@
 #include "control/program/rotary_words.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/text/shell_quoted.h"
 #include "core/units.h"
 #include "machine/description.h"
 #include "machine/material.h"
@@ -63,11 +64,6 @@ bool all_among(const std::string& letters, const std::string& known) {
 bool is_command(const std::string& word) {
   const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
   return word.size() > 1 && (word[0] == 'G' || word[0] == 'M' || is_letter(word[1]));
-}
-
-/// As shells take it.
-std::string quoted(const std::string& word) {
-  return word.find_first_of("[]$#(){}*?&|<>~ ") == std::string::npos ? word : "'" + word + "'";
 }
 
 class Inspector {
@@ -226,8 +222,8 @@ Inspection inspect(const std::string& program, const std::string& machine, const
 
 std::string rehearse_command(const RehearsalRequest& request, const std::string& folder) {
   const DialectRequest& dialect = request.dialect;
-  std::string command =
-      fmt::format("understudy rehearse {} --machine {}", quoted(request.program), quoted(request.machine));
+  std::string command = fmt::format("understudy rehearse {} --machine {}", shell_quoted(request.program),
+                                    shell_quoted(request.machine));
   if (dialect.place_auto)
     command += " --place auto";
   else if (dialect.place_mm != std::array<double, 3>{0, 0, 0})
@@ -236,24 +232,24 @@ std::string rehearse_command(const RehearsalRequest& request, const std::string&
   if (dialect.spin_deg != 0) command += fmt::format(" --spin {}", dialect.spin_deg);
   if (!request.home_axes.empty())
     command += fmt::format(" --home-axes {:.6g}", fmt::join(request.home_axes, ","));
-  if (!request.fixture.empty()) command += " --fixture " + request.fixture;
+  if (!request.fixture.empty()) command += " --fixture " + shell_quoted(request.fixture);
   if (!dialect.coordinates.empty()) command += " --coordinates " + dialect.coordinates;
   if (dialect.b_sign < 0) command += " --b-sign -1";
   if (dialect.c_sign < 0) command += " --c-sign -1";
   if (!dialect.extruder_letter.empty()) command += " --extruder-letter " + dialect.extruder_letter;
   if (!dialect.ignored.empty())
-    command += " --ignore " + quoted(fmt::format("{}", fmt::join(dialect.ignored, ",")));
-  if (!dialect.macros.empty()) command += " --macros " + dialect.macros;
+    command += " --ignore " + shell_quoted(fmt::format("{}", fmt::join(dialect.ignored, ",")));
+  if (!dialect.macros.empty()) command += " --macros " + shell_quoted(dialect.macros);
   if (dialect.temperature_c) command += fmt::format(" --temperature {}", *dialect.temperature_c);
   if (dialect.nozzle_mm) command += fmt::format(" --nozzle {}", *dialect.nozzle_mm);
   if (dialect.layer_mm) command += fmt::format(" --layer {}", *dialect.layer_mm);
   const RobotProgramRequest& robot = dialect.robot;
   if (!robot.signals.empty())
-    command += " --signal " + quoted(fmt::format("{}", fmt::join(robot.signals, ",")));
+    command += " --signal " + shell_quoted(fmt::format("{}", fmt::join(robot.signals, ",")));
   if (robot.bead_mm[0] > 0) command += fmt::format(" --bead {:g}x{:g}", robot.bead_mm[0], robot.bead_mm[1]);
   if (robot.flow_mm3_per_s) command += fmt::format(" --flow {:g}", *robot.flow_mm3_per_s);
-  if (!robot.tool_points.empty()) command += " --tool-points " + robot.tool_points;
-  return command + " --out " + folder;
+  if (!robot.tool_points.empty()) command += " --tool-points " + shell_quoted(robot.tool_points);
+  return command + " --out " + shell_quoted(folder);
 }
 
 }  // namespace understudy::rehearsal

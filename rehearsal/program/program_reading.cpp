@@ -11,6 +11,7 @@
 #include "control/program/gcode_options.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/text/shell_quoted.h"
 #include "core/units.h"
 #include "rehearsal/program/readings.h"
 #include "rehearsal/program/robot_reading.h"
@@ -28,7 +29,7 @@ namespace {
                    [&](const char* part) { return what.find(part) != std::string::npos; }))
     throw;
   throw InputError(fmt::format("{}; `understudy inspect {} --machine {}` shows what to do", what,
-                               request.program, request.machine));
+                               shell_quoted(request.program), shell_quoted(request.machine)));
 }
 
 void read_gcode_into(ReadProgram& read, const std::string& text, const RehearsalRequest& request,

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "control/program/rotary_words.h"
 #include "core/error.h"
 #include "core/quantile.h"
+#include "core/text/shell_quoted.h"
 #include "core/units.h"
 
 namespace understudy::rehearsal {
@@ -17,13 +19,15 @@ using toolpath::GcodeOptions;
 using toolpath::Program;
 using toolpath::Step;
 
-constexpr double kSuspicious = 10 * kDegree;          // out of the layer (median): no print is so on purpose
-constexpr int kFewestMoves = 20;                      // that a median is worth looking at
-constexpr double kUneven = 10;                        // bead_spread of no print
-constexpr double kFarBetter = 4;                      // times nearer to its layer, or as even, is no chance
-constexpr double kMostFilament = 10;                  // of filament over path: no bead is so thick
-constexpr double kShortest = 1e-6;                    // [m]
-constexpr double kLongestPivot = 0.5;                 // [m]
+constexpr double kSuspicious = 10 * kDegree;  // out of the layer (median): no print is so on purpose
+constexpr int kFewestMoves = 20;              // that a median is worth looking at
+constexpr double kFlat = 1 * kDegree;         // out of the layer: a curved one is no better on purpose
+constexpr double kHeld = 0.001;               // floating: bridges and first lines on a clamped part do
+constexpr double kUneven = 10;                // bead_spread of no print
+constexpr double kFarBetter = 4;              // times nearer to its layer, or as even, is no chance
+constexpr double kMostFilament = 10;          // of filament over path: no bead is so thick
+constexpr double kShortest = 1e-6;            // [m]
+constexpr double kLongestPivot = 0.5;         // [m]
 constexpr double kPivotSteps[] = {1e-3, 1e-4, 1e-5};  // [m], in which it is looked for
 constexpr std::size_t kMovesFitted = 2000;
 
@@ -92,22 +96,19 @@ std::optional<double> fitted_pivot(const ProgramText& program, const GcodeOption
   return best;
 }
 
-/// Ranks in all three measures, added up. Values that agree to a per mille share their rank, and the first of
-/// equals, which needs no options, stays first.
-void sort_by_rank(std::vector<RotaryReading>& readings) {
-  const auto rank = [&](const RotaryReading& reading, auto value) {
-    return std::count_if(readings.begin(), readings.end(),
-                         [&](const RotaryReading& other) { return value(other) < 0.999 * value(reading); });
-  };
-  const auto angle = [](const RotaryReading& r) { return r.quality.out_of_layer; };
-  const auto step = [](const RotaryReading& r) { return r.quality.longest_step; };
-  const auto spread = [](const RotaryReading& r) { return r.quality.bead_spread; };
-  std::vector<std::pair<std::pair<std::ptrdiff_t, double>, RotaryReading>> ranked;
-  for (const RotaryReading& r : readings)
-    ranked.push_back({{rank(r, angle) + rank(r, step) + rank(r, spread), std::round(1e6 * angle(r))}, r});
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < ranked.size(); ++i) readings[i] = ranked[i].second;
+/// How much worse than a perfect reading, all four measures together: by the same factor worse in one counts
+/// as much as in another, so that beads of one thickness outweigh a layer that is as flat by chance.
+double badness(const RotaryReading& reading) {
+  const toolpath::ReadingQuality& q = reading.quality;
+  return std::log(std::max(q.out_of_layer, kFlat)) + std::log(std::max(q.longest_step, kShortest)) +
+         std::log(q.bead_spread) + std::log(std::max(q.floating, kHeld));
+}
+
+/// The first of those that agree to a per mille, which needs no options, stays first.
+void sort_by_badness(std::vector<RotaryReading>& readings) {
+  const auto rounded = [](const RotaryReading& r) { return std::round(1e3 * badness(r)); };
+  std::stable_sort(readings.begin(), readings.end(),
+                   [&](const auto& a, const auto& b) { return rounded(a) < rounded(b); });
 }
 
 /// In one measure, and not worse in the other.
@@ -135,6 +136,7 @@ GcodeOptions read_as(const RotaryReading& reading, const GcodeOptions& options) 
 std::vector<RotaryReading> rank_readings(const ProgramText& program, const GcodeOptions& options) {
   std::vector<RotaryReading> readings;
   std::string refusal;
+  double least_filament = std::numeric_limits<double>::infinity();
   const bool two = options.rotary->letters.size() > 1, slides = options.rotary->slides != nullptr;
   for (const std::string coordinates : {"tip", "machine", "crossing", "head", "double-head"}) {
     if ((coordinates == "machine" && !slides) || (coordinates == "double-head" && !two)) continue;
@@ -151,6 +153,7 @@ std::vector<RotaryReading> rank_readings(const ProgramText& program, const Gcode
           reading.quality =
               toolpath::reading_quality(parse(program, read_as(reading, options)), start_of(options));
           // A pivot in the middle of a dome leaves nothing of its path.
+          least_filament = std::min(least_filament, reading.quality.filament_share);
           if (reading.quality.filament_share <= kMostFilament) readings.push_back(reading);
         } catch (const InputError& error) {
           // The first: a program with G43.4 cannot be read as crossing in any case.
@@ -159,9 +162,13 @@ std::vector<RotaryReading> rank_readings(const ProgramText& program, const Gcode
       }
   }
   if (readings.empty())
-    throw InputError(refusal.empty() ? program.name + ": no reading of its rotary words makes beads of its E"
-                                     : refusal);
-  sort_by_rank(readings);
+    throw InputError(refusal.empty()
+                         ? fmt::format("{}: no reading of its rotary words makes beads of its E: at best "
+                                       "{:.3g} mm of filament on 1 mm "
+                                       "of path (median), at most {:g} are a bead; is E in mm of filament?",
+                                       program.name, least_filament, kMostFilament)
+                         : refusal);
+  sort_by_badness(readings);
   return readings;
 }
 
@@ -195,8 +202,8 @@ std::optional<Finding> misread_words(const Program& read, const ProgramText& pro
         "machine",
         best.coordinates, best.b_sign < 0 ? " --b-sign -1" : "", best.c_sign < 0 ? " --c-sign -1" : "",
         described(best));
-  finding.message +=
-      fmt::format("; `understudy inspect {} --machine {}` ranks the readings", program.name, machine);
+  finding.message += fmt::format("; `understudy inspect {} --machine {}` ranks the readings",
+                                 shell_quoted(program.name), shell_quoted(machine));
   return finding;
 }
 

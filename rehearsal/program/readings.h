@@ -26,9 +26,9 @@ struct ProgramText {
 toolpath::GcodeOptions read_as(const RotaryReading& reading, const toolpath::GcodeOptions& options);
 
 /// Every reading that the program allows, the most likely first: by how far the printed path leaves the plane
-/// across the tool, by the longest printed step, and by how even the beads are (the sum of the three ranks).
-/// Readings for machines whose head tilts have the pivot, within half a metre, that makes the beads most
-/// even. Throws InputError where no reading is possible.
+/// across the tool, by the longest printed step, by how even the beads are, and by how much begins in the air
+/// (the product of the four). Readings for machines whose head tilts have the pivot, within half a metre,
+/// that makes the beads most even. Throws InputError where no reading is possible.
 std::vector<RotaryReading> rank_readings(const ProgramText& program, const toolpath::GcodeOptions& options);
 
 /// A finding where the printed path of `read`, which was parsed with `options`, disagrees with the tool's

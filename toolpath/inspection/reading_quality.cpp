@@ -6,6 +6,7 @@
 
 #include "core/quantile.h"
 #include "core/units.h"
+#include "toolpath/inspection/floating_share.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kShortest = 1e-6;       // [m]
 
 ReadingQuality reading_quality(const Program& program, const Vec3& start_W) {
   ReadingQuality quality;
-  std::vector<double> all, leaning, sections;
+  std::vector<double> all, leaning, sections, leaning_sections;
   Vec3 tip_W = start_W;
   for (const Step& step : program.steps) {
     if (!moves(step)) continue;
@@ -25,19 +26,26 @@ ReadingQuality reading_quality(const Program& program, const Vec3& start_W) {
     tip_W = step.X_WT.translation();
     const double length = path.norm();
     if (step.kind != StepKind::print) continue;
-    if (step.filament > 0) sections.push_back(step.filament / std::max(length, kShortest));
+    const Vec3 axis = tool_axis(step.X_WT);
+    const bool leans = axis.z() < std::cos(kLeans);
+    if (step.filament > 0) {
+      const double section = step.filament / std::max(length, kShortest);
+      sections.push_back(section);
+      if (leans) leaning_sections.push_back(section);
+    }
     if (length < kShortest) continue;
     quality.longest_step = std::max(quality.longest_step, length);
-    const Vec3 axis = tool_axis(step.X_WT);
     const double angle = std::asin(std::min(1.0, std::abs(path.dot(axis)) / length));
     all.push_back(angle);
-    if (axis.z() < std::cos(kLeans)) leaning.push_back(angle);
+    if (leans) leaning.push_back(angle);
   }
   const std::vector<double>& angles = leaning.empty() ? all : leaning;
   quality.moves = static_cast<int>(angles.size());
   if (!angles.empty()) quality.out_of_layer = quantile(angles, 0.5);
+  quality.floating = floating_share(program, start_W);
   if (sections.empty()) return quality;
-  quality.bead_spread = quantile(sections, 0.9) / quantile(sections, 0.1);
+  const std::vector<double>& spread = leaning_sections.empty() ? sections : leaning_sections;
+  quality.bead_spread = quantile(spread, 0.9) / quantile(spread, 0.1);
   quality.filament_share = quantile(sections, 0.5);
   return quality;
 }

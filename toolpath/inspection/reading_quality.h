@@ -11,9 +11,10 @@ struct ReadingQuality {
   /// [rad], median of the angle by which the path leaves the plane across the tool's axis: a print runs along
   /// its layer, and the tool stands on it.
   double out_of_layer = 0;
-  /// How much the beads differ: the 90th percentile of filament over path, in the 10th. A wrong reading
-  /// stretches some moves and shrinks others. 1 where no filament is told.
+  /// How much the beads differ, where the tool leans, if it does: the 90th percentile of filament over path,
+  /// in the 10th. A wrong reading stretches some moves and shrinks others. 1 where no filament is told.
   double bead_spread = 1;
+  double floating = 0;        ///< floating_share(): what a wrong reading lays beside what it should lie on
   double filament_share = 0;  ///< median of filament over path, both in m
 };
 

@@ -43,6 +43,17 @@ TEST(Inspect, WithoutATemperatureTheMaterialsOwnIsTaken) {
   EXPECT_THAT(seen.out, HasSubstr(" --temperature 210 --out line"));
 }
 
+TEST(Inspect, ANameOfTwoWordsIsQuotedWhereverACommandHasIt) {
+  const Folder folder;
+  const std::string program =
+      folder.write("two words.gcode", "G21 G90 M83\nM109 S210\nG28\nG0 X0 Y0 Z119\nG1 X20 Z121 E0.6 F600\n");
+  const Outcome seen = understudy("inspect '" + program + "' --machine corexy");
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  EXPECT_THAT(seen.out, HasSubstr("`understudy place '" + program + "' --machine corexy`"));
+  EXPECT_THAT(seen.out, HasSubstr("understudy rehearse '" + program + "' --machine corexy"));
+  EXPECT_THAT(seen.out, HasSubstr(" --out 'two words'\n"));
+}
+
 TEST(Inspect, WordsThatTheMachineLacksLeadToOneThatHasThem) {
   const Folder folder;
   std::string text = "M104 S200\nM83\nG0 X-5 Y0 Z5\n";

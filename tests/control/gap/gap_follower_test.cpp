@@ -1,6 +1,7 @@
 #include "control/gap/gap_follower.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -91,6 +92,26 @@ TEST(GapFollower, ARampTowardsTheToolIsFollowedWithoutLagOnceItsSlopeIsKnown) {
         EXPECT_NEAR(p.gap, kAim, 1e-6) << "rate " << rate << " at " << p.time;
       }
   }
+}
+
+// As a built hexapod began a line: plays that cross swing the tip for 0.15 s, [um] every 25 ms, and leave it
+// 80 um off. Two readings look like a slope. The others do not count, as a bead's do not, but forbid to go on
+// along it.
+TEST(GapFollower, AlongALineThatReadingsContradictItGoesNoFarther) {
+  constexpr std::array kSwing{0.0, 63.0, -35.0, -96.0, -77.0, -24.0, 53.0, 93.0, 60.0, 68.0, 102.0, 120.0};
+  const auto error = [&](double t, double) {
+    const double k = std::clamp((t - 0.11) / kFrame, 0.0, static_cast<double>(kSwing.size()) - 1.001);
+    const auto i = static_cast<std::size_t>(k);
+    return kAim + 1e-6 * std::lerp(kSwing[i], kSwing[i + 1], k - static_cast<double>(i));
+  };
+  double largest = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    auto loop = loop_with(error, 1.4e-6, seed);
+    loop.run(0.8);
+    for (const auto& p : loop.points) largest = std::max(largest, p.correction);
+  }
+  EXPECT_LT(largest, 40e-6) << "on along the slope it would be 70 um";
+  EXPECT_GT(largest, 5e-6) << "the slope was followed";
 }
 
 // Towards the part it waits after each 40 um until the gap has opened enough to show that it is the part's.

@@ -206,6 +206,57 @@ TEST(GapController, ASurfaceFarBelowTheProgrammedOneIsTooFar) {
   EXPECT_THAT(outcome.why, HasSubstr("lower than programmed, at most 4.000 mm are allowed"));
 }
 
+/// A tip that follows its commands with a play along the axis, and the dot where it is. It came from below.
+class LoosePlay : public GapMotion {
+ public:
+  LoosePlay(Stage& stage, double play) : stage_(stage), play_(play), tip_(kStandoff) {
+    stage.rig().set_frame_fault([this](const Pose& X_WT, Image& image) {
+      Pose X_true = X_WT;
+      X_true.translation() += (tip_ - stage_.height(X_WT)) * tool_axis(X_WT);
+      stage_.rig().draw_spot(*exact_dot(hexapod(), on_slope(0).world, X_true), 190, image);
+      return true;
+    });
+  }
+  machine::Status move_to(const Pose& X_WT) override {
+    const double commanded = stage_.height(X_WT);
+    tip_ = std::clamp(tip_, commanded, commanded + play_);
+    return stage_.motion().move_to(X_WT);
+  }
+  machine::MachinePort& port() override { return stage_.motion().port(); }
+  double gap() const { return tip_ + kProgrammedGap; }
+
+ private:
+  Stage& stage_;
+  double play_, tip_;  // [m], above S
+};
+
+// Twice 0.1 mm downwards move nothing: so does a ghost. 1 mm upwards, and down again, tells them apart.
+TEST(GapController, PlayThatTakesUpTheFirstStepsIsNoGhost) {
+  Stage stage(on_slope(0));
+  LoosePlay loose(stage, 0.22e-3);
+  const Start start = on_slope(0);
+  const GapOutcome outcome = close_gap(hexapod(), start.surface, start.X_WT_S, kStandoff, loose, {});
+  EXPECT_EQ(outcome.stop, GapStop::none) << outcome.why;
+  EXPECT_GT(loose.gap(), 0.1e-3);
+  EXPECT_LT(loose.gap(), 0.2e-3);
+  const auto& targets = stage.motion().targets;
+  const auto rises = std::count_if(targets.begin(), targets.end(),
+                                   [&](const Pose& X) { return stage.height(X) > kStandoff + 0.5e-3; });
+  EXPECT_EQ(rises, 2) << "up, and down a little, once";
+}
+
+TEST(GapController, ASpotThatStandsStillDoesNotFollowTheRiseEither) {
+  Stage stage(on_slope(0));
+  stage.rig().set_frame_fault([&](const Pose&, Image& image) {
+    const Pose there = make_pose(Quat::Identity(), Vec3(0, 0, 0.05 + 2.1e-3));
+    stage.rig().draw_spot(*exact_dot(hexapod(), on_slope(0).world, there), 190, image);
+    return true;
+  });
+  const GapOutcome outcome = stage.run();
+  expect_stopped_and_retreated(stage, outcome, GapStop::no_progress, 1.5e-3);
+  EXPECT_THAT(outcome.why, HasSubstr("has not followed the tool as it rose and came down again"));
+}
+
 TEST(GapController, TooFewStopsAreNoProgress) {
   Stage stage(on_slope(0));
   GapControllerOptions options;

@@ -18,8 +18,9 @@ namespace {
 constexpr double kVictimLead = 0.3;  // [s]
 constexpr double kWatchdog = 0.05;   // [s]
 
-/// Moves all axes up and down from `home` without end on the HAL that runs; never returns. The first period comes from
-/// where the death before left the machine: without that it would climb from death to death until its limits refuse.
+/// Moves all axes up and down from `home` without end on the HAL that runs; never returns. The first period
+/// comes from where the death before left the machine: without that it would climb from death to death until
+/// its limits refuse.
 [[noreturn]] void move_until_killed(const HalMachine& hal, const machine::AxisVector& home, int told) {
   const auto port = hal.attach(kVictimLead);
   const machine::AxisVector left = port->state().position;
@@ -40,7 +41,8 @@ constexpr double kWatchdog = 0.05;   // [s]
         s.velocity[axis] = kDepth * std::sin(own) / 2 * 2 * std::numbers::pi / kPeriod * (axis < 3 ? 1 : 2);
         if (first) {
           s.position[axis] += (left[axis] - home[axis]) * (1 + std::cos(phase / 2)) / 2;
-          s.velocity[axis] -= (left[axis] - home[axis]) * std::sin(phase / 2) / 2 * std::numbers::pi / kPeriod;
+          s.velocity[axis] -=
+              (left[axis] - home[axis]) * std::sin(phase / 2) / 2 * std::numbers::pi / kPeriod;
         }
       }
       setpoints.push_back(s);
@@ -93,7 +95,8 @@ void kill_and_see(int times, unsigned seed) {
   const RunningHal running(hal);
   HalRecorder recorder(hal, 2);
   machine::AxisVector home;
-  for (std::size_t axis = 0; axis < 6; ++axis) home[axis] = hal.settings().axes[axis].si(hal.settings().axes[axis].home);
+  for (std::size_t axis = 0; axis < 6; ++axis)
+    home[axis] = hal.settings().axes[axis].si(hal.settings().axes[axis].home);
   std::mt19937 random(seed);
   int worst_starved = 0, deepest = 0, kills = 0;
   std::size_t begin = 0;

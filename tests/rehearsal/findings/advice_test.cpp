@@ -44,6 +44,24 @@ TEST(Advice, CommandsNameTheMachineAsItWasAskedFor) {
   EXPECT_THAT(text, HasSubstr("`--tip-tolerance 0.8`"));
 }
 
+TEST(Advice, CommandsQuoteWhatAShellWouldTakeApart) {
+  Record record = on_a_machine(false, "off");
+  record.machine_word = "my machine.yaml";
+  record.program_word = "parts/two words.gcode";
+  const Finding large{"placement", Severity::error, 6, 1, 5, 0.2, "mm", "", 0, ""};
+  EXPECT_THAT(advice(large, record),
+              HasSubstr("`understudy place 'parts/two words.gcode' --machine 'my machine.yaml' -o map.png`"));
+}
+
+TEST(Advice, ATipThatIsOffWhereAnAxisIsHeldIsNoReasonToCalibrate) {
+  Record record = on_a_machine(false, "off");
+  record.findings.push_back({"joint_limit", Severity::error, 8, 0, 265, 100, "mm", "", 0, ""});
+  const Finding off{"accuracy", Severity::error, 10, 0, 241, 0.2, "mm", "", 0, kTip};
+  EXPECT_THAT(advice(off, record), HasSubstr("bring the axes within their ranges first"));
+  record.findings.front().severity = Severity::warning;
+  EXPECT_THAT(advice(off, record), HasSubstr("understudy calibrate"));
+}
+
 TEST(Advice, ABeadOverNothingAsksForThePart) {
   Finding loose{"adhesion", Severity::error, 6, 1, 5, 0.2, "mm", "", 0, kNothingBelow};
   Record record = on_a_machine(true, "start");

@@ -64,6 +64,44 @@ TEST(Readings, TheKindOfMachineAndItsPivotAreFoundFromThePath) {
   }
 }
 
+/// A hub of upright layers, and blades that stand off its side: printed with the tool leaning by 80 degrees,
+/// in layers that wave. The slides of a machine whose axes cross, which counts B and C the other way round.
+std::string propeller(int b_sign, int c_sign) {
+  std::string text = "M104 S200\nM83\n";
+  Vec3 before = Vec3::Zero();
+  const auto go = [&](const Vec3& tip, double b, double c, bool prints) {
+    const Vec3 p = (about(Vec3::UnitZ(), c) * about(Vec3::UnitY(), b)).transpose() * tip;
+    text += fmt::format("G{} X{:.5f} Y{:.5f} Z{:.5f} B{:.5f} C{:.5f}{} F600\n", prints ? 1 : 0, p.x(), p.y(),
+                        p.z(), b_sign * to_deg(b), c_sign * to_deg(c),
+                        prints ? fmt::format(" E{:.5f}", 0.03 * (tip - before).norm()) : "");
+    before = tip;
+  };
+  for (double z = 0.2; z <= 16; z += 0.2)
+    for (int i = 0; i <= 60; ++i) {
+      const double a = 2 * std::numbers::pi * i / 60;
+      go({6 * std::cos(a), 6 * std::sin(a), z}, 0, 0, i > 0);
+    }
+  for (int blade = 0; blade < 3; ++blade)
+    for (double r = 6.2; r <= 12; r += 0.2)
+      for (int i = 0; i <= 60; ++i) {
+        const double c = 2 * std::numbers::pi * blade / 3 + 0.5 * std::sin(0.1 * i), z = 3 + 0.15 * i;
+        const double off = r + 0.6 * std::sin(0.7 * i);
+        go({off * std::cos(c), off * std::sin(c), z}, from_deg(80), c, i > 0);
+      }
+  return text;
+}
+
+TEST(Readings, BladesThatLieOnTheirHubTellTheSignsOfBothTurns) {
+  for (const int b : {1, -1})
+    for (const int c : {1, -1}) {
+      const RotaryReading best = rank_readings({"p.gcode", propeller(b, c)}, five_axis()).front();
+      EXPECT_EQ(best.coordinates, "crossing") << b << ' ' << c;
+      EXPECT_EQ(best.b_sign, b) << b << ' ' << c;
+      EXPECT_EQ(best.c_sign, c) << b << ' ' << c;
+      EXPECT_LT(best.quality.floating, 0.002);
+    }
+}
+
 // Read as axes that cross, the first line that fails is G43.4, which says nothing about the program.
 TEST(Readings, WhereNoneIsPossibleTheFirstReadingSaysWhy) {
   const std::string text = "M104 S200\nM83\nG43.4\nG1 X1 B2 C3 E1 F600\nG1 X2 X3 E1\n";
@@ -72,6 +110,17 @@ TEST(Readings, WhereNoneIsPossibleTheFirstReadingSaysWhy) {
     ADD_FAILURE() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("p.gcode:5:7: 'X3': the line has a second X"));
+  }
+}
+
+TEST(Readings, FilamentInOtherUnitsIsSaid) {
+  std::string text = "M104 S200\nM83\n";
+  for (int i = 0; i <= 30; ++i) text += fmt::format("G1 X{} B{} C0 E41 F600\n", i, i);
+  try {
+    rank_readings({"p.gcode", text}, five_axis());
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("mm of filament on 1 mm of path (median), at most 10 are a bead"));
   }
 }
 
