@@ -22,12 +22,13 @@ using toolpath::Step;
 constexpr double kSuspicious = 10 * kDegree;  // out of the layer (median): no print is so on purpose
 constexpr int kFewestMoves = 20;              // that a median is worth looking at
 constexpr double kFlat = 1 * kDegree;         // out of the layer: a curved one is no better on purpose
-constexpr double kHeld = 0.001;               // floating: bridges and first lines on a clamped part do
-constexpr double kUneven = 10;                // bead_spread of no print
-constexpr double kFarBetter = 4;              // times nearer to its layer, or as even, is no chance
-constexpr double kMostFilament = 10;          // of filament over path: no bead is so thick
-constexpr double kShortest = 1e-6;            // [m]
-constexpr double kLongestPivot = 0.5;         // [m]
+// Floating: bridges do, and first lines on a clamped part.
+constexpr double kHeld = 0.001, kLoose = 0.01;
+constexpr double kUneven = 10;                        // bead_spread of no print
+constexpr double kFarBetter = 4;                      // times nearer to its layer, or as even, is no chance
+constexpr double kMostFilament = 10;                  // of filament over path: no bead is so thick
+constexpr double kShortest = 1e-6;                    // [m]
+constexpr double kLongestPivot = 0.5;                 // [m]
 constexpr double kPivotSteps[] = {1e-3, 1e-4, 1e-5};  // [m], in which it is looked for
 constexpr std::size_t kMovesFitted = 2000;
 
@@ -97,11 +98,13 @@ std::optional<double> fitted_pivot(const ProgramText& program, const GcodeOption
 }
 
 /// How much worse than a perfect reading, all four measures together: by the same factor worse in one counts
-/// as much as in another, so that beads of one thickness outweigh a layer that is as flat by chance.
+/// as much as in another, so that beads of one thickness outweigh a layer that is as flat by
+/// chance. What floats counts half, and no more than ten times as much: a part's first lines may lie on what
+/// is clamped.
 double badness(const RotaryReading& reading) {
   const toolpath::ReadingQuality& q = reading.quality;
   return std::log(std::max(q.out_of_layer, kFlat)) + std::log(std::max(q.longest_step, kShortest)) +
-         std::log(q.bead_spread) + std::log(std::max(q.floating, kHeld));
+         std::log(q.bead_spread) + 0.5 * std::log(std::clamp(q.floating, kHeld, kLoose));
 }
 
 /// The first of those that agree to a per mille, which needs no options, stays first.

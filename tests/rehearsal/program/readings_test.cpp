@@ -86,7 +86,8 @@ std::string propeller(int b_sign, int c_sign) {
       for (int i = 0; i <= 60; ++i) {
         const double c = 2 * std::numbers::pi * blade / 3 + 0.5 * std::sin(0.1 * i), z = 3 + 0.15 * i;
         const double off = r + 0.6 * std::sin(0.7 * i);
-        go({off * std::cos(c), off * std::sin(c), z}, from_deg(80), c, i > 0);
+        const double beside = c + 0.3 * std::sin(0.37 * i);  // else a mirror image would be as good
+        go({off * std::cos(beside), off * std::sin(beside), z}, from_deg(80), c, i > 0);
       }
   return text;
 }
