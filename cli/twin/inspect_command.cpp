@@ -132,7 +132,7 @@ void print_readings(const rehearsal::Inspection& found) {
                reading.coordinates, reading.b_sign,
                letters.size() > 1 ? fmt::format("{}", reading.c_sign) : "",
                to_mm(reading.quality.longest_step), to_deg(reading.quality.out_of_layer),
-               reading.quality.bead_spread, 100 * reading.quality.floating);
+               reading.quality.bead_spread, 100 * reading.floating);
   }
 }
 

@@ -27,9 +27,8 @@ constexpr int kStallsMax = 2;
 constexpr double kProbe = 0.1e-3;   // [m], a step while no reading has followed one yet
 constexpr double kBlind = 0.25e-3;  // [m], in all until then: two such steps, and noise
 constexpr double kLift = 1e-3;      // [m], upwards, where steps down have proved nothing: many plays long
-constexpr double kTakeUp =
-    0.2e-3;  // [m], down again before the sample, so that plays lie as after a step down
-constexpr double kStepMin = 1e-6;  // [m], about two microsteps: less is no motion
+constexpr double kTakeUp = 0.2e-3;  // [m], down again before the sample: plays lie as after a step down
+constexpr double kStepMin = 1e-6;   // [m], about two microsteps: less is no motion
 
 /// Gap minus commanded height, averaged over the last samples: motion along the axis changes both alike, so
 /// samples at different heights add up.

@@ -11,6 +11,7 @@
 #include "core/quantile.h"
 #include "core/text/shell_quoted.h"
 #include "core/units.h"
+#include "toolpath/inspection/floating_share.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -97,19 +98,19 @@ std::optional<double> fitted_pivot(const ProgramText& program, const GcodeOption
   return best;
 }
 
-/// How much worse than a perfect reading, all four measures together: by the same factor worse in one counts
+/// Logarithm of the product of all four measures: by the same factor worse in one counts
 /// as much as in another, so that beads of one thickness outweigh a layer that is as flat by
 /// chance. What floats counts half, and no more than ten times as much: a part's first lines may lie on what
 /// is clamped.
-double badness(const RotaryReading& reading) {
+double cost(const RotaryReading& reading) {
   const toolpath::ReadingQuality& q = reading.quality;
   return std::log(std::max(q.out_of_layer, kFlat)) + std::log(std::max(q.longest_step, kShortest)) +
-         std::log(q.bead_spread) + 0.5 * std::log(std::clamp(q.floating, kHeld, kLoose));
+         std::log(q.bead_spread) + 0.5 * std::log(std::clamp(reading.floating, kHeld, kLoose));
 }
 
 /// The first of those that agree to a per mille, which needs no options, stays first.
-void sort_by_badness(std::vector<RotaryReading>& readings) {
-  const auto rounded = [](const RotaryReading& r) { return std::round(1e3 * badness(r)); };
+void sort_by_cost(std::vector<RotaryReading>& readings) {
+  const auto rounded = [](const RotaryReading& r) { return std::round(1e3 * cost(r)); };
   std::stable_sort(readings.begin(), readings.end(),
                    [&](const auto& a, const auto& b) { return rounded(a) < rounded(b); });
 }
@@ -153,8 +154,9 @@ std::vector<RotaryReading> rank_readings(const ProgramText& program, const Gcode
             if (!pivot) continue;
             reading.coordinates += fmt::format(":{:.6g}", to_mm(*pivot));
           }
-          reading.quality =
-              toolpath::reading_quality(parse(program, read_as(reading, options)), start_of(options));
+          const Program read = parse(program, read_as(reading, options));
+          reading.quality = toolpath::reading_quality(read, start_of(options));
+          reading.floating = toolpath::floating_share(read, start_of(options));
           // A pivot in the middle of a dome leaves nothing of its path.
           least_filament = std::min(least_filament, reading.quality.filament_share);
           if (reading.quality.filament_share <= kMostFilament) readings.push_back(reading);
@@ -171,7 +173,7 @@ std::vector<RotaryReading> rank_readings(const ProgramText& program, const Gcode
                                        "of path (median), at most {:g} are a bead; is E in mm of filament?",
                                        program.name, least_filament, kMostFilament)
                          : refusal);
-  sort_by_badness(readings);
+  sort_by_cost(readings);
   return readings;
 }
 

@@ -16,6 +16,7 @@ struct RotaryReading {
   std::string coordinates;  ///< as set_coordinates() takes it
   int b_sign = 1, c_sign = 1;
   toolpath::ReadingQuality quality;
+  double floating = 0;  ///< toolpath::floating_share()
 };
 
 struct ProgramText {

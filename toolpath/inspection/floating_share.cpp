@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <unordered_map>
 #include <vector>
 
@@ -25,34 +24,32 @@ struct Point {
   double path;  // [m], printed up to there
 };
 
-/// Evenly spaced along what is printed.
-std::vector<Point> printed_points(const Program& program, const Vec3& start_W, double spacing) {
-  std::vector<Point> points;
+/// Calls `visit` with start, way [m] and length [m] of each printed move.
+template <typename Visit>
+void visit_printed(const Program& program, const Vec3& start_W, Visit visit) {
   Vec3 tip_W = start_W;
-  double path = 0, next = 0;
   for (const Step& step : program.steps) {
     if (!moves(step)) continue;
     const Vec3 from_W = tip_W, way_W = step.X_WT.translation() - tip_W;
     tip_W = step.X_WT.translation();
     const double length = way_W.norm();
-    if (step.kind != StepKind::print || !(length > 0) || !std::isfinite(length)) continue;
+    if (step.kind == StepKind::print && length > 0 && std::isfinite(length)) visit(from_W, way_W, length);
+  }
+}
+
+/// Evenly spaced along what is printed.
+std::vector<Point> printed_points(const Program& program, const Vec3& start_W) {
+  double printed = 0;
+  visit_printed(program, start_W, [&](const Vec3&, const Vec3&, double length) { printed += length; });
+  const double spacing = std::max(kSpacing, printed / kMostPoints);
+  std::vector<Point> points;
+  double path = 0, next = 0;
+  visit_printed(program, start_W, [&](const Vec3& from_W, const Vec3& way_W, double length) {
     for (; next < path + length; next += spacing)
       points.push_back({from_W + (next - path) / length * way_W, next});
     path += length;
-  }
+  });
   return points;
-}
-
-double printed_length(const Program& program, const Vec3& start_W) {
-  Vec3 tip_W = start_W;
-  double path = 0;
-  for (const Step& step : program.steps) {
-    if (!moves(step)) continue;
-    const double length = (step.X_WT.translation() - tip_W).norm();
-    tip_W = step.X_WT.translation();
-    if (step.kind == StepKind::print && std::isfinite(length)) path += length;
-  }
-  return path;
 }
 
 /// Points by cells of kReach; the nearest of those that are farther back on the path than kOwnPath.
@@ -94,8 +91,7 @@ class EarlierPoints {
 }  // namespace
 
 double floating_share(const Program& program, const Vec3& start_W) {
-  const double spacing = std::max(kSpacing, printed_length(program, start_W) / kMostPoints);
-  const std::vector<Point> points = printed_points(program, start_W, spacing);
+  const std::vector<Point> points = printed_points(program, start_W);
   if (points.empty()) return 0;
   const auto lower = [](const Point& a, const Point& b) { return a.place_W.z() < b.place_W.z(); };
   const double ground = std::min_element(points.begin(), points.end(), lower)->place_W.z();
@@ -107,7 +103,7 @@ double floating_share(const Program& program, const Vec3& start_W) {
       distances.push_back(std::min(earlier.nearest(points[i]), points[i].place_W.z() - ground));
     earlier.add(points[i]);
   }
-  const double far = std::min(kReach, kFar * std::max(quantile(distances, 0.5), spacing));
+  const double far = std::min(kReach, kFar * std::max(quantile(distances, 0.5), kSpacing));
   const auto floats = [&](double distance) { return distance >= far; };
   return static_cast<double>(std::count_if(distances.begin(), distances.end(), floats)) /
          static_cast<double>(distances.size());

@@ -7,8 +7,8 @@
 namespace understudy::toolpath {
 
 /// Of the printed path, in [0, 1]: what lies farther from all that was printed before, and from the lowest
-/// printed point's level, than three times the usual distance, and farther than 2 mm in any case. Looks at no
-/// more than some thousand places. 0 where nothing is printed. `start_W` [m]: the tip before the first step.
+/// printed point's level, than three times the median distance, or than 2 mm where that is less. Looks at no
+/// more than 5000 places. 0 where nothing is printed. `start_W` [m]: the tip before the first step.
 double floating_share(const Program& program, const Vec3& start_W);
 
 }  // namespace understudy::toolpath

@@ -6,7 +6,6 @@
 
 #include "core/quantile.h"
 #include "core/units.h"
-#include "toolpath/inspection/floating_share.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -42,7 +41,6 @@ ReadingQuality reading_quality(const Program& program, const Vec3& start_W) {
   const std::vector<double>& angles = leaning.empty() ? all : leaning;
   quality.moves = static_cast<int>(angles.size());
   if (!angles.empty()) quality.out_of_layer = quantile(angles, 0.5);
-  quality.floating = floating_share(program, start_W);
   if (sections.empty()) return quality;
   const std::vector<double>& spread = leaning_sections.empty() ? sections : leaning_sections;
   quality.bead_spread = quantile(spread, 0.9) / quantile(spread, 0.1);

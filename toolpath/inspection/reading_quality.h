@@ -14,7 +14,6 @@ struct ReadingQuality {
   /// How much the beads differ, where the tool leans, if it does: the 90th percentile of filament over path,
   /// in the 10th. A wrong reading stretches some moves and shrinks others. 1 where no filament is told.
   double bead_spread = 1;
-  double floating = 0;        ///< floating_share(): what a wrong reading lays beside what it should lie on
   double filament_share = 0;  ///< median of filament over path, both in m
 };
 

@@ -99,7 +99,7 @@ TEST(Readings, BladesThatLieOnTheirHubTellTheSignsOfBothTurns) {
       EXPECT_EQ(best.coordinates, "crossing") << b << ' ' << c;
       EXPECT_EQ(best.b_sign, b) << b << ' ' << c;
       EXPECT_EQ(best.c_sign, c) << b << ' ' << c;
-      EXPECT_LT(best.quality.floating, 0.002);
+      EXPECT_LT(best.floating, 0.002);
     }
 }
 

@@ -32,9 +32,10 @@ TEST(FloatingShare, WhatHasNothingBelowOrBesideItFloats) {
 }
 
 TEST(FloatingShare, ALineHoldsNothingOfItself) {
-  // To and fro, 0.2 mm apart: what was printed just now is near, and holds nothing. 0.02: two of 88 points.
+  // To and fro, 0.2 mm apart: what was printed just now is near, and holds nothing. A point
+  // each half millimetre of 44.01 mm, 89 in all: 9 of them from 40 mm on.
   const std::string layers = square(0.2);
-  EXPECT_NEAR(share(layers + "G0 X5 Y5 Z9\nG1 X7 E1\nG1 X5 Y5.2 E1\n"), 4.0 / 44, 0.02);
+  EXPECT_NEAR(share(layers + "G0 X5 Y5 Z9\nG1 X7 E1\nG1 X5 Y5.2 E1\n"), 9.0 / 89, 1e-12);
 }
 
 TEST(FloatingShare, NothingPrintedIsNothingInTheAir) { EXPECT_EQ(share("G0 X1 Z9\n"), 0); }

@@ -57,5 +57,13 @@ TEST(ReadingQuality, BeadsThatDifferTell) {
   EXPECT_EQ(reading_quality(parse_gcode("G0 X1\n", "p", {}), Vec3::Zero()).bead_spread, 1);
 }
 
+// Upright, every reading has the same beads.
+TEST(ReadingQuality, BeadsOfALeaningToolAloneTellWhereThereAreAny) {
+  std::string text = "M83\nG0 X0 Y0 Z0\n";
+  for (int i = 1; i <= 9; ++i) text += fmt::format("G1 X{} E{} F60\n", i, 0.1 * i);
+  text += "G1 X10 I0.6 J0 K0.8 E0.1\nG1 X11 E0.1\n";
+  EXPECT_NEAR(reading_quality(parse_gcode(text, "p", {}), Vec3::Zero()).bead_spread, 1, 1e-9);
+}
+
 }  // namespace
 }  // namespace understudy::toolpath
