@@ -1,5 +1,5 @@
 # After a test program is linked: writes what CTest reads of it. A suite is one CTest test, since the start of a
-# process costs more than most tests; each test of a suite whose name starts with Slow is one, with the label slow.
+# process costs more than most tests; each test of a suite whose name starts with Slow or Extended is one, with the label slow or extended.
 # PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [EACH=ON: every test is one, so that one can be left out]
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY TIMEOUT 60)
 string(REGEX REPLACE "[[;]|]" "" listed "${listed}")
@@ -31,6 +31,8 @@ foreach(line IN LISTS listed)
       continue()
     elseif(suite MATCHES "^Slow")
       add("${suite}.${test}" "${suite}.${test}" 3600 LABELS slow)
+    elseif(suite MATCHES "^Extended")
+      add("${suite}.${test}" "${suite}.${test}" ${TIMEOUT} LABELS extended)
     elseif(EACH)
       add("${suite}.${test}" "${suite}.${test}" ${TIMEOUT})
     else()

@@ -38,7 +38,7 @@ endfunction()
 # understudy_test(NAME [RECURSE] [EXCLUDE regex] [SOURCES extra ...] USES room ... [PRIVATE lib ...] [TIMEOUT s]
 # [LOCK what])
 # LOCK: tests that share what there is once on a computer never run at the same time.
-# One GoogleTest program of every source in the folder; suites whose name starts with Slow run under ./test --all only.
+# One GoogleTest program of every source in the folder; suites whose name starts with Extended or Slow do not run under ./test.
 function(understudy_test name)
   cmake_parse_arguments(TEST "RECURSE" "TIMEOUT;EXCLUDE;LOCK" "SOURCES;USES;PRIVATE" ${ARGN})
   understudy_sources(sources "${TEST_RECURSE}" "${TEST_EXCLUDE}")

@@ -256,10 +256,12 @@ AcceptedErrors load_accepted_errors(const std::string& name_or_path) {
 }
 
 MapSchema machine_schema() {
-  return YamlMap::schema([](YamlMap& root) {
+  // Told once: every way through the reader is tried, which takes seconds.
+  static const MapSchema schema = YamlMap::schema([](YamlMap& root) {
     MachineFile file;
     read_machine(root, file);
   });
+  return schema;
 }
 
 }  // namespace understudy::machine

@@ -1,5 +1,5 @@
 # The stages of ./check. Sourced by it: uses $all, $base and $stages, and say, configure and build of prepare.sh.
-known_stages="format rooms warnings controller doxygen clang tidy threads sanitize"
+known_stages="format rooms warnings extended controller doxygen clang tidy threads sanitize"
 
 # Tests that share data between threads: work pool, strands, ports, the observers' thread.
 thread_programs=(core_test machine_test strand_test deposition_test twin_test)
@@ -60,6 +60,12 @@ stage_rooms() {
 # What ./test --werror has built serves; else a folder of its own.
 stage_warnings() {
   if grep -qs 'UNDERSTUDY_WERROR:BOOL=ON' build/release/CMakeCache.txt; then build release; else build dev; fi
+}
+
+# Its whole log stays: where time runs out, it says which were run.
+stage_extended() {
+  build release
+  run_tests release -L extended
 }
 
 stage_controller() {

@@ -14,6 +14,8 @@ SlowStudy.
   D
   E
   DISABLED_F
+ExtendedRun.
+  I
 DISABLED_Whole.
   G
 Some/Typed/0.  # TypeParam = int
@@ -23,7 +25,7 @@ Some/Typed/0.  # TypeParam = int
 
 class ListSuites(unittest.TestCase):
     def listed(self, each):
-        """(filter, time limit, is slow) by name."""
+        """(filter, time limit, label) by name."""
         with tempfile.TemporaryDirectory() as folder:
             program, out = Path(folder) / "program", Path(folder) / "tests.cmake"
             program.write_text(f"#!/bin/sh\ncat <<'END'\n{LISTED}END\n")
@@ -32,19 +34,20 @@ class ListSuites(unittest.TestCase):
                             f"-DOUT={out}", "-P", SCRIPT], check=True)
             text = out.read_text()
         filters = dict(re.findall(r"add_test\(\[==\[(.*?)\]==\].*--gtest_filter=(.*?)\]==\]", text))
-        limits = {name: (int(limit), bool(re.search("LABELS[; ]slow", rest)))
+        limits = {name: (int(limit), "".join(re.findall(r"LABELS[; ](\w+)", rest)))
                   for name, limit, rest in re.findall(r"set_tests_properties\(\[==\[(.*?)\]==\] PROPERTIES TIMEOUT (\d+)(.*)\)", text)}
         self.assertEqual(filters.keys(), limits.keys())
         return {name: (filters[name], *limits[name]) for name in filters}
 
-    SLOW = {"room.SlowStudy.D": ("SlowStudy.D", 3600, True), "room.SlowStudy.E": ("SlowStudy.E", 3600, True)}
+    LABELLED = {"room.SlowStudy.D": ("SlowStudy.D", 3600, "slow"), "room.SlowStudy.E": ("SlowStudy.E", 3600, "slow"),
+                "room.ExtendedRun.I": ("ExtendedRun.I", 100, "extended")}
 
-    def test_a_suite_is_one_test_and_each_of_a_slow_suite(self):
-        self.assertEqual(self.listed("OFF"), {"room.Fast": ("Fast.*", 160, False), "room.Some/Typed/0": ("Some/Typed/0.*", 100, False), **self.SLOW})
+    def test_a_suite_is_one_test_and_each_of_a_labelled_suite(self):
+        self.assertEqual(self.listed("OFF"), {"room.Fast": ("Fast.*", 160, ""), "room.Some/Typed/0": ("Some/Typed/0.*", 100, ""), **self.LABELLED})
 
     def test_each_test_is_one_under_a_sanitizer(self):
-        self.assertEqual(self.listed("ON"), {"room.Fast.A": ("Fast.A", 100, False), "room.Fast.B": ("Fast.B", 100, False),
-                                            "room.Some/Typed/0.H/0": ("Some/Typed/0.H/0", 100, False), **self.SLOW})
+        self.assertEqual(self.listed("ON"), {"room.Fast.A": ("Fast.A", 100, ""), "room.Fast.B": ("Fast.B", 100, ""),
+                                            "room.Some/Typed/0.H/0": ("Some/Typed/0.H/0", 100, ""), **self.LABELLED})
 
 
 if __name__ == "__main__":

@@ -56,7 +56,9 @@ TEST_F(FifthMachine, HasAxesAndPoses) {
   EXPECT_THAT(back.out, AllOf(HasSubstr("\nnan,"), HasSubstr("\n143.923101,69.459271,100.000000,")));
 }
 
-TEST_F(FifthMachine, PrintsInBothKindsOfPlant) {
+class ExtendedFifthMachine : public FifthMachine {};
+
+TEST_F(ExtendedFifthMachine, PrintsInBothKindsOfPlant) {
   for (const char* engine : {"mujoco", "quasistatic"}) {
     const std::string out = folder_ / engine;
     const Outcome outcome = understudy(

@@ -58,7 +58,7 @@ TEST(Sweep, AKilledOneGoesOnWithTheSameRows) {
   }
 }
 
-TEST(Sweep, AChangedInputBeginsAnewThoughTheFirstMachineDoesNotShowIt) {
+TEST(ExtendedSweep, AChangedInputBeginsAnewThoughTheFirstMachineDoesNotShowIt) {
   rehearsal::RehearsalRequest changed = bottle();
   changed.orientation_tolerance_deg = 44;
   const TemporaryFolder folder;

@@ -233,9 +233,9 @@ TEST(BeforeCalibration, AnotherMachineIsRefusedInOneLine) {
   }
 }
 
-class ClosedLoop : public ::testing::TestWithParam<std::string> {};
+class ExtendedClosedLoop : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ClosedLoop, ACalibrationOfTheTwinLowersTheTipErrorOfItsRehearsal) {
+TEST_P(ExtendedClosedLoop, ACalibrationOfTheTwinLowersTheTipErrorOfItsRehearsal) {
   const Folder folder;
   ASSERT_EQ(understudy("sample-poses --count 24 --as-built manufactured --seed 5 --from " + GetParam() +
                        " -o " + (folder / "poses.csv"))
@@ -253,7 +253,7 @@ TEST_P(ClosedLoop, ACalibrationOfTheTwinLowersTheTipErrorOfItsRehearsal) {
   EXPECT_LT(after, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Calibrate, ClosedLoop, ::testing::Values("noise", "pixels"));
+INSTANTIATE_TEST_SUITE_P(ExtendedCalibrate, ExtendedClosedLoop, ::testing::Values("noise", "pixels"));
 
 /// Measured, calibrated and printed before and after on one built machine, in um.
 struct Story {
@@ -304,7 +304,7 @@ TEST_P(OneTruth, ACalibrationChangesWhatIsKnownAndNotTheMachine) {
 
 INSTANTIATE_TEST_SUITE_P(Calibrate, OneTruth, ::testing::Values("manufactured", "sampled"));
 
-TEST(OneTruth, WhatIsLeftIsWhatTheCalibrationStates) {
+TEST(ExtendedOneTruth, WhatIsLeftIsWhatTheCalibrationStates) {
   const Folder folder;
   double squares = 0;
   int machines = 0;
@@ -332,7 +332,7 @@ TEST(OneTruth, WhatIsLeftIsWhatTheCalibrationStates) {
   EXPECT_EQ(machines, 3);
 }
 
-TEST(CalibratedMachine, IsRehearsedOnWhatItsCalibrationLeavesOpen) {
+TEST(ExtendedCalibratedMachine, IsRehearsedOnWhatItsCalibrationLeavesOpen) {
   const Folder folder;
   ASSERT_EQ(understudy("calibrate " + kSample + " -o " + (folder / "c.yaml") + " --report " + (folder / "r"))
                 .status,

@@ -109,7 +109,7 @@ TEST(GapSensorCommand, EqualSeedsGiveEqualPicturesAndOtherSeedsOtherTruths) {
 }
 
 /// The twin is built from the drawing: its dots do not move when the controller learns where they are.
-TEST(GapSensorCommand, TheTwinStaysWhatItIsWhenItsControllerIsCalibrated) {
+TEST(ExtendedGapSensorCommand, TheTwinStaysWhatItIsWhenItsControllerIsCalibrated) {
   const Folder folder;
   ASSERT_EQ(understudy("sample-gaps --seed 3 -o " + (folder / "gaps")).status, 0);
   ASSERT_EQ(

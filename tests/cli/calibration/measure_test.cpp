@@ -260,7 +260,7 @@ void mistakes_are_refused_in_one_line_and_nothing_is_written(const Pictures& pic
   }
 }
 
-TEST(Measure, PicturesFromFilesGiveBoardsTargetsAndPoses) {
+TEST(ExtendedMeasure, PicturesFromFilesGiveBoardsTargetsAndPoses) {
   const Pictures pictures;
   ASSERT_EQ(pictures.made().status, 0) << pictures.made().err;
   poses_are_the_true_ones_within_their_covariance(pictures);
@@ -273,7 +273,7 @@ TEST(Measure, PicturesFromFilesGiveBoardsTargetsAndPoses) {
 
 // Boards as a print shop makes them; the machine is driven on a plant. `calibrate bundle` finds it from the
 // tables of `measure`.
-TEST(Measure, TablesOfAllPicturesCalibrateAMachineAtOnce) {
+TEST(ExtendedMeasure, TablesOfAllPicturesCalibrateAMachineAtOnce) {
   const Folder folder;
   const std::string rig = " --rig " + (folder / "p/rig.yaml"),
                     commanded = " --commanded " + (folder / "p/commanded.csv");

@@ -69,7 +69,9 @@ TEST_F(OutputOptions, Campaign) {
       "understudy.rehearsal/1");
 }
 
-TEST_F(OutputOptions, Register) {
+class ExtendedOutputOptions : public OutputOptions {};
+
+TEST_F(ExtendedOutputOptions, Register) {
   const std::string words = "register --fixture bottle --as-built nominal -o " + at("pose.yaml");
   const json told = document(words);
   EXPECT_EQ(told["schema"], "understudy.rehearsal/1");

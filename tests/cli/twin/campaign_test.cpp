@@ -68,7 +68,9 @@ TEST_F(Campaign, TheTablesDoNotDependOnTheNumberOfWorkers) {
   EXPECT_EQ(asked(at("one/runs.sqlite"), "SELECT count(*) FROM runs"), "20");
 }
 
-TEST_F(Campaign, ARowsCommandMakesItsSummaryAgain) {
+class ExtendedCampaign : public Campaign {};
+
+TEST_F(ExtendedCampaign, ARowsCommandMakesItsSummaryAgain) {
   ASSERT_EQ(run(at("c.yaml") + " --workers 2 --out " + at("out")).status, 0);
   for (const int row : {0, 7, 13}) {
     const std::string where = " FROM runs WHERE run = " + std::to_string(row);
@@ -84,7 +86,7 @@ TEST_F(Campaign, ARowsCommandMakesItsSummaryAgain) {
   }
 }
 
-TEST_F(Campaign, GoesOnAfterADeathAndLosesNothing) {
+TEST_F(ExtendedCampaign, GoesOnAfterADeathAndLosesNothing) {
   write("long", "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\n", "1-40");
   ASSERT_EQ(run(at("long.yaml") + " --workers 2 --out " + at("whole")).status, 0);
   // Killed after 0.5, 1, ... s, until it comes to its end.
@@ -110,7 +112,7 @@ std::vector<pid_t> children_of(pid_t parent) {
   return children;
 }
 
-TEST_F(Campaign, AWorkerThatIsKilledLosesNothing) {
+TEST_F(ExtendedCampaign, AWorkerThatIsKilledLosesNothing) {
   write("long", "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\n", "1-40");
   ASSERT_EQ(run(at("long.yaml") + " --workers 2 --out " + at("whole")).status, 0);
   const pid_t campaign = ::fork();

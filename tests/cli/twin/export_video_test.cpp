@@ -40,7 +40,9 @@ class ExportVideo : public ExportedPrint {
   ExportVideo() : ExportedPrint("video", "mp4") {}
 };
 
-TEST_F(ExportVideo, TheBeadsGrowFromTheFirstFrameToTheLast) {
+class ExtendedExportVideo : public ExportVideo {};
+
+TEST_F(ExtendedExportVideo, TheBeadsGrowFromTheFirstFrameToTheLast) {
   ASSERT_LE(rehearse(kLine).status, 1);
   const Outcome outcome = run_export(out() + " --seconds 1 --fps 6 --size 640x360 -o " + exported());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -84,7 +86,7 @@ void expect_cannot_write(const Outcome& outcome) {
   EXPECT_THAT(outcome.err, HasSubstr("cannot write"));
 }
 
-TEST_F(ExportVideo, AFullDiskIsOneLineAndLeavesNothing) {
+TEST_F(ExtendedExportVideo, AFullDiskIsOneLineAndLeavesNothing) {
   if (!can_make_disks()) GTEST_SKIP() << "needs the right to mount a file system";
   ASSERT_LE(rehearse(kLine).status, 1);
   const std::string words = "export video " + out() + " --quiet --seconds 1 --fps 6 --size 640x360 -o ";
@@ -103,7 +105,7 @@ TEST_F(ExportVideo, AFullDiskIsOneLineAndLeavesNothing) {
   EXPECT_EQ(placed.out, "");
 }
 
-TEST_F(ExportVideo, AFullDiskCostsARehearsalItsFilmAlone) {
+TEST_F(ExtendedExportVideo, AFullDiskCostsARehearsalItsFilmAlone) {
   if (!can_make_disks()) GTEST_SKIP() << "needs the right to mount a file system";
   const std::string disk = folder_ / "disk";
   fs::create_directory(disk);
@@ -116,7 +118,7 @@ TEST_F(ExportVideo, AFullDiskCostsARehearsalItsFilmAlone) {
   EXPECT_TRUE(fs::exists(out() + "/report.html") && fs::exists(out() + "/manifest.sha256"));
 }
 
-TEST_F(ExportVideo, AnInterruptLeavesNoHalfFile) {
+TEST_F(ExtendedExportVideo, AnInterruptLeavesNoHalfFile) {
   ASSERT_LE(rehearse(kLine).status, 1);
   const Outcome outcome = understudy_interrupted("export video " + out() + " -o " + exported(), 4);
   EXPECT_EQ(outcome.status, 128 + 2) << outcome.out << outcome.err;

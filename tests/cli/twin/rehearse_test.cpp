@@ -83,7 +83,7 @@ TEST_F(RehearseTells, ErrorsOnStandardErrorWhateverIsAsked) {
   EXPECT_THAT(told.err, HasSubstr("none"));
 }
 
-TEST(Rehearse, TheSameCommandAndSeedGiveTheSameBytes) {
+TEST(ExtendedRehearse, TheSameCommandAndSeedGiveTheSameBytes) {
   const Folder folder;
   ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "a")).status, 1);
   ASSERT_LE(understudy(kBottle + "--seed 5 --out " + (folder / "b")).status, 1);

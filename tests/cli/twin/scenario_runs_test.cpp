@@ -122,7 +122,9 @@ TEST_F(ScenarioRuns, ResumeRunsOnlyWhatIsNotThereOrHasOtherInputs) {
   EXPECT_THAT(run(at("one.yaml") + " --resume", 2), HasSubstr("--resume needs --out"));
 }
 
-TEST_F(ScenarioRuns, ResumeTakesTheResultOfAStudyWhoseCommandAndFilesAreTheSame) {
+class ExtendedScenarioRuns : public ScenarioRuns {};
+
+TEST_F(ExtendedScenarioRuns, ResumeTakesTheResultOfAStudyWhoseCommandAndFilesAreTheSame) {
   const auto study = [&](const std::string& command) {
     folder_.write("study.yaml", "name: study\ndescription: d\nsource: s\ncommand: " + command +
                                     "\nexpect:\n  - {metric: exit_status, equals: 0, source: a test}\n");
@@ -198,7 +200,7 @@ TEST_F(ScenarioRuns, ACommandsFiguresAreHeldToTheirBounds) {
   EXPECT_EQ(understudy("sweep " + at("study.yaml")).status, 2);
 }
 
-TEST_F(ScenarioRuns, PicturesAreDrawnUnlessTheyAreLeftOut) {
+TEST_F(ExtendedScenarioRuns, PicturesAreDrawnUnlessTheyAreLeftOut) {
   const std::string both = at("one.yaml") + " " + at("two.yaml");
   run(at("one.yaml") + " --out " + at("drawn"));
   EXPECT_TRUE(fs::exists(at("drawn/one/pictures/picture-01.png")));

@@ -73,7 +73,7 @@ std::string bent(const Folder& folder, const std::string& file, const std::strin
                 expect + ", source: a test}\n");
 }
 
-TEST(ScenarioRun, APlanStandsForTheProgramThatItMakes) {
+TEST(ExtendedScenarioRun, APlanStandsForTheProgramThatItMakes) {
   const Folder folder;
   std::filesystem::copy_file(kSource + "/models/parts/bent_bar.stl", folder / "bar.stl");
   const std::string words = "support-free bar.stl --layer 0.8 --layer-range 0.4,1.0 --width 2";
@@ -155,7 +155,7 @@ std::string leaning(const std::string& gcode) {
 }
 
 // Each expectation is about something: without that it fails.
-TEST(ScenarioRun, AFinishFailsWithoutStockWithoutPlayAndOnWrongNormals) {
+TEST(ExtendedScenarioRun, AFinishFailsWithoutStockWithoutPlayAndOnWrongNormals) {
   const Folder folder;
   const auto fails = [&](const std::string& file, const std::string& why) {
     const Outcome outcome = understudy("scenario run " + file);
@@ -244,7 +244,7 @@ TEST(Sweep, DoesNotDependOnTheNumberOfThreads) {
 }
 
 // Half a millimetre of the line without its approach: all that differs after a calibration is the geometry.
-TEST(Sweep, ABudgetTellsItsCostItsTableAndItsFilesWhateverTheThreads) {
+TEST(ExtendedSweep, ABudgetTellsItsCostItsTableAndItsFilesWhateverTheThreads) {
   const Folder folder;
   const std::string program =
       folder.write("line.gcode",

@@ -111,7 +111,7 @@ TEST(SlicedProgram, ACubeFreshFromTheSlicerTakesItsTime) {
   EXPECT_THAT(seen.out, ::testing::Not(HasSubstr("other limits")));
 }
 
-TEST(SlicedProgram, OverAClampTheNozzleTouches) {
+TEST(ExtendedSlicedProgram, OverAClampTheNozzleTouches) {
   const Outcome clamp = rehearse(first_layers(), "--fixture slanted_box");
   EXPECT_EQ(clamp.status, 1);
   EXPECT_THAT(clamp.out, HasSubstr("nozzle touches part"));

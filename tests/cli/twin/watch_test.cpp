@@ -149,7 +149,7 @@ nlohmann::json record_when(httplib::Client& client, const std::function<bool(con
   return {};
 }
 
-TEST(WatchCommand, ServeShowsWhatTheSenderIsToldAndThenTheRehearsal) {
+TEST(ExtendedWatchCommand, ServeShowsWhatTheSenderIsToldAndThenTheRehearsal) {
   const Folder folder;
   const std::string pty = folder / "twin", results = folder / "served";
   BackgroundRun server(folder, fmt::format("serve --machine hexapod --port pty:{} --dialect marlin --speed 2 "
@@ -201,7 +201,7 @@ std::vector<std::pair<double, double>> recorded(const std::string& file) {
   return all;
 }
 
-TEST(WatchCommand, DriveShowsTheAxesAndItsRecordIsTheSame) {
+TEST(ExtendedWatchCommand, DriveShowsTheAxesAndItsRecordIsTheSame) {
   const Folder folder;
   std::string program = "G21 G90 M83\nG0 X-20 Y0 Z60\n";
   for (int line = 0; line < 150; ++line)  // of 40 mm at 10 mm/s: ten minutes of the machine's clock

@@ -51,7 +51,9 @@ class WithoutEffect : public testing::Test {
   const Folder folder_;
 };
 
-TEST_F(WithoutEffect, NoBacklashNoGouges) {
+class ExtendedWithoutEffect : public WithoutEffect {};
+
+TEST_F(ExtendedWithoutEffect, NoBacklashNoGouges) {
   const std::string still =
       machine("finishing", {{"play_um: [0-9]+", "play_um: 0"}, {"play_arcmin: [0-9]+", "play_arcmin: 0"}});
   EXPECT_THAT(run("yu-ellipse-1", {{"machine: finishing", "machine: " + still}}), fails("removal.gouge_um"));
@@ -65,7 +67,7 @@ TEST_F(WithoutEffect, NoWeightNoSag) {
               fails("sag.max_um"));
 }
 
-TEST_F(WithoutEffect, NoGapControlNoGapInTheBand) {
+TEST_F(ExtendedWithoutEffect, NoGapControlNoGapInTheBand) {
   EXPECT_THAT(run("song-gap", {{"gap_control: start", "gap_control: \"off\""}}), fails("gap.start_mm"));
 }
 
@@ -74,7 +76,7 @@ TEST_F(WithoutEffect, AWrongNormalRunsIntoThePlane) {
               fails("findings.collision.count"));
 }
 
-TEST_F(WithoutEffect, NoInflationNothingToTakeOff) {
+TEST_F(ExtendedWithoutEffect, NoInflationNothingToTakeOff) {
   EXPECT_THAT(run("yu-ellipse-1", {{"depth_of_cut_mm: 0.7", "depth_of_cut_mm: 0.01"}}),
               fails("removal.volume_mm3"));
 }

@@ -126,7 +126,7 @@ std::vector<Setpoint> there_and_back(const machine::MachinePort& port, const mac
   return setpoints;
 }
 
-TEST_F(HalPortTest, HoldsResumesAndAStopLoseAndRepeatNoSetpoint) {
+TEST_F(ExtendedHalPortTest, HoldsResumesAndAStopLoseAndRepeatNoSetpoint) {
   const HalMachine hal;
   const auto port = hal.open();
   ASSERT_EQ(port->state().fault, Fault::none) << port->fault_text();
@@ -205,7 +205,9 @@ bool becomes(const char* signal, const std::string& value) {
   return false;
 }
 
-TEST_F(HalPortTest, FaultsOfTheMachineAreNamedStickyAndCleared) {
+class ExtendedHalPortTest : public HalPortTest {};
+
+TEST_F(ExtendedHalPortTest, FaultsOfTheMachineAreNamedStickyAndCleared) {
   const HalMachine hal;
   const RunningHal running(hal);
   const auto port = hal.attach();

@@ -74,7 +74,9 @@ constexpr const char* kNoGeometry =
 
 // Without gap control nothing that is done to the part or the filament moves the tool, and the part's place
 // moves the gap.
-TEST_F(BottleBudget, OnlyTheMachinesOwnErrorsMoveItsTip) {
+class ExtendedBottleBudget : public BottleBudget {};
+
+TEST_F(ExtendedBottleBudget, OnlyTheMachinesOwnErrorsMoveItsTip) {
   use_tolerances(std::string(kSmallGeometry) +
                  "  part: {position_mm: 0.02}\n  process: {extruder_lag_permille: 100}\n");
   const ErrorBudget budget = run_budget(request_);

@@ -31,7 +31,7 @@ CalibrationBenchmarkRequest on_the_plant(int machines) {
   return request;
 }
 
-TEST(PlantTrial, TwoMachinesFromEndToEnd) {
+TEST(ExtendedPlantTrial, TwoMachinesFromEndToEnd) {
   CalibrationBenchmarkRequest request = on_the_plant(2);
   request.stand.layers = 4;  // a third of the boards' pictures
   const CalibrationBenchmark b = run_benchmark(request);

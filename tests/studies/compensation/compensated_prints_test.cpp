@@ -39,7 +39,7 @@ void expect_promise(const CompensationStudy& study) {
   EXPECT_GT(study.rms(&CompensatedPrint::drawn), 5 * study.rms(&CompensatedPrint::calibrated));
 }
 
-TEST(CompensatedPrints, AHexapodsNominalControllerPrintsAsTheCalibratedOne) {
+TEST(ExtendedCompensatedPrints, AHexapodsNominalControllerPrintsAsTheCalibratedOne) {
   expect_promise(study_of("hexapod", 4));
 }
 TEST(SlowCompensatedPrints, AnArmsNominalControllerPrintsAsTheCalibratedOne) {

@@ -45,7 +45,7 @@ TEST(FaultedPrints, AGoOnASpoiltPartIsSilentWhateverElseIsSaid) {
   EXPECT_FALSE(prints.good());
 }
 
-TEST(FaultedPrints, OfABlockEveryFaultHasOneRunAndNoneHasTwo) {
+TEST(ExtendedFaultedPrints, OfABlockEveryFaultHasOneRunAndNoneHasTwo) {
   const TemporaryFolder one, other;
   const FaultedPrints prints = run_faulted_prints(small(one, 18));
   std::map<std::string, int> runs;
@@ -68,7 +68,7 @@ TEST(FaultedPrints, OfABlockEveryFaultHasOneRunAndNoneHasTwo) {
   EXPECT_EQ(all.substr(0, few.size()), few);
 }
 
-TEST(FaultedPrints, AKilledStudyGoesOn) {
+TEST(ExtendedFaultedPrints, AKilledStudyGoesOn) {
   const TemporaryFolder folder;
   FaultedPrintsRequest request = small(folder, 4);
   request.journal = folder / "journal";

@@ -16,7 +16,7 @@ PoolPrint made(const TemporaryFolder& folder, const std::string& machine, std::u
   return make_pool_print(machine, seed, number, folder.path());
 }
 
-TEST(PrintPool, EqualSeedsMakeEqualPrints) {
+TEST(ExtendedPrintPool, EqualSeedsMakeEqualPrints) {
   const TemporaryFolder one, same;
   for (const char* machine : {"hexapod", "five-axis"}) {
     const PoolPrint a = made(one, machine, 3, 0), b = made(same, machine, 3, 0);

@@ -72,7 +72,7 @@ TEST(FaultedTwin, AnApproachUnderEachFaultDoesNotTouchAndItsStopNamesTheFault) {
   expect_right_answers(request_for(FaultedTask::approach, 16, 1), {6, 6});
 }
 
-TEST(FaultedTwin, PrintsDoNotTouchAndTheirStopsNameTheFault) {
+TEST(ExtendedFaultedTwin, PrintsDoNotTouchAndTheirStopsNameTheFault) {
   FaultedTwinRequest request = request_for(FaultedTask::print, 3, 1);
   request.faults = {"saturated", "stale", "growth"};
   expect_right_answers(request, {1, 2});

@@ -39,7 +39,7 @@ double reading(const machine::MachineDescription& believed, const machine::Machi
   return reading.gap;
 }
 
-TEST(LabMachine, KnowsItsGapWithinItsOwnUncertainty) {
+TEST(ExtendedLabMachine, KnowsItsGapWithinItsOwnUncertainty) {
   for (const std::uint64_t seed : {1u, 2u}) {
     const LabMachine& lab = lab_machine(seed);
     ASSERT_TRUE(lab.machine.gap_sensor);
