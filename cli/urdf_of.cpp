@@ -3,6 +3,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "machine/file/beside_machine.h"
+#include "machine/file/urdf_corrected.h"
+#include "machine/file/urdf_section.h"
 #include "machine/file/urdf_writer.h"
 
 namespace understudy::cli {
@@ -25,6 +28,14 @@ std::string urdf_of(const machine::MachineDescription& machine) {
     drives.push_back({machine.drives[i].velocity_max, kinematics::kEndless});
   }
   return machine::write_urdf(machine.name, chain, links, drives);
+}
+
+std::string calibrated_urdf_of(const machine::MachineDescription& machine) {
+  const std::string text = machine::machine_file_text(machine.file);
+  const std::string urdf = machine::urdf_named_in(text, machine.file);
+  if (urdf.empty()) return urdf_of(machine);
+  return machine::corrected_urdf(machine, std::filesystem::absolute(machine.file).parent_path() / urdf,
+                                 machine::tool_link_named_in(text, machine.file));
 }
 
 }  // namespace understudy::cli

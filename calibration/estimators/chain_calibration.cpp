@@ -1,7 +1,5 @@
 #include "calibration/estimators/chain_calibration.h"
 
-#include <array>
-
 namespace understudy::calibration {
 namespace {
 
@@ -16,12 +14,6 @@ Eigen::Index parameter_count(const Chain& chain) {
   Eigen::Index count = kMounts;
   for (const ChainAxis& axis : chain.axes) count += parameters_of(axis);
   return count;
-}
-
-/// Two unit vectors across the axis.
-std::array<Vec3, 2> across(const ChainAxis& axis) {
-  const Vec3 u = axis.direction.unitOrthogonal();
-  return {u, axis.direction.cross(u)};
 }
 
 bool carried(const Chain& chain, int axis, int last) {
@@ -45,6 +37,11 @@ Twist carried_motion(const Pose& X_OL, const Vec3& w, const Vec3& t, const Vec3&
 }
 
 }  // namespace
+
+std::array<Vec3, 2> across(const ChainAxis& axis) {
+  const Vec3 u = axis.direction.unitOrthogonal();
+  return {u, axis.direction.cross(u)};
+}
 
 Pose forward(const ChainParameters& machine, const std::vector<double>& readings) {
   return kinematics::forward(machine.chain, positions(machine, readings));

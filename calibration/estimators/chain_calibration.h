@@ -6,6 +6,7 @@
 // (Everett 1987). The redundant ones are recognised, named and left as they are.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct ChainCalibration : Estimation {
 };
 
 Pose forward(const ChainParameters& machine, const std::vector<double>& readings);
+
+/// u and v of the axis's parameters: unit vectors across it, in O.
+std::array<Vec3, 2> across(const kinematics::ChainAxis& axis);
 
 /// Names of all parameters, in the order in which a redundant one gives way to those before it.
 std::vector<std::string> chain_parameter_names(const kinematics::Chain& chain);

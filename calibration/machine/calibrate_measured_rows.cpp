@@ -9,11 +9,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "calibration/machine/axis_signs.h"
+#include "calibration/machine/compared_tables.h"
 #include "calibration/machine/machine_of_rows.h"
 #include "calibration/machine/measurement_columns.h"
 #include "calibration/table/measured_rows.h"
 #include "core/error.h"
+#include "core/text/some_of.h"
 #include "core/units.h"
+#include "machine/file/calibration_section.h"
 
 namespace understudy::calibration {
 namespace {
@@ -21,15 +25,6 @@ namespace {
 // Rows that a calibrated machine still misses by so much (RMS) are not this machine's.
 constexpr double kUnexplained = 20e-3;     // [m]
 constexpr double kUnexplainedTurn = 0.15;  // [rad]
-
-void assume_noise(const std::optional<MeasurementNoise>& noise, RowProblem& problem) {
-  if (!noise) return;
-  for (MeasurementRow& row : problem.rows) {
-    if (row.noise_told) continue;
-    row.covariance = noise->covariance();
-    row.noise_told = true;
-  }
-}
 
 /// The row's numbers where a whole pose has them.
 Twist as_pose(RowKind kind, const Eigen::VectorXd& numbers) {
@@ -47,6 +42,33 @@ void check_explained(const RowCalibration& found, const std::string& file, const
         fmt::format("no calibration of {} explains these rows: {} residuals stay at {:.1f} {} RMS; "
                     "another machine, or rows of measurements and joints that do not belong together?",
                     machine, part.name, turn ? to_deg(part.after) : to_mm(part.after), turn ? "deg" : "mm"));
+  }
+}
+
+void check_signs(const RowProblem& problem, const RowCalibration& found, const std::string& file) {
+  const auto turned = turned_axis(problem, found);
+  if (!turned) return;
+  const double unit = turned->angle ? 1e-3 : kMillimetre;
+  const char* name = turned->angle ? "mrad" : "mm";
+  throw InputError(
+      {file, 0, 0},
+      fmt::format("the rows fit this machine far better where axis {} counts the other way ({:.2f} {} "
+                  "RMS instead of {:.2f}): write -1 for it in `signs` of the map's joints",
+                  turned->name, turned->after / unit, name, turned->before / unit));
+}
+
+/// Machine files refuse axes that are farther from their drawing.
+void check_drawing(const RowCalibration& found, const std::string& file) {
+  const ChainParameters* chain = found.machine.chain();
+  for (std::size_t k = 0; chain && k < found.estimated.size(); ++k) {
+    const double by = std::abs(found.changes[static_cast<Eigen::Index>(k)]);
+    if (found.estimated[k].find(" tilt ") == std::string::npos || by <= machine::kTurnedFromDrawing) continue;
+    throw InputError(
+        {file, 0, 0},
+        fmt::format("these rows turn '{}' by {:.1f} deg from its drawing, more than {:.1f}, as no "
+                    "machine is built: measure more postures, or say with --prior how near its "
+                    "drawing it is (--prior 1,0.3)",
+                    found.estimated[k], to_deg(by), to_deg(machine::kTurnedFromDrawing)));
   }
 }
 
@@ -83,7 +105,15 @@ void take_rows(const MeasuredRows& rows, const RowCalibration& found, MachineCal
                               spoiled.sigmas, spoiled.length, spoiled.turn});
   }
   result.redundant = found.redundant;
+  result.shared = found.shared;
+  result.target_sigmas = found.target_sigmas;
   result.notes = rows.notes;
+  const SurroundingsLayout layout(rows.problem);
+  for (std::size_t i = 0; i < layout.planes.size(); ++i) {
+    const Vec3& normal = found.around.planes[i].normal;
+    result.notes.push_back(fmt::format("plane {}: normal {:.6f}, {:.6f}, {:.6f}", layout.planes[i].name,
+                                       normal.x(), normal.y(), normal.z()));
+  }
 }
 
 std::vector<std::string> spoiled_lines(const MachineCalibration& result) {
@@ -109,11 +139,15 @@ MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
   const machine::MachineDescription nominal = machine::load_machine(request.machine);
   result.file = request.map.file;
   require_row_model(nominal, result);
-  MeasuredRows rows = read_measured_rows(request.map, request.measurements, nominal);
+  MeasuredRows rows = read_measured_rows(request.map, request.measurements, nominal, request.compared);
   assume_noise(request.noise, rows.problem);
+  rows.problem.prior = request.prior;
   const RowCalibration found = calibrate_rows(rows.problem, {.progress = stage_of(request.progress, 0, 0.7)});
   check_answer(found, rows);
+  check_signs(rows.problem, found, rows.files.front());
   check_explained(found, rows.files.front(), nominal.name);
+
+  check_drawing(found, rows.files.front());
 
   result.machine = nominal;
   result.file = rows.files.front();
@@ -124,12 +158,8 @@ MachineCalibration calibrate_measured_rows(const RowsRequest& request) {
   if (!result.spoiled.empty())
     result.warnings.push_back(fmt::format("{} of {} rows do not agree with the others and were left out: {}",
                                           result.spoiled.size(), rows.problem.rows.size(),
-                                          fmt::join(spoiled_lines(result), ", ")));
-  if (!request.compared.empty()) {
-    MeasuredRows others = read_measured_rows(request.map, request.compared, nominal);
-    assume_noise(request.noise, others.problem);
-    result.compared = compared_rows(others.problem, rows.problem, found);
-  }
+                                          some_of(spoiled_lines(result), 8)));
+  compare_tables(request, rows, found, nominal, result);
   result.machine.calibration = {"rows", std::filesystem::path(rows.files.front()).filename().string(),
                                 rows.sha256, static_cast<int>(rows.problem.rows.size()), result.tip.rms};
   return result;

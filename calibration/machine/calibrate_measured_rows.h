@@ -15,10 +15,11 @@ namespace understudy::calibration {
 struct RowsRequest {
   ColumnMap map;
   std::vector<std::string> measurements;  ///< paths; none where the map names its files
-  std::vector<std::string> compared;      ///< paths of rows that are not fitted; read as the map's one table
+  std::vector<std::string> compared;      ///< paths of rows that are not fitted (compared_tables.h)
   std::string machine;                    ///< name or path
   std::optional<MeasurementNoise> noise;  ///< of rows that tell none
-  std::string command;                    ///< for the record
+  DrawingPrior prior = {};
+  std::string command;  ///< for the record
   Progress progress = {};
 };
 

@@ -42,6 +42,11 @@ struct ParameterLine {
   double sigma = 0;              ///< in `unit`; NaN where a plug-in gave no covariance
 };
 
+struct ComparedFile {
+  std::string file;
+  std::vector<PartReport> parts;
+};
+
 struct MachineCalibration {
   machine::MachineDescription machine;  ///< calibrated, with its record
   std::string file;                     ///< of the measurements
@@ -61,6 +66,9 @@ struct MachineCalibration {
   // Of rows of any kind (calibration/rows); empty where whole poses in W were measured.
   std::vector<PartReport> parts;             ///< of the fitted rows
   std::vector<PartReport> compared;          ///< of rows that were not fitted
+  std::vector<ComparedFile> compared_files;  ///< the same, file by file
+  std::vector<TargetSigma> target_sigmas;
+  double shared = 0;                         ///< RowCalibration::shared
   std::vector<FoundNumber> found;            ///< frames, targets, places
   std::vector<std::string> untold;           ///< parameters that stay near their drawing
   std::vector<std::string> untold_together;  ///< combinations of parameters that do

@@ -9,6 +9,7 @@
 #include "calibration/calibrated.h"
 #include "calibration/estimators/independent_columns.h"
 #include "calibration/rows/row_report.h"
+#include "calibration/rows/shared_error.h"
 #include "calibration/rows/surroundings_start.h"
 
 namespace understudy::calibration {
@@ -114,7 +115,24 @@ void warn_of_noise(RowCalibration& result) {
 struct Asked {
   std::vector<Index> machine;
   std::vector<std::string> estimated, redundant;
+  StandingAxes stands;
 };
+
+/// Axes of a chain whose readings are all the same but for what a controller's resting jitters.
+StandingAxes standing_axes(const RowProblem& problem) {
+  constexpr double kStands = 1e-3;  // [m] or [rad]
+  StandingAxes stands;
+  if (!problem.nominal.chain()) return stands;
+  for (std::size_t i = 0; i < problem.nominal.axes(); ++i) {
+    double low = problem.rows.front().axes[i], high = low;
+    for (const MeasurementRow& row : problem.rows) {
+      low = std::min(low, row.axes[i]);
+      high = std::max(high, row.axes[i]);
+    }
+    stands.push_back(high - low < kStands ? std::optional((low + high) / 2) : std::nullopt);
+  }
+  return stands;
+}
 
 Asked unknowns_of(const RowProblem& problem) {
   const auto any = [&](bool (*tells)(const MeasurementRow&, const RowProblem&)) {
@@ -122,7 +140,8 @@ Asked unknowns_of(const RowProblem& problem) {
                        [&](const MeasurementRow& row) { return tells(row, problem); });
   };
   Asked unknowns;
-  unknowns.machine = problem.nominal.free_parameters(!any(tells_base), !any(tells_tool));
+  unknowns.stands = standing_axes(problem);
+  unknowns.machine = problem.nominal.free_parameters(!any(tells_base), !any(tells_tool), unknowns.stands);
   const auto parameters = problem.nominal.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)
     (std::binary_search(unknowns.machine.begin(), unknowns.machine.end(), static_cast<Index>(k))
@@ -188,8 +207,8 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
   };
   if (untold(before->fit.state, options.start, {})) return result;
   tell(options.progress, 3, 10, fmt::format("fitting {} rows", problem.rows.size()));
-  const AgreeingFit agreeing = fit_agreeing(likelihood, problem, {problem.nominal, before->fit.state.around},
-                                            options.start, options.machine, options.max_iterations);
+  AgreeingFit agreeing = fit_agreeing(likelihood, problem, {problem.nominal, before->fit.state.around},
+                                      options.start, options.machine, options.max_iterations);
   const RowFit& after = agreeing.fit;
   if (const std::size_t spoiled = spoiled_rows(agreeing.weights);
       static_cast<double>(spoiled) > kSpoiledShare * static_cast<double>(problem.rows.size()))
@@ -203,10 +222,17 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
   // What the nominal machine leaves, weighed as the found one is.
   const RowFit compared = likelihood.fit({problem.nominal, before->fit.state.around}, agreeing.noise, false,
                                          options.max_iterations, agreeing.weights);
+  if (options.machine) {
+    const SharedError shared =
+        shared_error(problem, layout, likelihood.unknowns(), after, agreeing.noise, agreeing.weights);
+    result.shared = shared.share;
+    agreeing.fit.covariance = shared.covariance;
+  }
   fill(problem, layout, compared, agreeing, result);
   if (options.machine) result.estimated = unknowns.estimated;
   const Index machine = options.machine ? likelihood.prior().size() : 0;
   result.covariance = after.covariance.topLeftCorner(machine, machine);
+  result.target_sigmas = target_sigmas(problem, layout, likelihood.unknowns(), after);
   result.changes = after.moved.head(machine);
   name_untold(result.estimated, result.covariance, likelihood.prior().head(machine), result);
   // Unknowns that the prior tells count as none.
@@ -222,6 +248,12 @@ RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& optio
                     "the same rows, and the machine the right one?",
                     after.iterations));
   warn_of_noise(result);
+  for (std::size_t i = 0; i < unknowns.stands.size(); ++i)
+    if (unknowns.stands[i] && options.machine)
+      result.warnings.push_back(fmt::format(
+          "axis {} stands still in all rows: it stays as drawn, and the uncertainties hold only where "
+          "it stands there",
+          problem.nominal.chain()->chain.axes[i].name));
   result.status = Status::ok;
   return result;
 }

@@ -27,6 +27,12 @@ struct FoundNumber {
   bool angle = false;
 };
 
+/// How well the machine places what was measured on it, about its base.
+struct TargetSigma {
+  std::string name;
+  double median = 0;  ///< [m], 1 sigma of its 3D position, over the rows that saw it
+};
+
 /// A row that was left out, since it does not agree with the others.
 struct SpoiledRow {
   std::size_t row = 0;          ///< of the problem
@@ -44,6 +50,7 @@ struct RowCalibration : Estimation {
   Surroundings around;
   Surroundings around_nominal;  ///< as the nominal machine has them
   std::vector<FoundNumber> found;
+  std::vector<TargetSigma> target_sigmas;
   std::vector<PartReport> parts;
   /// Parameters of which the rows tell less than the prior of row_fit.h: they stay near their drawing.
   std::vector<std::string> untold;
@@ -54,6 +61,7 @@ struct RowCalibration : Estimation {
   std::vector<Eigen::VectorXd> before, after;
   std::vector<Eigen::VectorXd> whitened;  ///< of `after`
   AddedNoise added{};
+  double shared = 0;  ///< of the errors of one pose's rows, what they have in common (shared_error.h)
 };
 
 struct RowOptions {
@@ -67,9 +75,13 @@ struct RowOptions {
 /// Never throws for data: `status` and `message` say what is missing, `pose` which row.
 RowCalibration calibrate_rows(const RowProblem& problem, const RowOptions& options = {});
 
+struct ComparedRows {
+  std::vector<PartReport> all;
+  std::vector<std::vector<PartReport>> by_table;  ///< by MeasurementRow::table
+};
+
 /// What rows that were not fitted say: `problem` against the machine and the surroundings that `fitted` found
 /// from `from`, each with its own. What stands around the new rows only is found from them.
-std::vector<PartReport> compared_rows(const RowProblem& problem, const RowProblem& from,
-                                      const RowCalibration& fitted);
+ComparedRows compared_rows(const RowProblem& problem, const RowProblem& from, const RowCalibration& fitted);
 
 }  // namespace understudy::calibration

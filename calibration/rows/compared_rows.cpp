@@ -46,8 +46,7 @@ Eigen::VectorXd left_by(const RowProblem& problem, const RowMachine& machine, co
 
 }  // namespace
 
-std::vector<PartReport> compared_rows(const RowProblem& problem, const RowProblem& from,
-                                      const RowCalibration& fitted) {
+ComparedRows compared_rows(const RowProblem& problem, const RowProblem& from, const RowCalibration& fitted) {
   const SurroundingsLayout layout(from);
   const RowProblem before = with_known(problem, layout, fitted.around_nominal),
                    after = with_known(problem, layout, fitted.around);
@@ -56,7 +55,15 @@ std::vector<PartReport> compared_rows(const RowProblem& problem, const RowProble
   const Eigen::VectorXd nominal = left_by(before, from.nominal, noise),
                         found = left_by(after, fitted.machine, noise);
   if (nominal.size() == 0 || found.size() == 0) return {};
-  return part_reports(problem, nominal, found, fitted.added);
+  ComparedRows compared{part_reports(problem, nominal, found, fitted.added), {}};
+  int tables = 0;
+  for (const MeasurementRow& row : problem.rows) tables = std::max(tables, row.table + 1);
+  for (int table = 0; table < tables; ++table) {
+    RowWeights weights;
+    for (const MeasurementRow& row : problem.rows) weights.push_back(row.table == table ? 1 : 0);
+    compared.by_table.push_back(part_reports(problem, nominal, found, fitted.added, weights));
+  }
+  return compared;
 }
 
 }  // namespace understudy::calibration

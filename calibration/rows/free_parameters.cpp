@@ -45,14 +45,18 @@ std::vector<std::size_t> holding(const kinematics::PerStrut<Vec3>& joints) {
 
 }  // namespace
 
-std::vector<Index> free_parameters(const ChainParameters& nominal, bool base_free, bool tool_free) {
+std::vector<Index> free_parameters(const ChainParameters& nominal, bool base_free, bool tool_free,
+                                   const StandingAxes& stands) {
   const auto parameters = static_cast<Index>(chain_parameter_names(nominal.chain).size());
   const Index around = (base_free ? 6 : 0) + (tool_free ? 6 : 0);
   Eigen::MatrixXd J(6 * kPoses, around + parameters);
   Random random(1, "free parameters");
   for (Index pose = 0; pose < kPoses; ++pose) {
     std::vector<double> axes;
-    for (const auto& axis : nominal.chain.axes) axes.push_back(drawn(axis, random));
+    for (std::size_t i = 0; i < nominal.chain.axes.size(); ++i) {
+      const double reading = drawn(nominal.chain.axes[i], random);
+      axes.push_back(stands.empty() ? reading : stands[i].value_or(reading));
+    }
     const Pose X = forward(nominal, axes);
     Mat6 by_frame = Mat6::Identity(), by_target = Mat6::Zero();
     by_frame.topRightCorner<3, 3>() = -cross_matrix(X.translation());
@@ -62,14 +66,14 @@ std::vector<Index> free_parameters(const ChainParameters& nominal, bool base_fre
     if (tool_free) rows.middleCols<6>(base_free ? 6 : 0) = by_target;
     rows.rightCols(parameters) = chain_rows(nominal, axes);
   }
-  // Of columns that can stand in for each other the first ones are kept: with a free base, the first axis
-  // comes last.
+  // Of columns that can stand in for each other the first ones are kept: those to be held come last.
   std::vector<Index> order(static_cast<std::size_t>(J.cols()));
   std::iota(order.begin(), order.end(), Index{0});
-  if (base_free && !nominal.chain.axes.empty()) {
-    const auto first = order.begin() + around;
-    std::rotate(first, first + (nominal.chain.axes.front().angle ? 5 : 3), order.end());
-  }
+  std::vector<Index> last = held_columns(nominal.chain, base_free, tool_free, stands);
+  for (Index& column : last) column += around;
+  std::erase_if(order,
+                [&](Index column) { return std::find(last.begin(), last.end(), column) != last.end(); });
+  order.insert(order.end(), last.begin(), last.end());
   std::vector<Index> kept;
   for (const Index k : independent_columns(J(Eigen::all, order)))
     if (const Index column = order[static_cast<std::size_t>(k)]; column >= around)

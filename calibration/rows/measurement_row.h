@@ -52,8 +52,17 @@ struct KnownDistance {
   double sigma = 0;   ///< [m], above 0
 };
 
+/// 1 sigma of how far a parameter may be from its drawing before any row is looked at: a wide normal prior
+/// that matters only where rows tell nothing. Machine files refuse axes 10 deg away
+/// (machine/file/calibration_section.h): 3 of these.
+struct DrawingPrior {
+  double length = 10e-3;  ///< [m]
+  double angle = 0.058;   ///< [rad]
+};
+
 struct RowProblem {
   RowMachine nominal;
+  DrawingPrior prior = {};
   std::vector<MeasurementRow> rows;
   // Those that are known; all others that rows name are found.
   std::map<std::string, Pose> frames;           ///< X_MS: S seen from the measuring frame

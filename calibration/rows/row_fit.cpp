@@ -29,7 +29,7 @@ RowLikelihood::RowLikelihood(const RowProblem& problem, const SurroundingsLayout
   prior_.resize(static_cast<Index>(unknowns_.size()));
   for (std::size_t k = 0; k < unknowns_.size(); ++k)
     prior_[static_cast<Index>(k)] =
-        parameters[static_cast<std::size_t>(unknowns_[k])].angle ? kPriorAngle : kPriorLength;
+        parameters[static_cast<std::size_t>(unknowns_[k])].angle ? problem.prior.angle : problem.prior.length;
 }
 
 RowLikelihood::Linear RowLikelihood::linear(const RowState& at, const AddedNoise& noise, bool machine_too,

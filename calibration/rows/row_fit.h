@@ -6,11 +6,6 @@
 
 namespace understudy::calibration {
 
-// 1 sigma of how far a parameter may be from its drawing before any row is looked at. Machine files refuse
-// calibrations 25 mm or 10 deg away (machine/file/calibration_section.h): 2.5 and 3 of these.
-constexpr double kPriorLength = 10e-3;  // [m]
-constexpr double kPriorAngle = 0.058;   // [rad]
-
 struct RowFit {
   RowState state;
   bool settled = false;  ///< the last step was below 1e-5 standard deviations

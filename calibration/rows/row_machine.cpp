@@ -79,8 +79,9 @@ RowMachine RowMachine::moved(const Eigen::VectorXd& by) const {
   return to;
 }
 
-std::vector<Eigen::Index> RowMachine::free_parameters(bool base_free, bool tool_free) const {
-  return chain() ? calibration::free_parameters(*chain(), base_free, tool_free)
+std::vector<Eigen::Index> RowMachine::free_parameters(bool base_free, bool tool_free,
+                                                      const StandingAxes& stands) const {
+  return chain() ? calibration::free_parameters(*chain(), base_free, tool_free, stands)
                  : calibration::free_parameters(hexapod()->geometry, base_free, tool_free);
 }
 

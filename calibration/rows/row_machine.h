@@ -8,6 +8,7 @@
 
 #include "calibration/estimators/chain_calibration.h"
 #include "calibration/problem.h"
+#include "calibration/rows/held_columns.h"
 
 namespace understudy::calibration {
 
@@ -36,8 +37,9 @@ class RowMachine {
   /// d (tip, rotation) / d parameters, in S. `X_ST` is what forward() says of these readings.
   Eigen::MatrixXd parameter_rows(const std::vector<double>& readings, const Pose& X_ST) const;
   RowMachine moved(const Eigen::VectorXd& by) const;
-  /// Which parameters mean anything (free_parameters.h).
-  std::vector<Eigen::Index> free_parameters(bool base_free, bool tool_free) const;
+  /// Which parameters mean anything (free_parameters.h). Struts of a hexapod all move.
+  std::vector<Eigen::Index> free_parameters(bool base_free, bool tool_free,
+                                            const StandingAxes& stands = {}) const;
 
   /// The one that it is, else nothing.
   const ChainParameters* chain() const { return std::get_if<ChainParameters>(&model_); }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
+
+#include "core/quantile.h"
 
 namespace understudy::calibration {
 namespace {
@@ -66,6 +69,28 @@ std::vector<PartReport> part_reports(const RowProblem& problem, const Eigen::Vec
     reports.push_back(report);
   }
   return reports;
+}
+
+std::vector<TargetSigma> target_sigmas(const RowProblem& problem, const SurroundingsLayout& layout,
+                                       const std::vector<Index>& unknowns, const RowFit& fit) {
+  const Index machine = fit.covariance.cols() - layout.columns();
+  if (machine <= 0) return {};
+  const RowEquations equations = row_equations(problem, layout, fit.state, true);
+  const auto first = first_equations(problem);
+  std::map<std::string, std::vector<double>> sigmas;
+  for (std::size_t j = 0; j < problem.rows.size(); ++j) {
+    const RowKind kind = problem.rows[j].kind;
+    if (kind != RowKind::position && kind != RowKind::pose && kind != RowKind::point) continue;
+    MatrixXd J = MatrixXd::Zero(3, fit.covariance.cols());
+    J.leftCols(machine) = equations.machine.middleRows<3>(first[j])(Eigen::all, unknowns);
+    const auto& target = layout.targets[static_cast<std::size_t>(layout.rows[j].target)];
+    for (const Index column : {target.position, target.turn})
+      if (column >= 0) J.middleCols<3>(machine + column) = equations.around.block<3, 3>(first[j], column);
+    sigmas[target.name].push_back(std::sqrt((J * fit.covariance).cwiseProduct(J).sum()));
+  }
+  std::vector<TargetSigma> list;
+  for (const auto& [name, all] : sigmas) list.push_back({name.empty() ? "tool" : name, quantile(all, 0.5)});
+  return list;
 }
 
 std::vector<FoundNumber> found_numbers(const SurroundingsLayout& layout, const Surroundings& around,

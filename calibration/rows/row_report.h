@@ -18,6 +18,10 @@ std::vector<SpoiledRow> spoiled_list(const RowProblem& problem, const RowFit& fi
 void name_untold(const std::vector<std::string>& names, const Eigen::MatrixXd& covariance,
                  const Eigen::VectorXd& prior, RowCalibration& result);
 
+/// Of targets whose positions rows tell.
+std::vector<TargetSigma> target_sigmas(const RowProblem& problem, const SurroundingsLayout& layout,
+                                       const std::vector<Eigen::Index>& unknowns, const RowFit& fit);
+
 /// Numbers of the surroundings, named as the layout's columns; the last rows of `covariance` are theirs.
 std::vector<FoundNumber> found_numbers(const SurroundingsLayout& layout, const Surroundings& around,
                                        const Eigen::MatrixXd& covariance);

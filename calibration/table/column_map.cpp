@@ -1,6 +1,7 @@
 #include "calibration/table/column_map.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -59,6 +60,15 @@ void read_joints(YamlMap& map, TableMap& table) {
   if (table.joint_unit_told) table.joints.unit = angle_unit(map);
   table.slide_unit_told = map.has("slide_unit");
   if (table.slide_unit_told) table.slide_unit = length_unit(map, "slide_unit");
+  const std::size_t axes = table.joints.columns.size();
+  if (map.has("signs")) {
+    table.joint_signs = map.numbers("signs", axes, {-1, 1}, "1, or -1 of an axis that counts the other way");
+    for (const double sign : table.joint_signs)
+      if (map.complete() && std::abs(sign) != 1) map.fail("signs", "are 1 or -1");
+  }
+  if (map.has("offsets"))
+    table.joint_offsets =
+        map.numbers("offsets", axes, {-10000, 10000}, "added behind the signs, in the columns' units");
   table.joint_format = table.format;
   if (!map.has("file")) return;
   table.joint_file = map.text("file", "with the joints of each row, in the same order");
@@ -125,6 +135,9 @@ void read_table(YamlMap& map, TableMap& table) {
       if (at.has("zero"))
         table.zero_unknown = at.word("zero", {"known", "unknown"}, "of the device's readings") == "unknown";
     });
+  if (table.orientation && map.has("seen_from"))
+    table.inverse = map.word("seen_from", {"frame", "target"},
+                             "target: the frame's pose as a camera on the tool sees it") == "target";
   const bool in_frame = table.position || table.orientation;
   table.frame = in_frame ? "device" : "";
   if (in_frame && map.has("frame")) table.frame = map.text("frame", "world, or the name of an unknown one");

@@ -33,14 +33,17 @@ struct TableMap {
   TextFormat format;
   NumberColumns joints;
   bool joint_unit_told = false;  ///< of angles; else it is recognised
-  double slide_unit = 1e-3;      ///< [m] of one, of sliding axes and struts
+  /// The machine's reading is sign * number + offset, in the joints' units; empty: as they stand.
+  std::vector<double> joint_signs, joint_offsets;
+  double slide_unit = 1e-3;  ///< [m] of one, of sliding axes and struts
   bool slide_unit_told = false;
   std::string joint_file;  ///< where the joints stand in a file of their own, by row number
   TextFormat joint_format;
   std::optional<NumberColumns> position, distance, orientation;
   OrientationReading reading;
-  std::string frame;   ///< empty: the machine's own, W
-  std::string target;  ///< empty: the machine's tool
+  bool inverse = false;  ///< poses and orientations are those of the frame, seen from the target
+  std::string frame;     ///< empty: the machine's own, W
+  std::string target;    ///< empty: the machine's tool
   std::string target_column, id, id_column;
   double sigma_position = 0, sigma_turn = 0;  ///< [m], [rad], of every row; 0: not told
   bool zero_unknown = false;                  ///< of distances

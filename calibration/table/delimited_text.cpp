@@ -95,6 +95,8 @@ std::string lower(std::string text) {
 
 DelimitedText::DelimitedText(const std::string& text, const std::string& file, const TextFormat& format)
     : file_(file), format_(format) {
+  if (text.starts_with("PK\x03\x04"))
+    throw InputError({file, 0, 0}, "is a spreadsheet or an archive: export the table as CSV");
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     throw InputError({file, 0, 0}, "is UTF-16: save it as plain text (UTF-8, CSV)");
   std::istringstream in(text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text);
@@ -176,6 +178,12 @@ std::size_t DelimitedText::column(const std::string& wanted) const {
   const std::string near = nearest_word(wanted, header_);
   throw InputError({file_, 0, 0}, fmt::format("there is no column '{}'{}", wanted,
                                               near.empty() ? "" : ", did you mean '" + near + "'?"));
+}
+
+bool DelimitedText::is_missing(std::size_t row, std::size_t column) const {
+  const std::string word = lower(trimmed(text(row, column)));
+  return word.empty() || word == "nan" || word == "na" || word == "n/a" || word == "-" || word == "--" ||
+         word == "null";
 }
 
 double DelimitedText::number(std::size_t row, std::size_t column) const {

@@ -31,6 +31,8 @@ class DelimitedText {
   /// from 1. Throws InputError that names the nearest one.
   std::size_t column(const std::string& name_or_number) const;
   const std::string& text(std::size_t row, std::size_t column) const { return rows_[row].cells[column]; }
+  /// An empty cell, or one that says that it has no number: nan, NA, -, --, null.
+  bool is_missing(std::size_t row, std::size_t column) const;
   /// Throws InputError with line, column and cell unless it is a finite number.
   double number(std::size_t row, std::size_t column) const;
 

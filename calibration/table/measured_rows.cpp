@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "calibration/rows/row_outliers.h"
 #include "calibration/table/raw_table.h"
@@ -150,6 +151,34 @@ class TableReader {
     return best;
   }
 
+  /// The same table with axes that count the other way, one after the other as long as that helps much, and
+  /// their names.
+  std::pair<RawTable, std::vector<std::string>> with_best_signs(const RawTable& raw, Left as_read) const {
+    constexpr std::size_t kMost = 3;
+    constexpr double kHelps = 0.7;
+    const auto axes = row_axes(machine_);
+    const auto badness = [](const Left& left) { return left.length / kFar + left.turn / kTurned; };
+    RawTable best = raw;
+    std::vector<std::string> names;
+    for (double least = badness(as_read); names.size() < kMost;) {
+      const RawTable from = best;
+      std::string name;
+      for (std::size_t i = 0; i < axes.size(); ++i) {
+        RawTable other = from;
+        other.map.joint_signs.resize(axes.size(), 1);
+        other.map.joint_signs[i] *= -1;
+        const double bad = badness(left(other));
+        if (!(bad < kHelps * least)) continue;
+        least = bad;
+        best = other;
+        name = axes[i].name;
+      }
+      if (name.empty()) break;
+      names.push_back(name);
+    }
+    return {best, names};
+  }
+
   /// Refuses what no place of the measuring frame fits, with the reading that would fit.
   void check_fit(const RawTable& raw) const {
     const Left as_read = left(raw);
@@ -168,6 +197,14 @@ class TableReader {
         if (*lengths) (*lengths)->unit = unit;
       suggest(other, fmt::format("lengths are in {}", name));
     }
+    other = raw;
+    other.map.inverse = !raw.map.inverse;
+    if (raw.map.orientation)
+      suggest(other, fmt::format("poses are seen_from: {}", other.map.inverse ? "target" : "frame"));
+    const auto [signed_best, names] = with_best_signs(raw, as_read);
+    if (!names.empty())
+      suggest(signed_best, fmt::format("{} {} the other way (`signs` of joints)", fmt::join(names, " and "),
+                                       names.size() == 1 ? "counts" : "count"));
     if (raw.map.orientation) {
       const RawTable best = best_orientation(raw);
       suggest(best, "orientations are " + to_string(best.map.reading));
@@ -176,7 +213,7 @@ class TableReader {
         {raw.file, 0, 0},
         fmt::format(
             "by this machine's geometry the rows are {:.0f} mm and {:.0f} deg off (RMS), wherever "
-            "the measuring frame stands: another machine, order of rows, or signs or mixed units of axes?",
+            "the measuring frame stands: another machine, order of rows, zeros or mixed units of axes?",
             to_mm(as_read.length), to_deg(as_read.turn)));
   }
 
@@ -185,10 +222,25 @@ class TableReader {
   MeasuredRows& out_;
 };
 
+/// Its stem; with the folder where another file has the same.
+std::string name_of(const std::string& file, const std::vector<std::string>& files,
+                    const std::vector<std::string>& beside) {
+  const fs::path path = fs::path(file).lexically_normal();
+  const auto same = [&path](const std::string& other) {
+    const fs::path it = fs::path(other).lexically_normal();
+    return it.stem() == path.stem() && it != path;
+  };
+  const bool shared =
+      std::any_of(files.begin(), files.end(), same) || std::any_of(beside.begin(), beside.end(), same);
+  const std::string stem = path.stem().string();
+  return shared && path.has_parent_path() ? (path.parent_path() / stem).string() : stem;
+}
+
 }  // namespace
 
 MeasuredRows read_measured_rows(const ColumnMap& map, const std::vector<std::string>& files,
-                                const machine::MachineDescription& machine) {
+                                const machine::MachineDescription& machine,
+                                const std::vector<std::string>& beside) {
   MeasuredRows out;
   out.problem.nominal = row_machine(machine);
   const Pose X_BW = machine.X_WB.inverse();
@@ -209,7 +261,8 @@ MeasuredRows read_measured_rows(const ColumnMap& map, const std::vector<std::str
   std::string bytes;
   TableReader reader(map, machine, out);
   for (const auto& [table, file] : tables) {
-    RawTable raw = read_raw(table, file, folder / table.joint_file, bytes);
+    RawTable raw = read_raw(table, file, name_of(file, files, beside), folder / table.joint_file, bytes);
+    out.notes.insert(out.notes.end(), raw.notes.begin(), raw.notes.end());
     raw.index = static_cast<int>(out.files.size());
     out.files.push_back(file);
     reader.read(std::move(raw));

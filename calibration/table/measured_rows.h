@@ -19,8 +19,10 @@ struct MeasuredRows {
 
 /// `files` are read by the map's one table; where it has none of them, its tables name their own. Throws
 /// InputError with file and line for what cannot be read, for axes beyond their ranges, and for units and
-/// conventions with which no place of the measuring frame fits.
+/// conventions with which no place of the measuring frame fits. What rows are of is named by their file,
+/// with its folder where another one of `files` and `beside` has the same name.
 MeasuredRows read_measured_rows(const ColumnMap& map, const std::vector<std::string>& files,
-                                const machine::MachineDescription& machine);
+                                const machine::MachineDescription& machine,
+                                const std::vector<std::string>& beside = {});
 
 }  // namespace understudy::calibration

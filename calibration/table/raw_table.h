@@ -19,12 +19,15 @@ struct RawTable {
   std::vector<double> distance;
   std::vector<int> lines;
   std::vector<std::string> targets, ids;
+  std::vector<std::string> notes;  ///< rows and sigmas that were not taken as they stand
 };
 
 /// Throws InputError for what cannot be read, for joints in a file of another length, and for units that the
-/// headers of its columns contradict or nothing tells. Appends the bytes that it read to `bytes`.
-RawTable read_raw(const TableMap& map, const std::string& file, const std::filesystem::path& joint_file,
-                  std::string& bytes);
+/// headers of its columns contradict or nothing tells. A row whose measured numbers are missing (an empty
+/// cell, NaN) is left out; a sigma of 0 among others is the least of the others. `id` names what the rows are
+/// of where the map does not. Appends the bytes that it read to `bytes`.
+RawTable read_raw(const TableMap& map, const std::string& file, const std::string& id,
+                  const std::filesystem::path& joint_file, std::string& bytes);
 
 /// Row by row in SI, by the units of `raw.map`. Throws InputError with the line of an orientation that is
 /// none.

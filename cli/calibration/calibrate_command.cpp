@@ -17,13 +17,14 @@
 #include "cli/progress.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/units.h"
 
 namespace understudy::cli {
 namespace {
 
 struct CalibrateCall {
   calibration::CalibrationRequest request;
-  std::vector<double> noise;
+  std::vector<double> noise, prior;
   std::vector<std::string> measurements, compared;
   std::string columns, output, report, urdf;
   OutputOptions told;
@@ -55,6 +56,7 @@ std::optional<calibration::RowsRequest> rows_request(CalibrateCall& call) {
   request.compared = call.compared;
   request.machine = call.request.machine;
   request.noise = noise_of(call.noise);
+  if (!call.prior.empty()) request.prior = {call.prior[0] * kMillimetre, call.prior[1] * kDegree};
   request.command = command_line();
   return request;
 }
@@ -68,6 +70,7 @@ int run_calibrate(CalibrateCall call) {
                                         return calibration::calibrate_measured_rows(*rows);
                                       }),
                         call.told);
+  if (!call.prior.empty()) throw InputError("--prior is of tables with --columns (docs/measurements.md)");
   calibration::CalibrationRequest request = call.request;
   request.measurements = call.measurements.front();
   request.noise = noise_of(call.noise);
@@ -91,8 +94,10 @@ void add_calibrate(CLI::App& app, Action& action) {
       "CSV of measured poses (docs/calibration-data.md); with --columns tables of any kind");
   command->add_option("--columns", call->columns,
                       "map of the columns of other tables, a .yaml (docs/measurements.md)");
-  command->add_option("--compare", call->compared,
-                      "tables that are not fitted, only compared with the result");
+  command->add_option(
+      "--compare", call->compared,
+      "tables that are not fitted, only compared with the result; a .yaml is a map that names "
+      "its tables");
   add_machine_option(*command, call->request.machine);
   command->add_option(
       "--estimator", call->request.estimator,
@@ -109,9 +114,18 @@ void add_calibrate(CLI::App& app, Action& action) {
                    "um,mrad: 1 sigma of a measured pose on each axis, where the file has no columns for it")
       ->delimiter(',')
       ->expected(2);
+  command
+      ->add_option("--prior", call->prior,
+                   "mm,deg: 1 sigma of how far a parameter is from its drawing where rows tell nothing, with "
+                   "--columns (without the option 10,3.3)")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(CLI::Range(1e-6, 1e3));
   auto* output = command->add_option("-o,--output", call->output, "calibrated machine file, a .yaml");
   output->required();
-  command->add_option("--urdf-out", call->urdf, "also write the calibrated machine as a URDF (open chains)");
+  command->add_option("--urdf-out", call->urdf,
+                      "also write the calibrated machine as a URDF (open chains): its own with other "
+                      "origins, where it names one");
   command->add_option("--report", call->report, "folder for report.html and summary.json");
   add_quiet_option(*command, call->told, "no progress, and the name of the calibrated machine file alone");
   add_json_option(*command, call->told, "the summary");

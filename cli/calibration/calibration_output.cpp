@@ -34,7 +34,7 @@ int CalibrationOutput::write(const calibration::MachineCalibration& result, cons
       result.machine.file, machine::calibration_section(result.machine, result.stored), machine_file_);
   std::optional<StagedFile> named = machine::staged_urdf(result.machine.file, machine_file_), corrected;
   const auto companions = machine::staged_companions(result.machine.file, machine_file_);
-  if (!urdf_file_.empty()) corrected.emplace(urdf_file_, urdf_of(result.machine));
+  if (!urdf_file_.empty()) corrected.emplace(urdf_file_, calibrated_urdf_of(result.machine));
   stop_if_interrupted();
   if (report_) report_->commit();
   if (named) named->commit();

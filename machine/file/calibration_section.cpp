@@ -25,12 +25,26 @@ void read_record(YamlMap& map, CalibrationRecord& record) {
         map.quantity("tip_sigma_um", {0, 1e5}, "3D uncertainty of the tip, 1 sigma, RMS over the work space");
 }
 
-void check_near(const YamlMap& map, const std::string& key, const std::string& what, double apart) {
-  if (apart > kFarFromDrawing)
+void check_near(const YamlMap& map, const std::string& key, const std::string& what, double apart,
+                double limit = kFarFromDrawing) {
+  if (apart > limit)
     throw InputError(map.place(key),
                      fmt::format("{} is {:.1f} mm from where geometry has it, more than {:.0f} mm: is this "
                                  "the calibration of another machine?",
-                                 what, to_mm(apart), to_mm(kFarFromDrawing)));
+                                 what, to_mm(apart), to_mm(limit)));
+}
+
+/// How far a chain's axes and mounts may be from their drawing: zeros of axes before them swing them about.
+double chain_limit(const kinematics::Chain& drawn) {
+  double reach = 0;
+  for (const kinematics::ChainAxis& from : drawn.axes) {
+    if (!from.angle) continue;
+    for (const kinematics::ChainAxis& to : drawn.axes)
+      if (to.angle) reach = std::max(reach, (to.point - from.point).norm());
+    for (const Pose& mount : {drawn.X_OT_zero, drawn.X_OS_zero})
+      reach = std::max(reach, (mount.translation() - from.point).norm());
+  }
+  return kFarFromDrawing + kZeroFromDrawing * reach;
 }
 
 void read_struts(YamlMap& map, HexapodModel& hexapod) {
@@ -60,14 +74,14 @@ void read_struts(YamlMap& map, HexapodModel& hexapod) {
         place, fmt::format("{} lists {} struts, not {}", map.path("struts"), count, kinematics::kStruts));
 }
 
-Pose read_mount_near(YamlMap& map, const std::string& body, const Pose& drawn) {
+Pose read_mount_near(YamlMap& map, const std::string& body, const Pose& drawn, double limit) {
   const Pose X = read_mount(map, body, "O with all axes at 0");
   if (!map.complete()) return drawn;
-  check_near(map, body + "_mm", body + " at zero", (X.translation() - drawn.translation()).norm());
+  check_near(map, body + "_mm", body + " at zero", (X.translation() - drawn.translation()).norm(), limit);
   return X;
 }
 
-void read_axis(YamlMap& map, const kinematics::ChainAxis& drawn, kinematics::ChainAxis& axis) {
+void read_axis(YamlMap& map, const kinematics::ChainAxis& drawn, double limit, kinematics::ChainAxis& axis) {
   const std::string name = map.text("axis", "its name");
   axis.direction = map.vector("direction", {-1, 1}, "unit vector in O at drive readings 0");
   if (drawn.angle) axis.point = map.vector("point_mm", kPlace, "a point on the axis, in O");
@@ -86,15 +100,17 @@ void read_axis(YamlMap& map, const kinematics::ChainAxis& drawn, kinematics::Cha
                                  "{:.1f} deg: is this the calibration of another machine?",
                                  name, to_deg(turned), to_deg(kTurnedFromDrawing)));
   if (drawn.angle)
-    check_near(map, "point_mm", "axis " + name, drawn.direction.cross(axis.point - drawn.point).norm());
+    check_near(map, "point_mm", "axis " + name, drawn.direction.cross(axis.point - drawn.point).norm(),
+               limit);
 }
 
 void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
   ChainModel& model = machine.chain();
   kinematics::Chain& chain = model.kinematics.chain;
   const kinematics::Chain drawn = chain;
-  chain.X_OT_zero = read_mount_near(map, "tool", drawn.X_OT_zero);
-  chain.X_OS_zero = read_mount_near(map, "work", drawn.X_OS_zero);
+  const double limit = chain_limit(drawn);
+  chain.X_OT_zero = read_mount_near(map, "tool", drawn.X_OT_zero, limit);
+  chain.X_OS_zero = read_mount_near(map, "work", drawn.X_OS_zero, limit);
   const Place place = map.place("axes");
   std::size_t count = 0;
   const bool named = !model.kinematics.parameters.empty();
@@ -105,7 +121,7 @@ void read_chain_calibration(YamlMap& map, MachineDescription& machine) {
              count = i + 1;
              kinematics::ChainAxis as_drawn = drawn.axes[i];
              if (!named) as_drawn.angle = axis.either("the axis turns", as_drawn.angle);
-             read_axis(axis, as_drawn, chain.axes[i]);
+             read_axis(axis, as_drawn, limit, chain.axes[i]);
            });
   if (count > 0 && count < chain.axes.size())
     throw InputError(place, fmt::format("{} lists {} axes, the machine has {}", map.path("axes"), count,

@@ -122,7 +122,9 @@ Link assumed_link(const kinematics::Chain& chain, int axis) {
   return rod;
 }
 
-std::vector<fs::path> files_named_in(const std::string& text, const fs::path& file) {
+namespace {
+
+std::optional<Names> names_in(const std::string& text, const fs::path& file) {
   struct Seen {};  // the other keys are not of interest here
   std::optional<Names> names;
   try {
@@ -135,6 +137,18 @@ std::vector<fs::path> files_named_in(const std::string& text, const fs::path& fi
     });
   } catch (const Seen&) {
   }
+  return names;
+}
+
+}  // namespace
+
+std::string tool_link_named_in(const std::string& text, const fs::path& file) {
+  const std::optional<Names> names = names_in(text, file);
+  return names ? names->tool : "";
+}
+
+std::vector<fs::path> files_named_in(const std::string& text, const fs::path& file) {
+  const std::optional<Names> names = names_in(text, file);
   if (!names) return {};
   const fs::path folder = fs::absolute(file).parent_path();
   const MeshPlaces places{folder / names->urdf, folder / names->packages};

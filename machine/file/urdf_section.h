@@ -19,6 +19,9 @@ void read_urdf_chain(YamlMap& map, const Pose& X_LT, MachineDescription& machine
 /// Empty for a machine without a URDF.
 std::vector<std::filesystem::path> files_named_in(const std::string& text, const std::filesystem::path& file);
 
+/// `geometry.tool_link` of a machine file of this text; empty for a machine without a URDF.
+std::string tool_link_named_in(const std::string& text, const std::filesystem::path& file);
+
 /// For such an axis: a round rod from it to the next one, or to the tool.
 Link assumed_link(const kinematics::Chain& chain, int axis);
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/text/xml.h"
+#include "machine/file/roll_pitch_yaw.h"
 
 namespace understudy::machine {
 namespace {
@@ -19,16 +20,6 @@ constexpr double kNoEnd = 1e6;
 std::string number(double value) { return fmt::format("{}", value); }
 
 std::string numbers(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
-
-/// Angles of R = Rz(yaw) Ry(pitch) Rx(roll); roll from what yaw leaves, so that R stays exact where pitch is
-/// a right angle.
-Vec3 roll_pitch_yaw(const Mat3& R) {
-  const double level = std::hypot(R(0, 0), R(1, 0));
-  const double yaw = level > 1e-14 ? std::atan2(R(1, 0), R(0, 0)) : 0.0;
-  const double c = std::cos(yaw), s = std::sin(yaw);
-  const double roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1));
-  return {roll, std::atan2(-R(2, 0), level), yaw};
-}
 
 std::string link_name(const Chain& chain, int axis) {
   return axis < 0 ? "frame" : chain.axes[axis].name + "_link";

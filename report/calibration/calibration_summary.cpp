@@ -83,25 +83,45 @@ std::string spoiled_text(const SpoiledLine& row) {
   return fmt::format("{}:{}: {}{} {:.1f} sigma", row.file, row.line, row.kind, off, row.sigmas);
 }
 
+/// A line each, of many the first; summary.json has all.
+std::string few_lines(const char* what, const std::vector<std::string>& list) {
+  constexpr std::size_t kShown = 8;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kShown, list.size()); ++i)
+    out += fmt::format("  {}: {}\n", what, list[i]);
+  if (list.size() > kShown)
+    out += fmt::format("  {}: {} more, in summary.json of --report\n", what, list.size() - kShown);
+  return out;
+}
+
 /// Of rows of any kind.
 std::string rows_text(const MachineCalibration& result) {
   std::string out = part_lines(result.parts, "") + part_lines(result.compared, "not fitted: ");
+  if (result.compared_files.size() > 1)
+    for (const ComparedFile& file : result.compared_files)
+      out += fmt::format("  not fitted, {}:\n", file.file) + part_lines(file.parts, "  ");
   out += fmt::format("  chi-square {:.1f} for {} degrees of freedom\n", result.chi_square,
                      result.degrees_of_freedom);
+  if (result.shared > 0)
+    out += fmt::format(
+        "  rows of one pose have {:.0f} % of their errors in common, which the uncertainties hold\n",
+        100 * result.shared);
   for (const FoundNumber& number : result.found)
     out += fmt::format("  {:<28} {:12.4f} {} (1 sigma {:.4f})\n", number.name,
                        number.angle ? to_deg(number.value) : to_mm(number.value), number.angle ? "deg" : "mm",
                        number.angle ? to_deg(number.sigma) : to_mm(number.sigma));
+  for (const TargetSigma& target : result.target_sigmas)
+    out += fmt::format("  uncertainty of {:<17} {:9.1f} um, 1 sigma about the base (median of its rows)\n",
+                       target.name, to_um(target.median));
   if (result.tip.poses > 0)
     out += fmt::format("  tip uncertainty left, 1 sigma   {:9.1f} um median, {:.1f} um worst ({} poses)\n",
                        to_um(result.tip.median), to_um(result.tip.worst), result.tip.poses);
   out += fmt::format("  {} redundant parameters were left as they are\n", result.redundant.size());
-  for (const std::string& name : result.untold)
-    out += fmt::format("  hardly told by these rows, and left near its drawing: {}\n", name);
-  for (const std::string& names : result.untold_together)
-    out += fmt::format("  hardly told together, and left near their drawing: {}\n", names);
-  for (const SpoiledLine& row : result.spoiled)
-    out += fmt::format("  left out, off from what the other rows say: {}\n", spoiled_text(row));
+  std::vector<std::string> spoiled;
+  for (const SpoiledLine& row : result.spoiled) spoiled.push_back(spoiled_text(row));
+  out += few_lines("hardly told by these rows, and left near its drawing", result.untold);
+  out += few_lines("hardly told together, and left near their drawing", result.untold_together);
+  out += few_lines("left out, off from what the other rows say", spoiled);
   for (const std::string& note : result.notes) out += "  " + note + "\n";
   for (const std::string& warning : result.warnings) out += "  warning: " + warning + "\n";
   return out;
@@ -195,6 +215,9 @@ std::string calibration_json(const MachineCalibration& result) {
                                    {"sigma", number(p.sigma)}});
   if (!result.redundant.empty()) value["redundant"] = result.redundant;
   if (!result.parts.empty()) {
+    value["targets"] = ordered_json::array();
+    for (const TargetSigma& target : result.target_sigmas)
+      value["targets"].push_back({{"name", target.name}, {"sigma_median_um", number(to_um(target.median))}});
     value["untold"] = result.untold;
     value["untold_together"] = result.untold_together;
     value["spoiled"] = ordered_json::array();
@@ -206,7 +229,13 @@ std::string calibration_json(const MachineCalibration& result) {
                                   {"off_deg", number(to_deg(row.turn))},
                                   {"sigmas", number(row.sigmas)}});
     value["parts"] = part_values(result.parts);
+    if (result.shared > 0) value["shared_in_one_pose"] = number(result.shared);
     if (!result.compared.empty()) value["not_fitted"] = part_values(result.compared);
+    if (result.compared_files.size() > 1) {
+      value["not_fitted_by_file"] = ordered_json::array();
+      for (const ComparedFile& file : result.compared_files)
+        value["not_fitted_by_file"].push_back({{"file", file.file}, {"parts", part_values(file.parts)}});
+    }
     value["found"] = ordered_json::array();
     for (const FoundNumber& f : result.found) {
       const std::string unit = f.angle ? "_deg" : "_mm";

@@ -265,7 +265,7 @@ TEST_F(Tracker, WrongUnitsAndConventionsAreNamed) {
   map(edited(kTracker, "wrist_2_joint, ", ""));
   EXPECT_THAT(refused(), HasSubstr("5 columns, machine stranger has 6 axes"));
   map(edited(kTracker, "elbow_joint, wrist_1_joint", "wrist_1_joint, elbow_joint"));
-  EXPECT_THAT(refused(), HasSubstr("another machine, order of rows, or signs"));
+  EXPECT_THAT(refused(), HasSubstr("another machine, order of rows, zeros"));
 }
 
 TEST(Sockets, AreMetAsByAnIndependentFitOfTheConstraint) {

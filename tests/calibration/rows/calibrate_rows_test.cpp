@@ -2,7 +2,6 @@
 #include "calibration/rows/calibrate_rows.h"
 
 #include <gmock/gmock.h>
-#include <Eigen/Cholesky>
 
 #include "tests/calibration/rows/drawn_rows.h"
 
@@ -87,19 +86,7 @@ Honesty honesty(const std::string& machine, Draw draw, int sets) {
     EXPECT_TRUE(found.ok()) << "set " << set << ": " << found.message;
     if (!found.ok()) return {};
     EXPECT_THAT(found.untold, IsEmpty());
-    // Whole poses of found and built machine differ by what the parameters differ: no frame is between them.
-    const auto free = static_cast<Eigen::Index>(columns.size());
-    Eigen::MatrixXd J(240, free);
-    Eigen::VectorXd apart(240);
-    for (Eigen::Index j = 0; j < 40; ++j) {
-      const auto axes = lab.drawn_axes();
-      const Pose X = lab.built.forward(axes), Y = found.machine.forward(axes);
-      J.middleRows<6>(6 * j) = lab.built.parameter_rows(axes, X)(Eigen::all, columns);
-      apart.segment<6>(6 * j) << Y.translation() - X.translation(),
-          log_rotation(Y.linear() * X.linear().transpose());
-    }
-    const Eigen::VectorXd error = J.colPivHouseholderQr().solve(apart);
-    sum.error += error.dot(found.covariance.ldlt().solve(error)) / static_cast<double>(free) / sets;
+    sum.error += lab.error_squared(found, columns) / sets;
     sum.residual += found.chi_square / found.degrees_of_freedom / sets;
   }
   return sum;
@@ -185,6 +172,25 @@ TEST(CalibrateRows, RefusesTooFewRowsAndAToolThatNeverTurns) {
   EXPECT_EQ(calibrate_rows(still.problem).status, Status::rank_deficient);
 }
 
+TEST(CalibrateRows, AnAxisThatNeverMovesStaysAsDrawnAndIsNamed) {
+  DrawnRows lab(all_free(), 3);
+  const std::size_t still = 0;
+  for (int j = 0; j < 80; ++j) {
+    lab.add_in_frame(RowKind::position, "r", make_pose(Mat3::Identity(), kBall), 1);
+    MeasurementRow& row = lab.problem.rows.back();
+    row.axes[still] = 0.3;
+    row.X_MG.translation() = lab.X_MS * (lab.built.forward(row.axes) * kBall) + lab.noise(kDrawnSigma);
+  }
+  const RowCalibration found = calibrate_rows(lab.problem);
+  ASSERT_TRUE(found.ok()) << found.message;
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("axis j1 stands still in all rows")));
+  for (const std::string& name : found.estimated) EXPECT_FALSE(name.starts_with("j1 ")) << name;
+  // The reflector is placed to what 80 rows of 50 um leave, not to the prior's millimetres.
+  ASSERT_EQ(found.target_sigmas.size(), 1u);
+  EXPECT_LT(found.target_sigmas[0].median, 2 * kDrawnSigma);
+  EXPECT_GT(found.target_sigmas[0].median, 0.1 * kDrawnSigma);
+}
+
 TEST(CalibrateRows, RowsThatWereNotFittedAreComparedWithTheFoundFrame) {
   DrawnRows lab(all_free(), 3);
   draw_poses(lab);
@@ -192,11 +198,16 @@ TEST(CalibrateRows, RowsThatWereNotFittedAreComparedWithTheFoundFrame) {
   const RowCalibration found = calibrate_rows(fitted);
   lab.problem.rows.clear();
   lab.add_in_frame(RowKind::pose, "body", kBody, 60);
-  const auto parts = compared_rows(lab.problem, fitted, found);
+  for (std::size_t j = 0; j < lab.problem.rows.size(); ++j) lab.problem.rows[j].table = j < 20 ? 0 : 1;
+  const ComparedRows compared = compared_rows(lab.problem, fitted, found);
+  const auto& parts = compared.all;
   ASSERT_EQ(parts.size(), 2u);
   // Noise of three axes, and a little of the parameters'.
   EXPECT_NEAR(parts[0].after, std::sqrt(3) * kDrawnSigma, 0.3 * kDrawnSigma);
   EXPECT_GT(parts[0].before, 5 * parts[0].after);
+  ASSERT_EQ(compared.by_table.size(), 2u);
+  EXPECT_EQ(compared.by_table[0][0].values, 20);
+  EXPECT_EQ(compared.by_table[1][0].values, 40);
 }
 
 }  // namespace

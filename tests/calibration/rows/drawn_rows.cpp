@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include "calibration/pose_choice.h"
@@ -66,6 +67,36 @@ void DrawnRows::add_in_frame(RowKind kind, const std::string& name, const Pose& 
         make_pose(Mat3(exp_rotation(noise(kDrawnTurn)) * X.linear()), X.translation() + noise(kDrawnSigma));
     problem.rows.push_back(out);
   }
+}
+
+void DrawnRows::add_three_targets(double shared, int count) {
+  const Vec3 targets[] = {{-0.05, 0.02, 0.03}, {0.03, -0.04, 0.06}, {0.02, 0.05, -0.01}};
+  for (int j = 0; j < count; ++j) {
+    MeasurementRow out = row(RowKind::position);
+    out.frame = "tracker";
+    const Vec3 common = noise(shared);
+    for (std::size_t i = 0; i < 3; ++i) {
+      out.target = std::string("r") + "123"[i];
+      out.X_MG.translation() = X_MS * (built.forward(out.axes) * targets[i]) + common + noise(kDrawnSigma);
+      problem.rows.push_back(out);
+    }
+  }
+}
+
+double DrawnRows::error_squared(const RowCalibration& found, const std::vector<Eigen::Index>& columns) {
+  // Whole poses of found and built machine differ by what the parameters differ: no frame is between them.
+  const auto free = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd J(240, free);
+  Eigen::VectorXd apart(240);
+  for (Eigen::Index j = 0; j < 40; ++j) {
+    const auto axes = drawn_axes();
+    const Pose X = built.forward(axes), Y = found.machine.forward(axes);
+    J.middleRows<6>(6 * j) = built.parameter_rows(axes, X)(Eigen::all, columns);
+    apart.segment<6>(6 * j) << Y.translation() - X.translation(),
+        log_rotation(Y.linear() * X.linear().transpose());
+  }
+  const Eigen::VectorXd error = J.colPivHouseholderQr().solve(apart);
+  return error.dot(found.covariance.ldlt().solve(error)) / static_cast<double>(free);
 }
 
 void DrawnRows::add_distances(const std::string& anchor, const Vec3& p, double zero, const Vec3& p_TG,

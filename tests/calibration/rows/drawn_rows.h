@@ -27,6 +27,8 @@ class DrawnRows {
 
   /// Of target `name` at X_TG, seen from the frame.
   void add_in_frame(RowKind kind, const std::string& name, const Pose& X_TG, int count);
+  /// Three targets at `count` poses, which their errors have `shared` [m] of in common.
+  void add_three_targets(double shared, int count);
   void add_distances(const std::string& anchor, const Vec3& p, double zero, const Vec3& p_TG, int count);
 
   /// Whether a hexapod's struts have these lengths.
@@ -37,6 +39,9 @@ class DrawnRows {
 
   void add_points(const std::string& name, const Vec3& p, const Vec3& p_TG, int count);
   void add_plane(const std::string& name, const Vec3& normal, double offset, const Vec3& p_TG, int count);
+
+  /// (found - built) of the parameters `columns`, in squares by the stated covariance, for each of them.
+  double error_squared(const RowCalibration& found, const std::vector<Eigen::Index>& columns);
 
   Random random;
   machine::MachineDescription description;

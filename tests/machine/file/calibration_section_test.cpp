@@ -120,6 +120,25 @@ TEST_F(CalibrationSection, IsRefusedWhereItBelongsToAnotherMachine) {
               HasSubstr("unknown key 'calibration.noses'"));
 }
 
+// A zero of 4 deg at the shoulder takes the tool of an arm much farther than any part is from its drawing.
+TEST_F(CalibrationSection, ZerosOfAnArmMaySwingItsToolAway) {
+  MachineDescription m = calibrated_arm();
+  kinematics::Chain& chain = m.chain().kinematics.chain;
+  const Mat3 turn = exp_rotation(4 * kDegree * chain.axes[1].direction);
+  const Vec3 centre = chain.axes[1].point;
+  const auto swing = [&](const Vec3& p) { return Vec3(centre + turn * (p - centre)); };
+  for (std::size_t i = 2; i < chain.axes.size(); ++i) {
+    chain.axes[i].point = swing(chain.axes[i].point);
+    chain.axes[i].direction = turn * chain.axes[i].direction;
+  }
+  const Vec3 tool = chain.X_OT_zero.translation();
+  chain.X_OT_zero = make_pose(Mat3(turn * chain.X_OT_zero.linear()), swing(tool));
+  ASSERT_GT((chain.X_OT_zero.translation() - tool).norm(), kFarFromDrawing);
+  EXPECT_NO_THROW(back(m));
+  chain.X_OT_zero.translation() += Vec3(0, 0, 0.3);
+  EXPECT_THAT(error_of(text_of(m)), HasSubstr("another machine?"));
+}
+
 TEST_F(CalibrationSection, ListsEveryStrutOnce) {
   const std::string whole = text_of(calibrated_hexapod());
   const auto last = whole.rfind("    - {base_joint_mm");
