@@ -174,7 +174,7 @@ void add_strand_findings(const TwinRun& run, const TwinSetup& setup, std::vector
     else if (begins_too_high(loose))
       findings.push_back(high_start_finding(loose, loose.highest_gap));
   for (Finding& finding : flow_findings(run.flow)) findings.push_back(std::move(finding));
-  if (auto finding = fill_finding(run.fill)) findings.push_back(std::move(*finding));
+  for (Finding& finding : fill_findings(run.fill)) findings.push_back(std::move(finding));
   for (const auto& strand : run.strands)
     if (!strand.solved || strand.sag > strand.diameter / 2) findings.push_back(sag_finding(strand));
 }
