@@ -46,13 +46,14 @@ struct Ground {
 Bead shape_of(const Element& element) {
   const LaidBead& laid = element.bead;
   // What fills the space from the surface to the nozzle is as high as the tip everywhere; a thinner strand
-  // lies on the surface, unless it hangs.
-  const bool lies = laid.adhesion == Adhesion::buried ||
-                    (laid.adhesion != Adhesion::unsupported && laid.adhesion != Adhesion::fused &&
-                     laid.height < kFills * laid.gap);
+  // lies on the surface, unless it hangs. Nothing lies higher than the mouth that it came out of, whose flat
+  // presses it down: not where that is buried, nor where the gap is less at one end than elsewhere.
+  const bool lies = laid.adhesion != Adhesion::unsupported && laid.adhesion != Adhesion::fused &&
+                    laid.adhesion != Adhesion::buried && laid.height < kFills * laid.gap;
   const double half = laid.height / 2;
   const auto middle = [&](const Vec3& tip, const Vec3& foot) -> Vec3 {
-    if (lies) return foot + half * laid.normal_W;
+    const double gap = (tip - foot).dot(laid.normal_W);
+    if (lies && gap > laid.height) return foot + half * laid.normal_W;
     return tip - half * laid.normal_W;
   };
   const Vec3 from = middle(element.tip_from_W, laid.from_W), to = middle(element.tip_to_W, laid.to_W);
