@@ -70,7 +70,8 @@ std::string raise_nozzle(double height_mm, const Record& record) {
 
 std::string about_contact(const Finding& finding, const Record& record) {
   if (finding.about == "nozzle and bead")
-    return "lead the nozzle over what is printed: lift it on these lines (the slicer's Z hop, `G1 Z...`) or go "
+    return "lead the nozzle over what is printed: lift it on these lines (the slicer's Z hop, `G1 Z...`) or "
+           "go "
            "around; `--place` would lift the print with it";
   if (finding.about.starts_with("nozzle"))
     return raise_nozzle(record.gap_accepted_min_mm - finding.value, record);

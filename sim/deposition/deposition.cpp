@@ -117,6 +117,7 @@ struct DepositionObserver::State {
   double hanging = 0;       // [m^3], fed while the tip came down through the air: a drop at the nozzle
   double hanging_path = 0;  // [m], of that way, from where it began to feed
   bool flows = false;
+  bool fell = false;  // the last element
   bool started = false;
   bool emptied = false;  // the nozzle, after the end
 
@@ -137,14 +138,16 @@ struct DepositionObserver::State {
   void keep(const Element& element) {
     const LaidBead& bead = element.bead;
     totals.laid_volume += bead.volume;
-    const bool falls = is_drop(bead);
+    const bool drops = is_drop(bead);
+    if (!drops) unsupported.add(element, conditions);
+    const bool falls = drops || goes_down(bead);
+    fell = falls;
     if (bead.length == 0 || falls) totals.standstill_volume += bead.volume;
     if (falls && workpiece->beads().size() == 0) started = false;  // the print has not begun
     if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
       totals.deposited_volume += bead.volume;
     if (bead.adhesion == Adhesion::sticks && !std::isfinite(element.carrier)) usual_height = bead.height;
     ++totals.beads;
-    if (!falls) unsupported.add(element, conditions);
     conditions.interface_temperature = kInfinity;
     if (bead.height > kThinnest && !falls) {
       workpiece->add(shape_of(element));
@@ -152,6 +155,12 @@ struct DepositionObserver::State {
       fresh.push_back(path);
     }
     if (options.laid) options.laid(bead);
+  }
+
+  /// Drawn high in the air out of a drop that falls, and held by nothing else: it goes down with it.
+  bool goes_down(const LaidBead& bead) const {
+    return fell && bead.follows && bead.adhesion == Adhesion::unsupported && bead.gap > longest_hang &&
+           !unsupported.stretches().back().held_at_start;
   }
 
   void move_on(double step) {

@@ -151,6 +151,20 @@ TEST(GrowingPart, AThinLineWhoseGapClosesStaysBelowTheMouth) {
   EXPECT_LE(static_cast<double>(bead.to_W[2] + bead.height / 2), kLow + kSingle);
 }
 
+// A start block purges high over the table and moves on: the thread goes down with the drop.
+TEST(GrowingPart, AThreadOutOfADropThatFallsIsInNobodysWay) {
+  Laying laying(printer());
+  const Vec3 high(0, 0, 15e-3);
+  laying.observe(at(0, high, 0));
+  laying.observe(at(10, high, 20e-3));
+  for (int i = 1; i <= 500; ++i)
+    laying.observe(at(10 + 0.01 * i, high + Vec3(i * 0.1e-3, 0, 0), 20e-3 + i * 2e-6));
+  const auto summary = laying.summary();
+  EXPECT_EQ(laying.workpiece().beads().size(), 0u);
+  EXPECT_NEAR(summary.standstill_volume, summary.extruded_volume, 1e-9 * summary.extruded_volume);
+  ASSERT_EQ(laying.unsupported_stretches().size(), 1u) << "it is told all the same";
+}
+
 // Half of the width over the row below is an overhang that holds; a whole width beside it is none.
 TEST(GrowingPart, AnOverhangHoldsByHalfOfItsWidth) {
   for (const double offset : {0.30e-3, 0.60e-3}) {
