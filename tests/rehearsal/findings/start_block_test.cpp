@@ -46,5 +46,21 @@ TEST(StartBlock, ANozzleThatIsSentToTheTableTouchesIt) {
   EXPECT_EQ(findings[2].severity, Severity::error);
 }
 
+TEST(StartBlock, ANozzleThatPloughsThroughThePurgeLineSpoilsNoPart) {
+  std::vector<Finding> findings{error_on(412, "collision", -0.186, "nozzle and bead"),
+                                error_on(412, "collision", -0.186, "nozzle and bead"),
+                                error_on(412, "collision", -0.186, "heater block and bead")};
+  for (const std::size_t i : {0u, 2u}) findings[i].message = "touches bead of line 5, 0.186 mm deep";
+  findings[1].message = "touches bead of line 300, 0.186 mm deep";
+  tell_start_block(10, findings);
+  EXPECT_EQ(findings[0].severity, Severity::warning);
+  EXPECT_EQ(findings[1].severity, Severity::error);
+  EXPECT_EQ(findings[2].severity, Severity::error);
+}
+
+TEST(StartBlock, CountsLinesAsTheReaderDoes) {
+  EXPECT_EQ(start_block_end("G28\r\r\nG1 X9\r\n; <IceSL Sep  8 2021>\r\n"), 4);
+}
+
 }  // namespace
 }  // namespace understudy::rehearsal
