@@ -23,6 +23,7 @@
 #include "rehearsal/findings/findings.h"
 #include "rehearsal/findings/machine_findings.h"
 #include "rehearsal/findings/process_check.h"
+#include "rehearsal/findings/start_block.h"
 #include "rehearsal/gap_belief.h"
 #include "rehearsal/library_versions.h"
 #include "rehearsal/placement/placement.h"
@@ -261,6 +262,8 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress, RunList
   if (record.placement && !record.placement->refused.empty())
     record.findings.push_back(no_place(*record.placement));
   tell_features(mended.features, record.findings);
+  if (!request.program.empty())
+    tell_start_block(start_block_end(read_file(request.program)), record.findings);
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
   if (request.keep_scene) {

@@ -14,6 +14,7 @@
 #include "core/units.h"
 #include "core/version.h"
 #include "machine/record/recording_port.h"
+#include "rehearsal/program/programmed_areas.h"
 #include "sim/curing/curing.h"
 #include "sim/deposition/bead_temperature.h"
 #include "sim/plant/drive_errors.h"
@@ -113,7 +114,7 @@ struct Watch {
   explicit Watch(const TwinSetup& setup, const RunOptions& options)
       : workpiece(std::make_shared<sim::Workpiece>(setup.built_part, setup.as_built.table)),
         flow(setup.program, setup.machine),
-        fill(workpiece, setup.machine),
+        fill(workpiece, setup.machine, programmed_areas(setup.program, setup.truth)),
         strands(setup.truth, setup.material),
         deposition(setup.truth, workpiece, options_of(setup)),
         curing(curing_of(setup)),

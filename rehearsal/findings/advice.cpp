@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/text/shell_quoted.h"
+#include "rehearsal/findings/flow_findings.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -68,6 +69,10 @@ std::string raise_nozzle(double height_mm, const Record& record) {
 }
 
 std::string about_contact(const Finding& finding, const Record& record) {
+  if (finding.about == "nozzle and bead")
+    return "lead the nozzle over what is printed: lift it on these lines (the slicer's Z hop, `G1 Z...`) or "
+           "go "
+           "around; `--place` would lift the print with it";
   if (finding.about.starts_with("nozzle"))
     return raise_nozzle(record.gap_accepted_min_mm - finding.value, record);
   return "give the two more room: lean the tool away, print what is tall last, or shift the program with "
@@ -136,6 +141,19 @@ std::string about_registration(const Finding&, const Record& record) {
       shell_quoted(record.machine_word));
 }
 
+/// What is missing shrinks far more slowly than the speed, for short lines are all start: with its fourth
+/// root about, by prints of OrcaSlicer at several speeds.
+std::string print_slower(const Finding& finding) {
+  constexpr double kSlowest = 10;  // per cent: slower, a print takes days
+  const double fed = finding.limit / kLeastOfFed, missing = 1 - finding.value / fed;
+  const double share = 100 * std::pow((1 - kLeastOfFed) / missing, 4);
+  return fmt::format(
+      "no more filament, for enough is fed: print slower (`M220 S{:.0f}`); or, where the firmware makes up "
+      "for the lag (pressure advance), tell what is left of it: `--machine 'NAME{{process.extruder_lag_ms: "
+      "5}}'`",
+      std::max(kSlowest, std::floor(share)));
+}
+
 std::string about_flow(const Finding& finding, const Record&) {
   if (finding.about == kVoids)
     return fmt::format(
@@ -146,6 +164,7 @@ std::string about_flow(const Finding& finding, const Record&) {
     return fmt::format(
         "feed less: lower the slicer's extrusion multiplier (or `M221 S...`) by {:.0f} %, or set lines apart",
         100 * (1 - 1 / finding.value));
+  if (finding.about == kLag) return print_slower(finding);
   if (finding.about == kNozzleCold || finding.about == kNozzleHot)
     return fmt::format(
         "set {:.0f} C or {} (`M109 S...`), or name the material that is loaded: `--material NAME`",

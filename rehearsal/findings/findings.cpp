@@ -9,6 +9,7 @@
 
 #include "core/units.h"
 #include "core/yaml/file_unit.h"
+#include "rehearsal/findings/feature_findings.h"
 #include "rehearsal/findings/flow_findings.h"
 #include "rehearsal/findings/place_text.h"
 
@@ -121,7 +122,8 @@ Finding loose_finding(const sim::UnsupportedStretch& loose, const TwinSetup& set
 }
 
 /// Half of its diameter is the sag at which a strand no longer meets what was planned to lie on it.
-Finding sag_finding(const sim::AirStrand& strand) {
+Finding sag_finding(const sim::AirStrand& strand, const machine::Tool& tool) {
+  constexpr double kShort = 10;  // bores
   Finding f;
   f.kind = "sag";
   f.severity = strand.solved && strand.small ? Severity::warning : Severity::error;
@@ -138,11 +140,18 @@ Finding sag_finding(const sim::AirStrand& strand) {
                             place_text(strand.from_W));
     return f;
   }
+  if (f.severity == Severity::error && strand.length <= kShort * tool.nozzle_diameter) f.about = kShortStrand;
+  if (strand.lies && strand.sag >= sim::kGapReach) {
+    f.message = fmt::format("{} falls: nothing lies below it, from {}", what, place_text(strand.from_W));
+    return f;
+  }
   f.message = fmt::format(
       "{} sags by {}{:.3f} mm at {}{}", what, strand.small || strand.lies ? "" : "more than ", f.value,
       place_text(strand.sag_place_W), strand.held_at_end ? "" : "; nothing holds its end");
   return f;
 }
+
+constexpr double kNoLength = 5e-6;  // [m]: a bead so short is a drop, and told as 0.00 mm
 
 /// Held by what follows, and so not lost; but no groove of the print is below.
 bool begins_too_high(const sim::UnsupportedStretch& loose) {
@@ -169,14 +178,17 @@ bool light_falls_short(const sim::UnsupportedStretch& loose, const TwinSetup& se
 
 void add_strand_findings(const TwinRun& run, const TwinSetup& setup, std::vector<Finding>& findings) {
   for (const auto& loose : run.loose)
-    if (light_falls_short(loose, setup) || (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose)))
+    if (loose.length < kNoLength)
+      continue;
+    else if (light_falls_short(loose, setup) || (!sim::hangs_in_air(loose) && !sim::spans_a_groove(loose)))
       findings.push_back(loose_finding(loose, setup));
     else if (begins_too_high(loose))
       findings.push_back(high_start_finding(loose, loose.highest_gap));
   for (Finding& finding : flow_findings(run.flow)) findings.push_back(std::move(finding));
-  if (auto finding = fill_finding(run.fill)) findings.push_back(std::move(*finding));
+  for (Finding& finding : fill_findings(run.fill)) findings.push_back(std::move(finding));
   for (const auto& strand : run.strands)
-    if (!strand.solved || strand.sag > strand.diameter / 2) findings.push_back(sag_finding(strand));
+    if (!strand.solved || strand.sag > strand.diameter / 2)
+      findings.push_back(sag_finding(strand, setup.machine.tool));
 }
 
 Finding gap_finding(Severity severity, int line, double time, double gap, double limit) {

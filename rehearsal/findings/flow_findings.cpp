@@ -14,6 +14,7 @@ namespace {
 constexpr double kTransient = 5e-3;       // [m]: as long as an extruder takes at 100 mm/s
 constexpr std::size_t kToldOneByOne = 3;  // more of them are told together
 constexpr double kLeastFill = 0.85, kMostFill = 1.15;
+constexpr double kRealGaps = 0.5;  // of the space: the gaps are nearly as wide as a bead is high
 
 const char* side_of(double ratio) { return ratio > 1 ? "too much" : "too little"; }
 
@@ -56,6 +57,41 @@ Finding transients(const std::vector<FlowStretch>& stretches) {
   return f;
 }
 
+Finding of_fill(const FillFigures& fill, double value, double limit) {
+  Finding f;
+  f.kind = "flow";
+  f.gcode_line = fill.line;
+  f.time_s = fill.time;
+  f.value = value;
+  f.limit = limit;
+  f.unit = "1";
+  return f;
+}
+
+Finding feed_finding(const FillFigures& fill) {
+  const bool voids = fill.factor < kLeastFill;
+  Finding f = of_fill(fill, fill.factor, voids ? kLeastFill : kMostFill);
+  f.severity = voids ? Severity::error : Severity::warning;
+  f.about = voids ? kVoids : kOverfilled;
+  f.message = fmt::format(
+      "{}: what is fed is {:.0f} % of the space between them, {} than {:.0f} %, from {}",
+      voids ? "neighbouring lines leave voids" : "neighbouring lines have no room for their material",
+      100 * f.value, voids ? "less" : "more", 100 * f.limit, place_text(fill.place_W));
+  return f;
+}
+
+Finding lag_finding(const FillFigures& fill) {
+  Finding f = of_fill(fill, fill.laid, kLeastOfFed * fill.factor);
+  f.severity = fill.laid < kRealGaps ? Severity::error : Severity::warning;
+  f.about = kLag;
+  f.message = fmt::format(
+      "the extruder lags behind the speed: what is fed is {:.0f} % of the space between neighbouring lines, "
+      "but over half of their length no more than {:.0f} % lies there; the rest lies at ends and corners, "
+      "from {}",
+      100 * fill.factor, 100 * fill.laid, place_text(fill.place_W));
+  return f;
+}
+
 }  // namespace
 
 std::vector<Finding> flow_findings(const std::vector<FlowStretch>& stretches) {
@@ -70,28 +106,12 @@ std::vector<Finding> flow_findings(const std::vector<FlowStretch>& stretches) {
   return findings;
 }
 
-std::optional<Finding> fill_finding(const std::optional<FillFigures>& fill) {
-  if (!fill || (fill->factor >= kLeastFill && fill->factor <= kMostFill)) return std::nullopt;
-  const bool voids = fill->factor < kLeastFill;
-  Finding f;
-  f.kind = "flow";
-  f.severity = voids ? Severity::error : Severity::warning;
-  f.gcode_line = fill->line;
-  f.time_s = fill->time;
-  f.value = fill->factor;
-  f.limit = voids ? kLeastFill : kMostFill;
-  f.unit = "1";
-  f.about = voids ? kVoids : kOverfilled;
-  const double share = 100 * f.value, limit = 100 * f.limit;
-  f.message = voids ? fmt::format(
-                          "neighbouring lines leave voids: the material fills {:.0f} % of the space between "
-                          "them, less than {:.0f} %, from {}",
-                          share, limit, place_text(fill->place_W))
-                    : fmt::format(
-                          "neighbouring lines have no room: their material is {:.0f} % of the space between "
-                          "them, more than {:.0f} %, from {}",
-                          share, limit, place_text(fill->place_W));
-  return f;
+std::vector<Finding> fill_findings(const std::optional<FillFigures>& fill) {
+  std::vector<Finding> findings;
+  if (!fill) return findings;
+  if (fill->factor < kLeastFill || fill->factor > kMostFill) findings.push_back(feed_finding(*fill));
+  if (fill->laid < kLeastOfFed * fill->factor) findings.push_back(lag_finding(*fill));
+  return findings;
 }
 
 }  // namespace understudy::rehearsal

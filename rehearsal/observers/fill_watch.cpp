@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace understudy::rehearsal {
 namespace {
@@ -44,33 +45,49 @@ void FillWatch::look(const sim::LaidBead& bead, const Vec3& aside_W, std::size_t
   if (std::abs(apart_W.dot(bead.normal_W)) > kSameLevel * bead.height) return;
   const double spacing = apart_W.dot(aside_W);
   if (spacing <= 0 || spacing > reach_) return;
-  const double mean = 0.5 * (section(bead.width, bead.height) +
+  const double fed = 0.5 * (fed_on(bead.line) + fed_on(other.line));
+  if (fed <= 0) return;
+  const double laid = 0.5 * (section(bead.width, bead.height) +
                              section(static_cast<double>(other.width), static_cast<double>(other.height)));
-  samples_.push_back({static_cast<float>(mean / (spacing * bead.height)), static_cast<float>(bead.length),
-                      static_cast<float>(bead.time), bead.line, bead.from_W});
+  // A bead that the lag leaves thin does not reach up to the nozzle; the space does.
+  const bool by_gap = bead.adhesion == sim::Adhesion::sticks && bead.gap > 0;
+  const double space = spacing * (by_gap ? bead.gap : bead.height);
+  samples_.push_back({static_cast<float>(fed / space), static_cast<float>(laid / space),
+                      static_cast<float>(bead.length), static_cast<float>(bead.time), bead.line,
+                      bead.from_W});
 }
 
-std::optional<FillFigures> FillWatch::figures() const {
+double FillWatch::fed_on(int line) const {
+  const auto at = static_cast<std::size_t>(std::max(0, line));
+  return at < fed_.size() ? static_cast<double>(fed_[at]) : 0;
+}
+
+const FillWatch::Sample& FillWatch::median(float Sample::*factor, double total) const {
   std::vector<std::size_t> order(samples_.size());
-  double total = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    order[i] = i;
-    total += static_cast<double>(samples_[i].length);
-  }
-  if (total < kLeastLength) return std::nullopt;
+  std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return samples_[a].factor < samples_[b].factor; });
+                   [&](std::size_t a, std::size_t b) { return samples_[a].*factor < samples_[b].*factor; });
   double passed = 0;
   for (const std::size_t i : order) {
     passed += static_cast<double>(samples_[i].length);
-    if (passed < kShare * total) continue;
-    const float factor = samples_[i].factor;
-    const auto first =
-        std::find_if(samples_.begin(), samples_.end(), [&](const Sample& s) { return s.factor <= factor; });
-    return FillFigures{static_cast<double>(factor), total, first->line, static_cast<double>(first->time),
-                       first->place_W};
+    if (passed >= kShare * total) return samples_[i];
   }
-  return std::nullopt;
+  return samples_[order.back()];
+}
+
+std::optional<FillFigures> FillWatch::figures() const {
+  double total = 0;
+  for (const Sample& sample : samples_) total += static_cast<double>(sample.length);
+  if (total < kLeastLength) return std::nullopt;
+  const float factor = median(&Sample::fed, total).fed;
+  const auto first =
+      std::find_if(samples_.begin(), samples_.end(), [&](const Sample& s) { return s.fed <= factor; });
+  return FillFigures{static_cast<double>(factor),
+                     static_cast<double>(median(&Sample::laid, total).laid),
+                     total,
+                     first->line,
+                     static_cast<double>(first->time),
+                     first->place_W};
 }
 
 }  // namespace understudy::rehearsal

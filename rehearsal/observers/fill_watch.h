@@ -11,11 +11,13 @@
 
 namespace understudy::rehearsal {
 
+/// Cross-section of two neighbours over the space from the middle of one to the middle of the other: 1 where
+/// a slicer plans no voids. Medians by length: half of the lines are filled no better.
 struct FillFigures {
-  /// Cross-section of two neighbours over the space from the middle of one to the middle of the other: 1
-  /// where a slicer plans no voids. The 90th percentile by length, so that sparse infill does not count as
-  /// voids.
+  /// By what the drive feeds for each line. An extruder's lag moves material along the lines, and takes none
+  /// away.
   double factor = 1;
+  double laid = 1;    ///< by the beads as they lie, which the lag makes thin here and thick there
   double length = 0;  ///< [m] of lines with a neighbour
   int line = 0;       ///< of the program, the first that is filled no better
   double time = 0;    ///< [s], there
@@ -24,11 +26,15 @@ struct FillFigures {
 
 /// Looks to both sides of every bead for one of the same layer that runs alongside, no farther than 1.5 bores
 /// from middle to middle: lines so near are meant to touch, for slicers plan them a bore to one and a half
-/// wide.
+/// wide. What fills sparsely lies farther apart, and does not count as voids.
 class FillWatch {
  public:
-  FillWatch(std::shared_ptr<const sim::Workpiece> workpiece, const machine::MachineDescription& machine)
-      : workpiece_(std::move(workpiece)), reach_(kNeighbours * machine.tool.nozzle_diameter) {}
+  /// `fed`: [m^2] of bead by line of the file, of the filament that is really there (programmed_areas()).
+  FillWatch(std::shared_ptr<const sim::Workpiece> workpiece, const machine::MachineDescription& machine,
+            std::vector<float> fed)
+      : workpiece_(std::move(workpiece)),
+        fed_(std::move(fed)),
+        reach_(kNeighbours * machine.tool.nozzle_diameter) {}
   /// Beads in order, each after it has joined the workpiece; `before`: the first that is fresh.
   void add(const sim::LaidBead& bead, std::size_t before);
   /// Nothing where fewer than 100 mm of lines have a neighbour.
@@ -37,14 +43,18 @@ class FillWatch {
  private:
   static constexpr double kNeighbours = 1.5;
   struct Sample {
-    float factor = 0, length = 0, time = 0;
+    float fed = 0, laid = 0, length = 0, time = 0;
     int line = 0;
     Vec3 place_W{0, 0, 0};
   };
   void look(const sim::LaidBead& bead, const Vec3& aside_W, std::size_t before);
+  double fed_on(int line) const;
+  /// Of the samples in order of that factor, the one that half of the length does not exceed.
+  const Sample& median(float Sample::*factor, double total) const;
 
   std::shared_ptr<const sim::Workpiece> workpiece_;
-  double reach_;  // [m]
+  std::vector<float> fed_;  // [m^2] by line
+  double reach_;            // [m]
   std::vector<Sample> samples_;
 };
 

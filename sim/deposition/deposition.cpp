@@ -46,13 +46,14 @@ struct Ground {
 Bead shape_of(const Element& element) {
   const LaidBead& laid = element.bead;
   // What fills the space from the surface to the nozzle is as high as the tip everywhere; a thinner strand
-  // lies on the surface, unless it hangs.
-  const bool lies = laid.adhesion == Adhesion::buried ||
-                    (laid.adhesion != Adhesion::unsupported && laid.adhesion != Adhesion::fused &&
-                     laid.height < kFills * laid.gap);
+  // lies on the surface, unless it hangs. Nothing lies higher than the mouth that it came out of, whose flat
+  // presses it down: not where that is buried, nor where the gap is less at one end than elsewhere.
+  const bool lies = laid.adhesion != Adhesion::unsupported && laid.adhesion != Adhesion::fused &&
+                    laid.adhesion != Adhesion::buried && laid.height < kFills * laid.gap;
   const double half = laid.height / 2;
   const auto middle = [&](const Vec3& tip, const Vec3& foot) -> Vec3 {
-    if (lies) return foot + half * laid.normal_W;
+    const double gap = (tip - foot).dot(laid.normal_W);
+    if (lies && gap > laid.height) return foot + half * laid.normal_W;
     return tip - half * laid.normal_W;
   };
   const Vec3 from = middle(element.tip_from_W, laid.from_W), to = middle(element.tip_to_W, laid.to_W);
@@ -116,6 +117,7 @@ struct DepositionObserver::State {
   double hanging = 0;       // [m^3], fed while the tip came down through the air: a drop at the nozzle
   double hanging_path = 0;  // [m], of that way, from where it began to feed
   bool flows = false;
+  bool fell = false;  // the last element
   bool started = false;
   bool emptied = false;  // the nozzle, after the end
 
@@ -136,14 +138,16 @@ struct DepositionObserver::State {
   void keep(const Element& element) {
     const LaidBead& bead = element.bead;
     totals.laid_volume += bead.volume;
-    const bool falls = is_drop(bead);
+    const bool drops = is_drop(bead);
+    if (!drops) unsupported.add(element, conditions);
+    const bool falls = drops || goes_down(bead);
+    fell = falls;
     if (bead.length == 0 || falls) totals.standstill_volume += bead.volume;
     if (falls && workpiece->beads().size() == 0) started = false;  // the print has not begun
     if (bead.adhesion == Adhesion::sticks || bead.adhesion == Adhesion::fused)
       totals.deposited_volume += bead.volume;
     if (bead.adhesion == Adhesion::sticks && !std::isfinite(element.carrier)) usual_height = bead.height;
     ++totals.beads;
-    if (!falls) unsupported.add(element, conditions);
     conditions.interface_temperature = kInfinity;
     if (bead.height > kThinnest && !falls) {
       workpiece->add(shape_of(element));
@@ -151,6 +155,12 @@ struct DepositionObserver::State {
       fresh.push_back(path);
     }
     if (options.laid) options.laid(bead);
+  }
+
+  /// Drawn high in the air out of a drop that falls, and held by nothing else: it goes down with it.
+  bool goes_down(const LaidBead& bead) const {
+    return fell && bead.follows && bead.adhesion == Adhesion::unsupported && bead.gap > longest_hang &&
+           !unsupported.stretches().back().held_at_start;
   }
 
   void move_on(double step) {

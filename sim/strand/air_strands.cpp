@@ -78,9 +78,10 @@ class Solver {
   }
 
  private:
-  /// A strand sags no farther than to what lies below it.
+  /// A strand sags no farther than until its lower side, a diameter below the tip, lies on what is below.
   static void lay_down(const UnsupportedStretch& stretch, AirStrand& strand) {
-    const double below = std::isfinite(stretch.worst_gap) ? stretch.worst_gap : kGapReach;
+    const bool falls = !std::isfinite(stretch.worst_gap);
+    const double below = falls ? kGapReach : std::max(0.0, stretch.worst_gap - strand.diameter);
     if (strand.sag <= below) return;
     strand.sag_place_W.z() += strand.sag - below;
     strand.sag = below;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rehearsal/findings/flow_findings.h"
+
 namespace understudy::rehearsal {
 namespace {
 
@@ -68,6 +70,23 @@ TEST(Advice, ABeadOverNothingAsksForThePart) {
   EXPECT_THAT(advice(loose, record), HasSubstr("`--fixture "));
   record.fixture_name = "bottle";
   EXPECT_THAT(advice(loose, record), Not(HasSubstr("--fixture")));
+}
+
+// All of the print would rise with the nozzle, and its first layer off the table.
+TEST(Advice, ANozzleThatMeetsABeadIsNotMendedByThePlace) {
+  Finding contact{"collision", Severity::error, 9, 1, -0.3, 0, "mm", "", 0, "nozzle and bead"};
+  EXPECT_THAT(advice(contact, on_a_machine(false, "off")), HasSubstr("Z hop"));
+  contact.about = "nozzle and table";
+  EXPECT_THAT(advice(contact, on_a_machine(false, "off")), HasSubstr("`--place 0,0,0.4`"));
+}
+
+// More filament would over-extrude: 0.926 is fed, 0.745 lies along half of the lines.
+TEST(Advice, LagIsMendedBySpeedAndNotByMoreFilament) {
+  const Finding lag = fill_findings(FillFigures{0.926, 0.745, 1, 9, 0, Vec3::Zero()}).at(0);
+  const std::string text = advice(lag, on_a_machine(false, "off"));
+  EXPECT_THAT(text, HasSubstr("`M220 S34`"));
+  EXPECT_THAT(text, HasSubstr("process.extruder_lag_ms"));
+  EXPECT_THAT(text, Not(HasSubstr("M221")));
 }
 
 TEST(Advice, EveryKindOfFindingHasSome) {

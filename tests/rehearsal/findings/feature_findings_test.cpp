@@ -27,6 +27,33 @@ TEST(FeatureFindings, ASkirtThatDoesNotStickSpoilsNoPart) {
   EXPECT_EQ(findings[5].message, "as found");
 }
 
+std::vector<Finding> sags_on_infill(int count, const char* last) {
+  std::vector<Finding> findings;
+  for (int i = 1; i <= count; ++i) {
+    findings.push_back(error_of("sag", 1 + i));
+    findings.back().about = i < count ? kShortStrand : last;
+  }
+  tell_features(toolpath::FeatureTypes("; FEATURE: Sparse infill\n"), findings);
+  return findings;
+}
+
+TEST(FeatureFindings, FewShortStrandsOfASparseInfillAreWarnings) {
+  EXPECT_EQ(sags_on_infill(1, kShortStrand)[0].severity, Severity::warning);
+  EXPECT_EQ(sags_on_infill(kFewStrands, kShortStrand)[0].severity, Severity::warning);
+}
+
+TEST(FeatureFindings, ManyOrLongOnesAreErrors) {
+  EXPECT_EQ(sags_on_infill(kFewStrands + 1, kShortStrand)[0].severity, Severity::error);
+  EXPECT_EQ(sags_on_infill(1, "")[0].severity, Severity::error) << "a long one";
+}
+
+TEST(FeatureFindings, AShortStrandOfAWallIsAnError) {
+  std::vector<Finding> findings{error_of("sag", 2)};
+  findings[0].about = kShortStrand;
+  tell_features(toolpath::FeatureTypes(";TYPE:Solid infill\n"), findings);
+  EXPECT_EQ(findings[0].severity, Severity::error);
+}
+
 TEST(FeatureFindings, WithoutCommentsNothingChanges) {
   std::vector<Finding> findings{error_of("adhesion", 2)};
   tell_features({}, findings);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "rehearsal/findings/feature_findings.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -79,6 +80,37 @@ TEST(Findings, TheShortEndOfALineOverAHollowIsAWarningAndALongOneAnError) {
   const auto longer = findings_of_stretch(hanging_start(from_mm(2.1)));
   ASSERT_EQ(longer.size(), 1u);
   EXPECT_EQ(longer[0].severity, Severity::error) << "more than five bores";
+}
+
+TEST(Findings, ABeadOfNoLengthIsNone) {
+  sim::UnsupportedStretch drop = high_start();
+  drop.held_at_end = false;
+  drop.length = 0;
+  EXPECT_TRUE(findings_of_stretch(drop).empty());
+}
+
+Finding finding_of_strand(const sim::AirStrand& strand) {
+  TwinSetup setup;
+  setup.machine = machine::load_machine("hexapod");
+  TwinRun run;
+  run.result.completed = true;
+  run.strands = {strand};
+  const auto findings = findings_of(run, setup, control::GapControl::off);
+  return findings.empty() ? Finding{} : findings.front();
+}
+
+TEST(Findings, AStrandOverNothingFalls) {
+  sim::AirStrand strand;
+  strand.length = from_mm(30);
+  strand.diameter = from_mm(0.4);
+  strand.sag = sim::kGapReach;
+  strand.lies = true;
+  strand.small = false;
+  const Finding fallen = finding_of_strand(strand);
+  EXPECT_THAT(fallen.message, testing::HasSubstr("falls: nothing lies below it"));
+  EXPECT_EQ(fallen.about, "");
+  strand.length = from_mm(2);
+  EXPECT_EQ(finding_of_strand(strand).about, kShortStrand);
 }
 
 }  // namespace

@@ -33,17 +33,41 @@ TEST(FlowFindings, ManyStartsAndEndsAreOne) {
   EXPECT_THAT(findings[1].message, testing::HasSubstr("on line 77"));
 }
 
-TEST(FillFinding, VoidsAreAnErrorAndTooMuchIsAWarning) {
-  EXPECT_FALSE(fill_finding(std::nullopt));
-  EXPECT_FALSE(fill_finding(FillFigures{0.97, 1, 1, 0, Vec3::Zero()}));
-  const auto voids = fill_finding(FillFigures{0.6, 1, 12, 0, Vec3::Zero()});
-  ASSERT_TRUE(voids);
-  EXPECT_EQ(voids->severity, Severity::error);
-  EXPECT_EQ(voids->gcode_line, 12);
-  EXPECT_THAT(voids->message, testing::HasSubstr("fills 60 % of the space between them, less than 85 %"));
-  const auto full = fill_finding(FillFigures{1.3, 1, 12, 0, Vec3::Zero()});
-  ASSERT_TRUE(full);
-  EXPECT_EQ(full->severity, Severity::warning);
+FillFigures filled(double fed, double laid) { return {fed, laid, 1, 12, 0, Vec3::Zero()}; }
+
+TEST(FillFindings, VoidsAreAnErrorAndTooMuchIsAWarning) {
+  EXPECT_TRUE(fill_findings(std::nullopt).empty());
+  EXPECT_TRUE(fill_findings(filled(0.97, 0.95)).empty());
+  const auto voids = fill_findings(filled(0.6, 0.59));
+  ASSERT_EQ(voids.size(), 1u);
+  EXPECT_EQ(voids[0].severity, Severity::error);
+  EXPECT_EQ(voids[0].about, kVoids);
+  EXPECT_EQ(voids[0].gcode_line, 12);
+  EXPECT_THAT(voids[0].message, testing::HasSubstr("60 % of the space between them, less than 85 %"));
+  const auto full = fill_findings(filled(1.3, 1.28));
+  ASSERT_EQ(full.size(), 1u);
+  EXPECT_EQ(full[0].severity, Severity::warning);
+}
+
+// OrcaSlicer's default speeds: 0.926 is fed, 0.75 lies along half of the lines.
+TEST(FillFindings, LagIsNoShortage) {
+  const auto lag = fill_findings(filled(0.926, 0.75));
+  ASSERT_EQ(lag.size(), 1u);
+  EXPECT_EQ(lag[0].about, kLag);
+  EXPECT_EQ(lag[0].severity, Severity::warning);
+  EXPECT_THAT(lag[0].message, testing::HasSubstr("no more than 75 % lies there"));
+}
+
+TEST(FillFindings, LagThatLeavesRealGapsIsAnError) {
+  EXPECT_EQ(fill_findings(filled(0.95, 0.45)).at(0).severity, Severity::error);
+}
+
+// A third more is fed than there is room for; the lag hides it from the beads of most lines.
+TEST(FillFindings, TooMuchIsFoundInSpiteOfTheLag) {
+  const auto findings = fill_findings(filled(1.24, 1.0));
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_EQ(findings[0].about, kOverfilled);
+  EXPECT_EQ(findings[1].about, kLag);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "sim/deposition/bead_section.h"
 
 namespace understudy::rehearsal {
@@ -12,8 +14,11 @@ constexpr double kHeight = 0.2e-3;
 /// Lines along x, 30 mm long, side by side on the table, each in elements of 2 mm.
 class Lines {
  public:
-  Lines() : workpiece_(std::make_shared<sim::Workpiece>(nullptr)), watch_(workpiece_, machine()) {}
+  explicit Lines(std::vector<float> fed)
+      : workpiece_(std::make_shared<sim::Workpiece>(nullptr)),
+        watch_(workpiece_, machine(), std::move(fed)) {}
 
+  /// `area`: as laid; the lag may have left less than what was fed.
   void add(double y, double area) {
     const std::size_t before = workpiece_->beads().size();
     for (int i = 0; i < 15; ++i) {
@@ -49,29 +54,39 @@ class Lines {
 // PrusaSlicer sets lines of 0.45 by 0.2 mm 0.45 - 0.2 (1 - pi/4) = 0.4071 mm apart: the space is filled.
 constexpr double kSpacing = 0.4071e-3, kArea = 0.4071e-3 * kHeight;
 
-FillFigures of(double flow, double spacing = kSpacing) {
-  Lines lines;
-  for (int i = 0; i < 8; ++i) lines.add(i * spacing, flow * kArea);
+std::vector<float> all_fed(double area) { return std::vector<float>(400, static_cast<float>(area)); }
+
+FillFigures of(double fed, double laid) {
+  Lines lines(all_fed(fed * kArea));
+  for (int i = 0; i < 8; ++i) lines.add(i * kSpacing, laid * kArea);
   const auto figures = lines.figures();
   EXPECT_TRUE(figures);
   return figures.value_or(FillFigures{});
 }
 
-TEST(FillWatch, LinesAsASlicerSetsThemFillTheirSpace) { EXPECT_NEAR(of(1).factor, 1, 2e-3); }
+TEST(FillWatch, LinesAsASlicerSetsThemFillTheirSpace) { EXPECT_NEAR(of(1, 1).factor, 1, 2e-3); }
 
 TEST(FillWatch, ThreeFifthsOfTheFlowFillThreeFifths) {
-  EXPECT_NEAR(of(0.6).factor, 0.6, 2e-3);
-  EXPECT_NEAR(of(1.3).factor, 1.3, 2e-3);
+  EXPECT_NEAR(of(0.6, 0.6).factor, 0.6, 2e-3);
+  EXPECT_NEAR(of(1.3, 1.3).factor, 1.3, 2e-3);
+}
+
+TEST(FillWatch, WhatIsFedCountsWhereTheLagMovesIt) {
+  const FillFigures figures = of(1, 0.75);
+  EXPECT_NEAR(figures.factor, 1, 2e-3);
+  EXPECT_NEAR(figures.laid, 0.75, 2e-3);
 }
 
 TEST(FillWatch, LinesFartherApartAreNoNeighbours) {
-  Lines lines;
+  Lines lines(all_fed(kArea));
   for (int i = 0; i < 20; ++i) lines.add(i * 0.65e-3, kArea);
   EXPECT_FALSE(lines.figures());
 }
 
 TEST(FillWatch, ShellsSpeakForAPartWhoseInfillIsThin) {
-  Lines lines;
+  std::vector<float> fed = all_fed(kArea);
+  std::fill(fed.begin() + 16 * 15, fed.end(), static_cast<float>(0.8 * kArea));
+  Lines lines(fed);
   for (int i = 0; i < 16; ++i) lines.add(i * kSpacing, kArea);
   for (int i = 1; i < 7; ++i) lines.add(16 * kSpacing + i * 0.51e-3, 0.8 * kArea);  // 64 % filled
   ASSERT_TRUE(lines.figures());
@@ -79,7 +94,7 @@ TEST(FillWatch, ShellsSpeakForAPartWhoseInfillIsThin) {
 }
 
 TEST(FillWatch, AFewMillimetresSayNothing) {
-  Lines lines;
+  Lines lines(all_fed(kArea));
   lines.add(0, kArea);
   lines.add(kSpacing, kArea);
   EXPECT_FALSE(lines.figures());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/units.h"
@@ -110,6 +111,58 @@ TEST(GrowingPart, DeepInAnEarlierBeadTheNozzleIsBuried) {
   ASSERT_EQ(laying.unsupported_stretches().size(), 1u);
   EXPECT_EQ(laying.unsupported_stretches()[0].adhesion, Adhesion::buried);
   EXPECT_NEAR(laying.unsupported_stretches()[0].worst_gap, -2 * kLayer, 20e-9);
+}
+
+/// [m], of what was laid on that line or later.
+double highest_top(Laying& laying, int line) {
+  laying.summary();
+  double top = 0;
+  for (std::size_t i = 0; i < laying.workpiece().beads().size(); ++i) {
+    const Bead bead = laying.workpiece().beads().bead(i);
+    if (bead.line < line) continue;
+    const auto middle = static_cast<double>(std::max(bead.from_W[2], bead.to_W[2]));
+    top = std::max(top, middle + 0.5 * static_cast<double>(bead.height));
+  }
+  return top;
+}
+
+constexpr double kSingle = 5e-9;  // [m]: how beads are kept
+
+TEST(GrowingPart, NothingThatComesOutOfABuriedMouthLiesAboveIt) {
+  Laying laying(printer());
+  Printer print(laying);
+  for (int layer = 1; layer <= 3; ++layer) {
+    print.line({-5e-3, 0, layer * kLayer}, {5e-3, 0, layer * kLayer});
+    print.travel({0, 0, 5e-3});
+  }
+  print.line({0, -5e-3, kLayer}, {0, 5e-3, kLayer});
+  EXPECT_LE(highest_top(laying, 4), kLayer + kSingle);
+}
+
+// Too thin to reach up to the nozzle where it begins, it is pressed where it ends.
+TEST(GrowingPart, AThinLineWhoseGapClosesStaysBelowTheMouth) {
+  constexpr double kHigh = 0.2e-3, kLow = 0.1e-3, kThin = 0.2;
+  Laying laying(printer());
+  laying.observe(at(0, {0, 0, kHigh}, 0));
+  laying.observe(at(1e-3, {0.1e-3, 0, kLow}, kThin * 0.1e-3 * kFeed));
+  laying.summary();
+  ASSERT_EQ(laying.workpiece().beads().size(), 1u);
+  const Bead bead = laying.workpiece().beads().bead(0);
+  EXPECT_LE(static_cast<double>(bead.to_W[2] + bead.height / 2), kLow + kSingle);
+}
+
+// A start block purges high over the table and moves on: the thread goes down with the drop.
+TEST(GrowingPart, AThreadOutOfADropThatFallsIsInNobodysWay) {
+  Laying laying(printer());
+  const Vec3 high(0, 0, 15e-3);
+  laying.observe(at(0, high, 0));
+  laying.observe(at(10, high, 20e-3));
+  for (int i = 1; i <= 500; ++i)
+    laying.observe(at(10 + 0.01 * i, high + Vec3(i * 0.1e-3, 0, 0), 20e-3 + i * 2e-6));
+  const auto summary = laying.summary();
+  EXPECT_EQ(laying.workpiece().beads().size(), 0u);
+  EXPECT_NEAR(summary.standstill_volume, summary.extruded_volume, 1e-9 * summary.extruded_volume);
+  ASSERT_EQ(laying.unsupported_stretches().size(), 1u) << "it is told all the same";
 }
 
 // Half of the width over the row below is an overhang that holds; a whole width beside it is none.
