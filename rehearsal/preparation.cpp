@@ -42,6 +42,7 @@ void read_into(const RehearsalRequest& request, TwinSetup& setup, Mended& mended
   setup.program = std::move(read.program);
   mended.findings =
       read.of_robot ? robot_program_findings(setup.program, request.machine) : findings_of(read.passed_over);
+  mended.findings.insert(mended.findings.end(), read.extrusion.begin(), read.extrusion.end());
   for (const auto& lines : read.passed_over) mended.passed_over.emplace_back(lines.line, lines.last_line);
   mended.facts = std::move(read.facts);
   mended.features = std::move(read.features);
@@ -116,6 +117,9 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   for (Finding& finding : process_warnings(request.dialect, setup.machine.tool, mended.facts,
                                            setup.layers ? setup.layers->typical_layer() : 0))
     mended.findings.push_back(std::move(finding));
+  if (setup.machine.tool.prints() && !setup.cure)
+    if (const auto other = other_material(setup.material.name, mended.facts))
+      mended.findings.push_back(*other);
   setup.registration = registration_task(request, setup.machine, setup.part, setup.program);
   setup.accepted = accepted_errors(request);
   setup.engine = request.engine;

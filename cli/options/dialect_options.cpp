@@ -48,14 +48,7 @@ void add_dialect_options(CLI::App& command, control::DialectRequest& dialect) {
       .add_option("--extruder-letter", dialect.extruder_letter,
                   "letter of the filament's axis, such as A; without it the machine file's, else E")
       ->group("Programs of other machines");
-  command
-      .add_option(
-          "--ignore", dialect.ignored,
-          "commands to pass over with their lines, such as M428,START_PRINT: of what they do the twin "
-          "knows nothing")
-      ->delimiter(',')
-      ->transform(upper)
-      ->group("Programs of other machines");
+  add_reading_options(command, dialect);
   command
       .add_option("--macros", dialect.macros,
                   "Klipper's configuration, whose macros stand for commands that are unknown here")
@@ -84,13 +77,28 @@ void add_dialect_options(CLI::App& command, control::DialectRequest& dialect) {
       ->group("Programs of other machines");
 }
 
+void add_reading_options(CLI::App& command, control::DialectRequest& dialect) {
+  command
+      .add_flag("--relative-extrusion", dialect.relative_extrusion,
+                "E is relative from the start, as after M83, where a macro of the printer says so")
+      ->group("Programs of other machines");
+  command
+      .add_option(
+          "--ignore", dialect.ignored,
+          "commands to pass over with their lines, such as M428,START_PRINT: of what they do the twin "
+          "knows nothing")
+      ->delimiter(',')
+      ->transform(upper)
+      ->group("Programs of other machines");
+}
+
 void add_process_options(CLI::App& command, control::DialectRequest& dialect) {
   const auto add = [&](const char* name, std::optional<double>& value, const char* about, double low,
                        double high) {
     command.add_option(name, value, about)->check(CLI::Range(low, high))->group("Programs of other machines");
   };
   add("--temperature", dialect.temperature_c,
-      "C: the nozzle's from the start on, where a macro of the printer sets it", 100, 450);
+      "C: the nozzle's from the start on, or from the ignored macro on that sets it", 100, 450);
   add("--nozzle", dialect.nozzle_mm, "mm: bore of the nozzle that is mounted, if not the machine file's",
       0.05, 10);
   add("--layer", dialect.layer_mm, "mm: height of the layers, where the path does not tell", 0.01, 10);

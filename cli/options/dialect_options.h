@@ -10,6 +10,9 @@ namespace understudy::cli {
 /// --temperature, --nozzle and --layer, for programs that do not say them.
 void add_process_options(CLI::App& command, control::DialectRequest& dialect);
 
+/// --ignore and --relative-extrusion.
+void add_reading_options(CLI::App& command, control::DialectRequest& dialect);
+
 /// Of those, how a program is read and where it stands.
 void add_dialect_options(CLI::App& command, control::DialectRequest& dialect);
 

@@ -59,6 +59,7 @@ std::string difference(const PrintRequest& a, const PrintRequest& b) {
   if (x.turn_deg != y.turn_deg) return "--turn";
   if (x.spin_deg != y.spin_deg) return "--spin";
   if (x.extruder_letter != y.extruder_letter) return "--extruder-letter";
+  if (x.relative_extrusion != y.relative_extrusion) return "--relative-extrusion";
   if (x.b_sign != y.b_sign) return "--b-sign";
   if (x.c_sign != y.c_sign) return "--c-sign";
   if (x.ignored != y.ignored) return "--ignore";

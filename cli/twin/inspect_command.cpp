@@ -22,6 +22,7 @@
 #include "rehearsal/inspection/inspect.h"
 #include "rehearsal/inspection/place_on_table.h"
 #include "rehearsal/placement/misfit.h"
+#include "rehearsal/program/told_filament.h"
 
 namespace understudy::cli {
 namespace {
@@ -70,13 +71,53 @@ void print_features(const std::map<std::string, double>& lengths) {
   fmt::print("  features, by the slicer's comments: {}\n", fmt::join(words, ", "));
 }
 
+void print_lines(const rehearsal::Inspection& found) {
+  for (const auto& word : found.unknown)
+    fmt::print("  unknown word '{}': {} line{}, the first is {}{}\n", word.word, word.lines,
+               word.lines == 1 ? "" : "s", word.first_line,
+               word.word.starts_with('#') ? " (the controller's own language, ISG's and the like)" : "");
+  for (const auto& line : found.passed_over)
+    fmt::print("  line {} cannot be read, and is passed over: {}\n", line.line, line.why);
+  for (const auto& line : found.refused.told)
+    fmt::print("  line {} is refused, and left out here: {}{}\n", line.line, line.why,
+               toolpath::can_be_ignored(line.command) ? "" : "; mend it before you rehearse");
+  if (const auto more = found.refused.lines - static_cast<int>(found.refused.told.size()); more > 0)
+    fmt::print("  {} more lines are refused\n", more);
+}
+
+void print_extent(const rehearsal::Inspection& found) {
+  const toolpath::ProgramSummary& summary = found.summary;
+  if (found.relative_extrusion)
+    fmt::print("  {}; read here as relative: put M83 ahead of it, or rehearse with --relative-extrusion\n",
+               rehearsal::relative_look(*found.relative_extrusion));
+  const std::string told =
+      found.told_filament ? fmt::format("; the slicer's comment says {:.1f} mm", to_mm(*found.told_filament))
+                          : "";
+  if (summary.printed)
+    fmt::print("  prints {} moves from {} to {} mm, {:.1f} mm of filament{}\n", summary.prints,
+               place(summary.printed->lower), place(summary.printed->upper), to_mm(summary.filament), told);
+  else
+    fmt::print("  prints nothing{}\n", told);
+}
+
+void print_material(const rehearsal::Inspection& found, const std::string& machines) {
+  const std::string& chosen = found.request.material;
+  if (found.told_material.empty() || machines.empty()) return;
+  fmt::print("  material: {} for the slicer", found.told_material);
+  if (found.told_material != machines && chosen.empty())
+    fmt::print("; models/materials has none of that name, so that it is judged as {} (docs/materials.md)",
+               machines);
+  fmt::print("\n");
+}
+
 void print_process(const rehearsal::Inspection& found) {
   fmt::print("  nozzle: {:.2f} mm on the machine", to_mm(found.machine_nozzle));
   if (found.nozzle) fmt::print(", {:.2f} mm for the slicer", to_mm(*found.nozzle));
   fmt::print("; ");
   const auto& temperatures = found.summary.temperatures;
-  if (const auto& chosen = found.request.dialect.temperature_c; temperatures.empty())
-    fmt::print("no temperature is set{}\n", chosen ? fmt::format(", {:.0f} C is taken", *chosen) : "");
+  if (const auto& chosen = found.request.dialect.temperature_c; !found.summary.heated_first)
+    fmt::print("no temperature is set before the first bead{}\n",
+               chosen ? fmt::format(", {:g} C is taken", *chosen) : "");
   else
     for (std::size_t i = 0; i < temperatures.size(); ++i)
       fmt::print("{}{:.0f}{}", i ? ", " : "", temperatures[i] - kCelsiusZero,
@@ -159,19 +200,10 @@ int inspect(const std::string& program, const std::string& machine, const rehear
              maker == found.slicer_facts.end() ? "" : ", by " + maker->second);
   if (found.robot) print_robot_program(found);
   print_foreign_words(found, machine);
-  for (const auto& word : found.unknown)
-    fmt::print("  unknown word '{}': {} line{}, the first is {}\n", word.word, word.lines,
-               word.lines == 1 ? "" : "s", word.first_line);
-  for (const auto& line : found.passed_over)
-    fmt::print("  line {} cannot be read, and is passed over: {}\n", line.line, line.why);
+  print_lines(found);
   if (const std::string& letter = found.request.dialect.extruder_letter; !letter.empty())
     fmt::print("  it has no E: {} feeds the filament, as it grows evenly along the path\n", letter);
-  if (found.summary.printed)
-    fmt::print("  prints {} moves from {} to {} mm, {:.1f} mm of filament\n", found.summary.prints,
-               place(found.summary.printed->lower), place(found.summary.printed->upper),
-               to_mm(found.summary.filament));
-  else
-    fmt::print("  prints nothing\n");
+  print_extent(found);
   if (const auto& printed = found.summary.printed;
       printed && printed->lower.z() > rehearsal::kFarAbove && found.request.dialect.place_mm[2] == 0)
     fmt::print(
@@ -182,6 +214,7 @@ int inspect(const std::string& program, const std::string& machine, const rehear
   print_beads(found.summary);
   print_features(found.feature_lengths);
   print_process(found);
+  print_material(found, found.machine_material);
   print_time(found.time);
   if (found.summary.tilt_max > 0.5 * kDegree)
     fmt::print("  the tool leans by up to {:.1f} deg\n", to_deg(found.summary.tilt_max));
@@ -203,6 +236,7 @@ void add_inspect(CLI::App& app, Action& action) {
   command->add_option("program", *program, "G-code, KRL or RAPID")->required();
   add_machine_option(*command, *machine);
   command->add_option("--macros", told->macros, "Klipper's configuration: macros that the program calls");
+  add_reading_options(*command, *told);
   add_process_options(*command, *told);
   command->callback([=, &action] { action = [=] { return inspect(*program, *machine, *told); }; });
 }

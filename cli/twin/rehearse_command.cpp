@@ -54,7 +54,9 @@ void print_print(const rehearsal::PrintFigures& print) {
   if (print.extruded_mm <= 0) return;
   fmt::print("  filament fed {:.1f} mm: {:.1f} mm printed, {:.1f} mm purged, {:.1f} mm missing",
              print.extruded_mm, print.printed_mm, print.purged_mm, print.missing_mm);
-  if (print.primed_mm > 0) fmt::print("; {:.1f} mm more pushed back after retractions", print.primed_mm);
+  if (print.primed_mm > 0)
+    fmt::print("; beside that, retractions drew {:.1f} mm back and pushed them forward again",
+               print.primed_mm);
   fmt::print("\n");
 }
 

@@ -131,6 +131,7 @@ class Checker {
   }
 
   void note_speed(const PathSegment& segment, double s, const Location& at) {
+    if (!std::isfinite(segment.speed)) return;  // a spin under a tip at rest: no feed asks for any speed
     ChannelArray slope{};
     if (path_.evaluate(segment, s, axes_, slope) != SolveStatus::ok) return;
     for (std::size_t i = 0; i < axis_count(); ++i) {

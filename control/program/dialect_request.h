@@ -24,6 +24,7 @@ struct DialectRequest {
   /// (toolpath/gcode/turned_program.h).
   double turn_deg = 0, spin_deg = 0;
   std::string extruder_letter;          ///< E, A...; empty: the machine's
+  bool relative_extrusion = false;      ///< E counts on from the start, as after M83
   int b_sign = 1, c_sign = 1;           ///< -1: the program counts that axis the other way round
   std::vector<std::string> ignored;     ///< commands passed over with their lines, upper case
   std::string macros;                   ///< path of a Klipper configuration; empty: none

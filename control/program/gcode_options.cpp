@@ -1,5 +1,6 @@
 #include "control/program/gcode_options.h"
 
+#include <algorithm>
 #include <memory>
 
 #include "control/program/rotary_words.h"
@@ -20,6 +21,8 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   gcode.b_sign = dialect.b_sign;
   gcode.c_sign = dialect.c_sign;
   gcode.ignored = dialect.ignored;
+  gcode.relative_extrusion = dialect.relative_extrusion;
+  if (dialect.temperature_c) gcode.ignored_heat = *dialect.temperature_c + kCelsiusZero;
   if (!dialect.macros.empty())
     gcode.macros = std::make_shared<toolpath::GcodeMacros>(toolpath::GcodeMacros::read(dialect.macros));
   if (dialect.coordinates.empty()) return gcode;
@@ -32,10 +35,16 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
 void heat_first(const DialectRequest& dialect, const machine::MachineDescription& machine,
                 toolpath::Program& program) {
   if (!dialect.temperature_c) return;
+  const double temperature = *dialect.temperature_c + kCelsiusZero;
+  const auto bead = std::ranges::find(program.steps, toolpath::StepKind::print, &toolpath::Step::kind);
+  const auto heats = [&](const toolpath::Step& s) {
+    return s.kind == toolpath::StepKind::temperature && s.temperature == temperature;
+  };
+  if (std::any_of(program.steps.begin(), bead, heats)) return;  // in place of a macro
   toolpath::Step heat;
   heat.kind = toolpath::StepKind::temperature;
   heat.X_WT = machine.X_WB * machine.X_BT_home;
-  heat.temperature = *dialect.temperature_c + kCelsiusZero;
+  heat.temperature = temperature;
   heat.wait = true;
   program.steps.insert(program.steps.begin(), heat);
 }

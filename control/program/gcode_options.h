@@ -11,7 +11,8 @@ namespace understudy::control {
 toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
                                      const machine::MachineDescription& machine);
 
-/// Puts the temperature that the dialect asks for, if it does, ahead of the program.
+/// Puts the temperature that the dialect asks for, if it does, ahead of the program, unless the reader has
+/// put it in place of an ignored macro that starts the print.
 void heat_first(const DialectRequest& dialect, const machine::MachineDescription& machine,
                 toolpath::Program& program);
 

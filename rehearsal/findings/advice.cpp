@@ -184,6 +184,19 @@ std::string about_program(const Finding& finding, const Record&) {
         "for "
         "the one of {:g} mm",
         finding.value, finding.limit);
+  if (finding.about == kRelativeExtrusion)
+    return fmt::format(
+        "rehearse it with `--relative-extrusion`; on the machine put M83 ahead of line {}, where no macro of "
+        "its "
+        "firmware says so",
+        finding.gcode_line);
+  if (finding.about == kOtherAmount)
+    return "look whether E is absolute or relative (`--relative-extrusion`, M82, M83), at `M221`, and at the "
+           "printer's macros";
+  if (finding.about == kOtherMaterial)
+    return "name the material that will be loaded: `--material NAME`; docs/materials.md tells how to "
+           "describe "
+           "one";
   if (finding.about == kOtherFlow)
     return "look at the slicer's extrusion multiplier, at `M221`, and at the diameter of the filament";
   if (finding.about.starts_with(kPassedOver))

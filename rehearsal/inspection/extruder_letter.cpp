@@ -30,6 +30,7 @@ std::optional<char> extruder_letter_of(const std::string& text, const std::strin
     std::vector<toolpath::PassedOver> passed_over;
     as_read.unknown = &unknown;
     as_read.passed_over = &passed_over;
+    as_read.refused = nullptr;
     try {
       const toolpath::Program program = toolpath::parse_gcode(text, file, as_read);
       if (prints_beads(toolpath::summarise(program, start_W, filament_diameter))) return letter;

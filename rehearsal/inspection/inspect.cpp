@@ -20,41 +20,17 @@
 #include "rehearsal/inspection/extruder_letter.h"
 #include "rehearsal/inspection/inspect_robot.h"
 #include "rehearsal/inspection/place_on_table.h"
+#include "rehearsal/inspection/start_temperature.h"
+#include "rehearsal/inspection/turning_letters.h"
 #include "rehearsal/program/told_process.h"
 #include "toolpath/inspection/feature_types.h"
+#include "toolpath/inspection/slicer_filament.h"
 
 namespace understudy::rehearsal {
 namespace {
 
 constexpr double kDefaultLayer = 0.2e-3;  // [m], where a program does not tell
 constexpr double kSameNozzle = 0.05;      // of the bore
-constexpr double kWarmest = 450;          // [C]
-
-/// The letters of words with a number on lines of G commands, outside of comments.
-std::set<char> letters_of(std::string_view text) {
-  std::set<char> letters;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    line = line.substr(0, line.find_first_of(";("));
-    if (!line.starts_with('G') && !line.starts_with('g') && !line.starts_with('N')) continue;
-    for (std::size_t i = 0; i + 1 < line.size(); ++i)
-      if (std::string_view("0123456789.-+").find(line[i + 1]) != std::string_view::npos)
-        letters.insert(static_cast<char>(std::toupper(static_cast<unsigned char>(line[i]))));
-  }
-  return letters;
-}
-
-/// Those that turn axes, as far as a program tells: W beside I J K is a quaternion's.
-std::string turning_letters(std::string_view text, char extruder) {
-  const std::set<char> letters = letters_of(text);
-  std::string turning;
-  for (const char letter : std::string_view(toolpath::kRotaryLetters))
-    if (letters.contains(letter) && letter != extruder && !(letter == 'W' && letters.contains('K')))
-      turning += letter;
-  return turning;
-}
 
 bool all_among(const std::string& letters, const std::string& known) {
   return std::ranges::all_of(letters, [&](char c) { return known.find(c) != std::string::npos; });
@@ -64,6 +40,10 @@ bool all_among(const std::string& letters, const std::string& known) {
 bool is_command(const std::string& word) {
   const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
   return word.size() > 1 && (word[0] == 'G' || word[0] == 'M' || is_letter(word[1]));
+}
+
+void add_once(std::vector<std::string>& words, const std::string& word) {
+  if (std::ranges::find(words, word) == words.end()) words.push_back(word);
 }
 
 class Inspector {
@@ -77,9 +57,12 @@ class Inspector {
     result_.request.dialect.nozzle_mm = told.nozzle_mm;
     result_.request.dialect.layer_mm = told.layer_mm;
     result_.request.dialect.temperature_c = told.temperature_c;
+    result_.request.dialect.relative_extrusion = options_.relative_extrusion = told.relative_extrusion;
+    result_.request.dialect.ignored = options_.ignored = told.ignored;
     take(machine_);
     options_.unknown = &result_.unknown;
     options_.passed_over = &result_.passed_over;
+    options_.refused = &result_.refused;
     if (macros.empty()) return;
     result_.request.dialect.macros = macros;
     options_.macros = std::make_shared<toolpath::GcodeMacros>(toolpath::GcodeMacros::read(macros));
@@ -87,17 +70,22 @@ class Inspector {
 
   Inspection run() {
     result_.slicer_facts = toolpath::slicer_facts(text_);
+    result_.told_filament = toolpath::told_filament(text_);
+    result_.told_material = told_material(result_.slicer_facts);
     if (const auto nozzle = fact_number(result_.slicer_facts, "nozzle_diameter"))
       result_.nozzle = from_mm(*nozzle);
     find_extruder_letter();
     const std::string turning = turning_letters(text_, options_.extruder_letter);
     if (!all_among(turning, options_.rotary ? options_.rotary->letters : "")) read_for_others(turning);
+    find_relative_extrusion();
     const bool known = result_.foreign_words.empty() || !result_.machines_with_words.empty();
     if (options_.rotary && !turning.empty() && known)
       rank();
     else
       summarise_as(options_);
     request_words();
+    if (!machine_.process.material.empty()) request_material();
+    request_temperature();
     request_place();
     if (result_.summary.printed) result_.time = print_time(result_.request, result_.slicer_facts);
     return std::move(result_);
@@ -112,6 +100,17 @@ class Inspector {
     if (!found) return;
     options_.extruder_letter = *found;
     result_.request.dialect.extruder_letter = *found;
+  }
+
+  /// M83 may stand in a macro that is not known here.
+  void find_relative_extrusion() {
+    toolpath::ExtrusionTally tally;
+    toolpath::GcodeOptions look = options_;
+    look.extrusion = &tally;
+    toolpath::parse_gcode(text_, file_, look);
+    if (!tally.looks_relative()) return;
+    result_.relative_extrusion = tally;
+    result_.request.dialect.relative_extrusion = options_.relative_extrusion = true;
   }
 
   Vec3 start_W() const { return options_.X_WT_home.translation(); }
@@ -135,6 +134,7 @@ class Inspector {
     }
     toolpath::RotaryWords still;  // whatever they turn
     still.letters = turning.substr(0, 2);
+    text_ = without_words(text_, turning.substr(still.letters.size()));
     still.tip_pose = [](const Vec3& p_WT, double, double) -> Pose {
       return make_pose(Quat::Identity(), p_WT);
     };
@@ -144,6 +144,7 @@ class Inspector {
   void take(const machine::MachineDescription& machine) {
     machine_ = machine;
     result_.machine_nozzle = machine_.tool.nozzle_diameter;
+    result_.machine_material = machine_.process.material;
     options_.X_WT_home = machine_.X_WB * machine_.X_BT_home;
     options_.rotary = control::rotary_words(machine_);
     options_.extruder_letter = machine_.dialect.extruder_letter;
@@ -162,7 +163,8 @@ class Inspector {
 
   void summarise_as(const toolpath::GcodeOptions& options) {
     const toolpath::Program program = toolpath::parse_gcode(text_, file_, options);
-    result_.summary = toolpath::summarise(program, start_W(), filament_diameter());
+    result_.summary =
+        toolpath::summarise(program, start_W(), filament_diameter(), toolpath::LayerComments(text_));
     result_.feature_lengths = toolpath::feature_lengths(program, toolpath::FeatureTypes(text_), start_W());
   }
 
@@ -173,7 +175,9 @@ class Inspector {
 
   void request_words() {
     for (const auto& word : result_.unknown)
-      if (is_command(word.word)) result_.request.dialect.ignored.push_back(word.word);
+      if (is_command(word.word)) add_once(result_.request.dialect.ignored, word.word);
+    for (const auto& line : result_.refused.told)
+      if (toolpath::can_be_ignored(line.command)) add_once(result_.request.dialect.ignored, line.command);
     auto& dialect = result_.request.dialect;
     const double bore = to_mm(machine_.tool.nozzle_diameter);
     if (const auto nozzle = result_.nozzle; !dialect.nozzle_mm && nozzle && *nozzle > 0 && bore > 0 &&
@@ -182,16 +186,24 @@ class Inspector {
     const auto filament = other_filament(machine_.tool, result_.slicer_facts);
     if (filament && result_.request.machine.find('{') == std::string::npos)
       result_.request.machine += fmt::format("{{tool.filament_diameter_mm: {:g}}}", *filament);
-    if (!result_.summary.temperatures.empty() || dialect.temperature_c) return;
-    for (const char* key : {"first_layer_temperature", "temperature"})
-      if (const auto said = fact_number(result_.slicer_facts, key); said && *said > 0 && *said <= kWarmest) {
-        result_.request.dialect.temperature_c = *said;
-        return;
-      }
-    if (result_.summary.printed && !machine_.process.material.empty()) {
-      const machine::Material material = machine::load_material(machine_.process.material);
-      result_.request.dialect.temperature_c = std::round(material.nozzle_temperature - kCelsiusZero);
-    }
+  }
+
+  void request_material() {
+    const std::string& told = result_.told_material;
+    const std::vector<std::string> names = machine::material_names();
+    if (told != machine_.process.material && std::ranges::find(names, told) != names.end())
+      result_.request.material = told;
+  }
+
+  /// Where the program extrudes before it has heated the nozzle: a macro does that.
+  void request_temperature() {
+    auto& chosen = result_.request.dialect.temperature_c;
+    if (chosen || result_.summary.heated_first) return;
+    chosen = start_temperature(text_, result_.slicer_facts);
+    const std::string& name =
+        result_.request.material.empty() ? machine_.process.material : result_.request.material;
+    if (!chosen && result_.summary.printed && !name.empty())
+      chosen = std::round(machine::load_material(name).nozzle_temperature - kCelsiusZero);
   }
 
   /// Onto the table, and to its middle where it does not lie on it.
@@ -200,8 +212,9 @@ class Inspector {
     if (!printed || coordinates_ == "machine") return;
     const auto& heights = result_.summary.layer_heights;
     // High above the table it may print on a part; a program of rotary words counts from its table's pivots.
-    result_.request.dialect.place_mm = place_on_table(
-        *printed, machine_, heights.empty() ? kDefaultLayer : heights.front(), !result_.readings.empty());
+    result_.request.dialect.place_mm =
+        place_on_table(*printed, *result_.summary.part, machine_,
+                       heights.empty() ? kDefaultLayer : heights.front(), !result_.readings.empty());
   }
 
   std::string file_, text_;
@@ -240,9 +253,11 @@ std::string rehearse_command(const RehearsalRequest& request, const std::string&
   if (!dialect.ignored.empty())
     command += " --ignore " + shell_quoted(fmt::format("{}", fmt::join(dialect.ignored, ",")));
   if (!dialect.macros.empty()) command += " --macros " + shell_quoted(dialect.macros);
+  if (dialect.relative_extrusion) command += " --relative-extrusion";
   if (dialect.temperature_c) command += fmt::format(" --temperature {}", *dialect.temperature_c);
   if (dialect.nozzle_mm) command += fmt::format(" --nozzle {}", *dialect.nozzle_mm);
   if (dialect.layer_mm) command += fmt::format(" --layer {}", *dialect.layer_mm);
+  if (!request.material.empty()) command += " --material " + shell_quoted(request.material);
   const RobotProgramRequest& robot = dialect.robot;
   if (!robot.signals.empty())
     command += " --signal " + shell_quoted(fmt::format("{}", fmt::join(robot.signals, ",")));

@@ -19,6 +19,11 @@ struct Inspection {
   int lines = 0;
   std::vector<toolpath::UnknownWordCount> unknown;  ///< their lines are passed over here
   std::vector<toolpath::PassedOver> passed_over;    ///< lines that cannot be read
+  toolpath::RefusedLines refused;                   ///< lines that a rehearsal refuses, left out here
+  /// E that looks relative where no M83 says so; it is read so here, and in `request`.
+  std::optional<toolpath::ExtrusionTally> relative_extrusion;
+  std::optional<double> told_filament;              ///< [m], of the slicer's comment
+  std::string told_material;                        ///< of the slicer's comment; empty: none
   std::map<std::string, std::string> slicer_facts;  ///< from comments
   std::map<std::string, double> feature_lengths;    ///< [m] printed, by the types that comments name
   toolpath::ProgramSummary summary;                 ///< under the first of `readings`, if there are any
@@ -33,6 +38,7 @@ struct Inspection {
   std::string told_by;           ///< how its language is known: "its ending", "its content"; empty: G-code
   std::optional<double> nozzle;  ///< [m], that the slicer worked for
   double machine_nozzle = 0;     ///< [m]
+  std::string machine_material;  ///< that the machine's file names; empty: it prints none
   PrintTime time;                ///< of what `request` asks for
   /// How it may be rehearsed: dialect, place on the table, words to ignore, temperature.
   RehearsalRequest request;
@@ -40,7 +46,8 @@ struct Inspection {
 
 /// Reads `program` as for `machine`, with `macros` (a path; empty: none); unknown words are counted, not
 /// refused. Readings are ranked as rank_readings() does. Throws InputError as read_gcode() does.
-/// Of `told`, nozzle, layer and temperature count, ahead of what comments say.
+/// Of `told`, nozzle, layer, temperature and relative E count, ahead of what comments say, and words to
+/// ignore.
 Inspection inspect(const std::string& program, const std::string& machine, const std::string& macros = {},
                    const DialectRequest& told = {});
 

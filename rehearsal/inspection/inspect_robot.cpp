@@ -59,7 +59,8 @@ Inspection inspect_robot(const std::string& program, const std::string& text, co
     dialect.robot.signals = result.robot->signal;
   if (result.robot->signal.empty()) dialect.robot.bead_mm = {0, 0};
   if (const auto& printed = result.summary.printed)
-    dialect.place_mm = place_on_table(*printed, description, from_mm(dialect.robot.bead_mm[1]), true);
+    dialect.place_mm =
+        place_on_table(*printed, *printed, description, from_mm(dialect.robot.bead_mm[1]), true);
   try {
     read(true);
   } catch (const InputError& error) {

@@ -14,7 +14,7 @@ double thousandths(double metres) { return std::round(1e3 * to_mm(metres)) / 1e3
 
 }  // namespace
 
-std::array<double, 3> place_on_table(const toolpath::Extent& printed,
+std::array<double, 3> place_on_table(const toolpath::Extent& printed, const toolpath::Extent& part,
                                      const machine::MachineDescription& machine, double layer, bool lowered) {
   std::array<double, 3> place{0, 0, 0};
   const auto& [lower, upper] = printed;
@@ -22,10 +22,11 @@ std::array<double, 3> place_on_table(const toolpath::Extent& printed,
     place[2] = thousandths(layer - lower.z());
   const auto* table = std::get_if<geometry::Box>(&machine.table.form);
   if (table == nullptr) return place;
-  const Vec3 half = table->size / 2, middle = machine.table.X_FS.translation(), centre = (lower + upper) / 2;
-  for (int i = 0; i < 2; ++i)
-    if (lower[i] < middle[i] - half[i] || upper[i] > middle[i] + half[i])
-      place[static_cast<std::size_t>(i)] = thousandths(middle[i] - centre[i]);
+  const Vec3 half = table->size / 2, middle = machine.table.X_FS.translation();
+  const auto leaves = [&](int i) { return lower[i] < middle[i] - half[i] || upper[i] > middle[i] + half[i]; };
+  if (!leaves(0) && !leaves(1)) return place;
+  const Vec3 centre = (part.lower + part.upper) / 2;
+  for (int i = 0; i < 2; ++i) place[static_cast<std::size_t>(i)] = thousandths(middle[i] - centre[i]);
   return place;
 }
 

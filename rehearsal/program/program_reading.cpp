@@ -15,8 +15,10 @@
 #include "core/units.h"
 #include "rehearsal/program/readings.h"
 #include "rehearsal/program/robot_reading.h"
+#include "rehearsal/program/told_filament.h"
 #include "toolpath/gcode/turned_program.h"
 #include "toolpath/inspection/program_summary.h"
+#include "toolpath/inspection/slicer_filament.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -41,7 +43,15 @@ void read_gcode_into(ReadProgram& read, const std::string& text, const Rehearsal
   read.features = toolpath::FeatureTypes(text);
   read.beads = toolpath::ToldBeads(text);
   const toolpath::ProgramTurn turn{from_deg(request.dialect.turn_deg), from_deg(request.dialect.spin_deg)};
+  toolpath::ExtrusionTally tally;
+  options.extrusion = &tally;
   read.program = toolpath::parse_turned_gcode(text, request.program, options, turn);
+  if (!machine.tool.prints()) return;
+  const double fed = fresh_filament(read.program);
+  const auto told = toolpath::told_filament(text);
+  auto finding = misread_extrusion(tally, fed, told);
+  if (!finding) finding = other_amount(fed, told);
+  if (finding) read.extrusion.push_back(*finding);
 }
 
 Finding finding_of(const toolpath::PassedOver& passed) {

@@ -22,6 +22,7 @@ struct ReadProgram {
   std::map<std::string, std::string> facts;       ///< of the slicer's comments (toolpath::slicer_facts)
   toolpath::FeatureTypes features;                ///< of the slicer's comments
   toolpath::ToldBeads beads;                      ///< of the slicer's comments
+  std::vector<Finding> extrusion;  ///< where E is misread, or feeds another amount than a comment tells
 };
 
 /// With the temperature that the request asks for ahead of it. Throws InputError as read_gcode() and

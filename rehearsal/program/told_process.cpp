@@ -1,5 +1,6 @@
 #include "rehearsal/program/told_process.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -83,6 +84,27 @@ std::optional<double> other_filament(const machine::Tool& tool,
   const bool other =
       tool.prints() && said && *said > 0 && std::abs(*said - filament) > kSameFilament * filament;
   return other ? said : std::nullopt;
+}
+
+std::string told_material(const std::map<std::string, std::string>& facts) {
+  const auto said = facts.find("material");
+  if (said == facts.end()) return "";
+  const std::string first = said->second.substr(0, said->second.find_first_of(";, \t"));
+  std::string name;
+  for (const char c : first)
+    if (c != '"' && c != '+') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
+}
+
+std::optional<Finding> other_material(const std::string& material,
+                                      const std::map<std::string, std::string>& facts) {
+  const std::string told = told_material(facts);
+  if (told.empty() || told == material) return std::nullopt;
+  return Finding{"program", Severity::warning,
+                 0,         0,
+                 0,         0,
+                 "",        fmt::format("sliced for {}, judged as {}", facts.at("material"), material),
+                 0,         kOtherMaterial};
 }
 
 std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,

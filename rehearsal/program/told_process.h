@@ -27,6 +27,14 @@ double told_layer(const DialectRequest& dialect, const std::map<std::string, std
 std::optional<double> other_filament(const machine::Tool& tool,
                                      const std::map<std::string, std::string>& facts);
 
+/// The material that the slicer's comments name, as the materials of models/ are called: "abs" of "ABS;ABS";
+/// empty: they name none.
+std::string told_material(const std::map<std::string, std::string>& facts);
+
+/// A warning: the slicer worked for another material than the one of this name.
+std::optional<Finding> other_material(const std::string& material,
+                                      const std::map<std::string, std::string>& facts);
+
 /// Warnings: the slicer worked for another nozzle or filament than what is there; the request's layer is not
 /// the one [m] that most of the path has (0: none).
 std::vector<Finding> process_warnings(const DialectRequest& dialect, const machine::Tool& tool,

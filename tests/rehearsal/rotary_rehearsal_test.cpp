@@ -125,6 +125,30 @@ TEST_F(RotaryRehearsal, TheAxesEndWhereTheWordsOfMachineCoordinatesSay) {
     EXPECT_NEAR(record.trace.back().axes[i], expected[i], 0.51 * machine_.drives[i].step()) << "axis " << i;
 }
 
+TEST_F(RotaryRehearsal, ATurnOfCAloneUnderAnUprightToolRunsAtTheDrivesLimitWithTheTipAtRest) {
+  const std::string program =
+      "G21 G90 M83\nM109 S200\nG28\nG1 X10 Y0 Z0.2 F1200\nG1 X20 E0.33\nG1 C90 F1000\n";
+  for (const std::string name : {"five-axis", "trunnion-ac", "trunnion-bc", "head-table"}) {
+    const Record record = run(program, name);
+    for (const Finding& finding : record.findings) {
+      EXPECT_TRUE(std::isfinite(finding.value)) << name << ": " << finding.message;
+      EXPECT_NE(finding.gcode_line, 6) << name << ": " << finding.message;
+    }
+    double turning = 0;
+    for (std::size_t k = 1; k < record.trace.size(); ++k) {
+      const auto& before = record.trace[k - 1];
+      const auto& now = record.trace[k];
+      if (now.line != 6) continue;
+      EXPECT_LT((now.X_WT_programmed.translation() - Vec3(0.020, 0, 0.0002)).norm(), 1e-7) << name;
+      turning += now.time - before.time;
+    }
+    const machine::MachineDescription machine = machine::load_machine(name);
+    const auto& drive = machine.drives[4];
+    const double expected = from_deg(90) / drive.velocity_max + drive.velocity_max / drive.acceleration_max;
+    EXPECT_NEAR(turning, expected, 0.05) << name;  // the trace's interval, at either end
+  }
+}
+
 TEST_F(RotaryRehearsal, MachineCoordinatesArePosesOfTheChainsAxes) {
   toolpath::GcodeOptions options;
   options.X_WT_home = machine_.X_WB * machine_.X_BT_home;

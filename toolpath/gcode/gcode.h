@@ -15,7 +15,9 @@
 #include <vector>
 
 #include "core/units.h"
+#include "toolpath/gcode/gcode_extrusion.h"
 #include "toolpath/gcode/gcode_macros.h"
+#include "toolpath/gcode/gcode_refused.h"
 #include "toolpath/program.h"
 
 namespace understudy::toolpath {
@@ -72,11 +74,14 @@ struct GcodeOptions {
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
   std::optional<RotaryWords> rotary = std::nullopt;  ///< without it A, B and C are errors
   // Of the dialect.
-  char extruder_letter = 'E';  ///< of filament: E, or a rotary letter that turns nothing
-  Vec3 offset_W{0, 0, 0};      ///< [m], the program's origin in W
-  int b_sign = 1, c_sign = 1;  ///< -1: the program counts that axis the other way round
+  char extruder_letter = 'E';       ///< of filament: E, or a rotary letter that turns nothing
+  bool relative_extrusion = false;  ///< E counts on from the start, as after M83
+  Vec3 offset_W{0, 0, 0};           ///< [m], the program's origin in W
+  int b_sign = 1, c_sign = 1;       ///< -1: the program counts that axis the other way round
   /// Commands to pass over with their lines, upper case: "M428", "START_PRINT".
   std::vector<std::string> ignored = {};
+  /// [K], to which those of them that are words heat a nozzle which nothing has heated before the first bead.
+  std::optional<double> ignored_heat = std::nullopt;
   /// What commands that are unknown here stand for; null: nothing.
   std::shared_ptr<const GcodeMacros> macros = nullptr;
   /// Where unknown words are counted, whose lines are then passed over; null: they are errors. Not owned.
@@ -84,6 +89,11 @@ struct GcodeOptions {
   /// Where lines that cannot be read are told, which are then passed over (docs/gcode.md); null: they are
   /// errors. Not owned.
   std::vector<PassedOver>* passed_over = nullptr;
+  /// Where all other lines that are refused are told, which are then left out; null: they are errors, with
+  /// `passed_over` all in one at the program's end. Not owned.
+  RefusedLines* refused = nullptr;
+  /// Where moves are counted that feed filament by absolute E; null: nowhere. Not owned.
+  ExtrusionTally* extrusion = nullptr;
 };
 
 /// Throws InputError with file, line and column for unknown words (all of the file's in one), a malformed or

@@ -45,13 +45,17 @@ bool Block::read_without_effect(const std::vector<Word>& words) {
       understudy::toolpath::without_effect(words[first].letter, words[first].value);
   if (command == nullptr) return false;
   const auto is_code = [](const Word& word) {
-    return (word.letter == 'G' || word.letter == 'M') && !word.bare;
+    return (word.letter == 'G' || word.letter == 'M') && !word.bare && !word.quoted;
   };
   const auto next = words.begin() + static_cast<std::ptrdiff_t>(first) + 1;
   if (command->combines() && std::any_of(next, words.end(), is_code)) return false;
+  const bool of_firmware = words[first].letter == 'M';            // takes whatever it likes
+  const bool with_text = of_firmware && words[first].value <= 1;  // M0 Insert the nut
   for (std::size_t i = first; i < words.size(); ++i) {
     const Word& word = words[i];
-    const bool known = i == first || std::strchr(command->parameters, word.letter) != nullptr;
+    if (with_text && word.bare) break;
+    const bool known = i == first || (of_firmware ? !is_code(word)
+                                                  : std::strchr(command->parameters, word.letter) != nullptr);
     if (!known) fail(word, fmt::format("'{}' is no parameter of '{}'", word.text, words[first].text));
     words_.push_back({word, i == first, {}, true});
   }
@@ -72,6 +76,10 @@ void Block::check_numbers() const {
 /// How a firmware homes: W without levelling, R lifts, S P T speeds and precision of some.
 void Block::drop_homing_options() {
   if (find(Command::home) == nullptr) return;
+  if (asks_absent_ && find_any("XYZBC") == nullptr) {  // G28 U: without any other axis it is no G28
+    words_.clear();
+    without_effect_ = true;
+  }
   std::erase_if(words_, [](const Entry& entry) {
     const Word& word = entry.word;
     return !entry.is_command && !word.quoted &&
@@ -97,6 +105,10 @@ void Block::add(const Word& word, bool first) {
     words_.push_back({word, true, meaning->command, false});
     return;
   }
+  if (asks_absent_axis(word)) {
+    asks_absent_ = true;
+    return;
+  }
   check_letter(word);
   Word parameter = word;
   if (word.letter == letters_.extruder)
@@ -108,6 +120,15 @@ void Block::add(const Word& word, bool first) {
   if (find(parameter.letter) != nullptr)
     fail(word, fmt::format("'{}': the line has a second {}", word.text, word.letter));
   words_.push_back({parameter, false, {}, false});
+}
+
+/// Zero of a turning axis that the machine does not have, or the home of a second carriage.
+bool Block::asks_absent_axis(const Word& word) const {
+  if (word.letter == letters_.extruder || word.quoted || std::strchr("ABCDUV", word.letter) == nullptr ||
+      letters_.rotary.find(word.letter) != std::string::npos)
+    return false;
+  const bool second = std::strchr("DUV", word.letter) != nullptr && find(Command::home) != nullptr;
+  return second || (!word.bare && word.value == 0);
 }
 
 void Block::check_letter(const Word& word) const {

@@ -76,6 +76,7 @@ class Block {
   void check_letter(const Word& word) const;
   void check_groups() const;
   void drop_homing_options();
+  bool asks_absent_axis(const Word& word) const;
   void check_numbers() const;
   bool read_without_effect(const std::vector<Word>& words);
 
@@ -84,6 +85,7 @@ class Block {
   int line_;
   const Letters& letters_;
   bool without_effect_ = false;
+  bool asks_absent_ = false;  // only of axes that are not there
 };
 
 }  // namespace understudy::toolpath

@@ -17,15 +17,17 @@
 #include "toolpath/gcode/gcode_block.h"
 #include "toolpath/gcode/gcode_lexer.h"
 #include "toolpath/gcode/gcode_passed_over.h"
+#include "toolpath/gcode/gcode_unknown_words.h"
 
 namespace understudy::toolpath {
 namespace {
 
 constexpr std::size_t kLineMax = 65'536;  // [bytes]; docs/limits.md
 constexpr std::size_t kDeepestCall = 20;
-constexpr std::size_t kMostSaved = 20;    // names of SAVE_GCODE_STATE
-constexpr double kFastest = 1e5;          // [mm/s]
-constexpr int kMostMacroLines = 100'000;  // docs/limits.md
+constexpr std::size_t kMostSaved = 20;        // names of SAVE_GCODE_STATE
+constexpr double kFastest = 1e5;              // [mm/s]
+constexpr int kMostMacroLines = 100'000;      // docs/limits.md
+constexpr double kCold = 100 + kCelsiusZero;  // [K], of a nozzle that does not print
 
 int column_of(std::string_view line) { return static_cast<int>(line.find_first_not_of(" \t")) + 1; }
 
@@ -43,36 +45,6 @@ bool is_passed_over(std::string_view line, const GcodeOptions& options) {
   if (is_line_without_effect(line)) return true;
   return !options.ignored.empty() && std::ranges::count(options.ignored, first_command(line)) > 0;
 }
-
-/// Told together, so that a user need not mend a program word by word.
-class UnknownWords {
- public:
-  void add(const UnknownWord& error) {
-    if (!first_) first_.emplace(error);
-    const auto known = std::ranges::find(counts_, error.word(), &UnknownWordCount::word);
-    if (known != counts_.end())
-      ++known->lines;
-    else
-      counts_.push_back({error.word(), 1, error.place().line});
-  }
-  void fail_if_any() const {
-    if (!first_) return;
-    if (counts_.size() == 1 && counts_[0].lines == 1) throw UnknownWord(*first_);
-    std::string all;
-    for (std::size_t i = 0; i < counts_.size() && i < kShown; ++i)
-      all += fmt::format("{}'{}' ({} line{} from line {})", i ? ", " : "", counts_[i].word, counts_[i].lines,
-                         counts_[i].lines == 1 ? "" : "s", counts_[i].first_line);
-    if (counts_.size() > kShown) all += fmt::format(" and {} more", counts_.size() - kShown);
-    throw InputError(first_->place(),
-                     fmt::format("unknown words {}: mend these lines, or pass over them by --ignore", all));
-  }
-  const std::vector<UnknownWordCount>& counts() const { return counts_; }
-
- private:
-  static constexpr std::size_t kShown = 20;
-  std::optional<UnknownWord> first_;
-  std::vector<UnknownWordCount> counts_;
-};
 
 /// Throws InputError for a switching command that means something else.
 Letters letters_of(const GcodeOptions& options) {
@@ -138,8 +110,8 @@ class GcodeLineReader::Lines {
       if (over_) over_->after(line, state_, steps_);
     } catch (const InputError& error) {
       if (over_ && calls_.empty() && over_->pass_over(words, line, error, state_, steps_)) return;
+      if (over_ && !at_once_) return refuse(words, error);
       if (!options_.unknown) unknown_.fail_if_any();  // this may come of a line that was not read
-      fail_with_passed_over(error);
       throw;
     }
   }
@@ -168,6 +140,11 @@ class GcodeLineReader::Lines {
   const Letters& letters() const { return letters_; }
 
   void finish() {
+    if (options_.extrusion != nullptr) *options_.extrusion = state_.extrusion();
+    if (options_.refused != nullptr)
+      *options_.refused = refused_;
+    else
+      fail_if_refused();
     if (options_.unknown)
       *options_.unknown = unknown_.counts();
     else
@@ -184,18 +161,34 @@ class GcodeLineReader::Lines {
     if (of_kisslicer_ && words == "; firmware_type = 1") state_.extrude_relative();
   }
 
-  /// What cannot be passed over may come of lines that were.
-  void fail_with_passed_over(const InputError& error) const {
-    if (!over_ || over_->found().empty()) return;
+  /// Goes on as if the line were not there, to tell what else is wrong.
+  void refuse(std::string_view words, const InputError& error) {
+    over_->undo(state_, steps_);
+    calls_.clear();
+    refused_.add(error, first_command(words));
+    const auto all = static_cast<int>(over_->found().size()) + refused_.lines;
+    if (options_.refused == nullptr && all > kMostPassedOver) fail_if_refused();
+  }
+
+  /// With the lines that are passed over, of which this may come, and with unknown words.
+  void fail_if_refused() const {
+    if (refused_.lines == 0) return;
     std::vector<PassedOver> lines = over_->found();
-    const std::string place = to_string(error.place()), text = error.what();
-    lines.push_back({error.place().line,
-                     error.place().column,
-                     0,
-                     text.substr(std::min(place.size() + 2, text.size())),
-                     {},
-                     0,
-                     true});
+    std::string ignorable;
+    for (const RefusedLine& line : refused_.told) {
+      lines.push_back({line.line, line.column, 0, line.why, {}, 0, true});
+      if (can_be_ignored(line.command) && ignorable.find(line.command) == std::string::npos)
+        ignorable += (ignorable.empty() ? "" : ",") + line.command;
+    }
+    std::ranges::stable_sort(lines, {}, &PassedOver::line);
+    if (!ignorable.empty())
+      lines.back().why += fmt::format("; `--ignore {}` passes over such lines", ignorable);
+    try {
+      if (!options_.unknown) unknown_.fail_if_any();
+    } catch (const InputError& error) {
+      const std::string unknown = without_place(error);
+      lines.insert(lines.begin(), {error.place().line, error.place().column, 0, unknown, {}, 0, true});
+    }
     refuse_passed_over(file_, lines);
   }
 
@@ -203,7 +196,7 @@ class GcodeLineReader::Lines {
     if (words.size() > kLineMax)
       throw InputError(Place{file_, line},
                        fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
-    if (is_passed_over(words, options_)) return;
+    if (is_passed_over(words, options_)) return heat_in_place_of(words, line);
     try {
       if (keeps_state(words, line)) return;
       if (options_.macros != nullptr && call_macro(words, line)) return;
@@ -220,7 +213,26 @@ class GcodeLineReader::Lines {
     }
   }
 
-  /// What an unknown command makes of the rest of its line is not known either.
+  /// Of an ignored macro that starts the print: a nozzle that is cold still is heated.
+  void heat_in_place_of(std::string_view words, int line) {
+    if (!options_.ignored_heat || bead_begun_ || is_line_without_effect(words) ||
+        command_in_words(words).empty())
+      return;
+    bead_begun_ = std::ranges::any_of(steps_, [](const Step& s) { return s.kind == StepKind::print; });
+    const auto last = std::find_if(steps_.rbegin(), steps_.rend(),
+                                   [](const Step& s) { return s.kind == StepKind::temperature; });
+    if (bead_begun_ || (last != steps_.rend() && last->temperature > kCold)) return;
+    Step heat;
+    heat.kind = StepKind::temperature;
+    heat.X_WT = state_.X_WT();
+    heat.temperature = *options_.ignored_heat;
+    heat.wait = true;
+    heat.line = line;
+    steps_.push_back(heat);
+  }
+
+  /// What an unknown command makes of the rest of its line is not known either; what follows an M without
+  /// effect may be a text, as of M115 U3.11.0.
   std::vector<Word> words_of(std::string_view words, int line) const {
     try {
       return lex_line(words, file_, line);
@@ -228,6 +240,8 @@ class GcodeLineReader::Lines {
       const std::string command = first_command(words);
       const bool coded = command.size() > 1 && (command[0] == 'G' || command[0] == 'M') &&
                          std::isdigit(static_cast<unsigned char>(command[1])) != 0;
+      if (coded && command[0] == 'M' && without_effect('M', std::strtod(command.c_str() + 1, nullptr)))
+        return lex_line(words.substr(0, words.find_first_of("Mm") + command.size()), file_, line);
       if (!coded || has_meaning(command) || letters_.switching(command)) throw;
       throw UnknownWord({file_, line, column_of(words)}, command);
     }
@@ -306,6 +320,8 @@ class GcodeLineReader::Lines {
   int macro_lines_ = 0;
   bool said_place_ = false;
   bool of_kisslicer_ = false;
+  bool bead_begun_ = false;
+  RefusedLines refused_;
   std::optional<std::pair<GcodeState, std::size_t>> undo_;  // before the last line; number of steps
   bool at_once_ = false;  // unknown words are told by the line that has them
 };

@@ -10,11 +10,6 @@ namespace {
 
 bool has(std::string_view all, char c) { return all.find(c) != std::string_view::npos; }
 
-std::string without_place(const InputError& error) {
-  const std::string place = to_string(error.place()), text = error.what();
-  return place.empty() || !text.starts_with(place) ? text : text.substr(place.size() + 2);
-}
-
 /// G91, G92 of a place, G10 L, a change of coordinates: where the tool is not known, neither is what comes.
 bool depends_on_place(const Block& block) {
   return block.find(Command::relative) != nullptr || block.find(Command::tip_coordinates) != nullptr ||
@@ -35,6 +30,11 @@ void refuse_passed_over(const std::string& file, const std::vector<PassedOver>& 
 void LinesPassedOver::before(const GcodeState& state, std::size_t steps) {
   before_ = state;
   steps_before_ = steps;
+}
+
+void LinesPassedOver::undo(GcodeState& state, std::vector<Step>& steps) const {
+  state = *before_;
+  steps.resize(steps_before_);
 }
 
 void LinesPassedOver::check(const Block& block) const {
@@ -70,8 +70,7 @@ void LinesPassedOver::after(int line, const GcodeState& state, std::vector<Step>
 
 bool LinesPassedOver::pass_over(std::string_view text, int line, const InputError& error, GcodeState& state,
                                 std::vector<Step>& steps) {
-  state = *before_;
-  steps.resize(steps_before_);
+  undo(state, steps);
   auto words = salvage(text, letters_, state.on_arc());
   if (!words || state.ended()) return false;
   const auto is_place = [](char c) { return c != 'E'; };

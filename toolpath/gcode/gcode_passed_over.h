@@ -23,6 +23,8 @@ class LinesPassedOver {
   /// Throws InputError for a block that means something else where the tool is not known.
   void check(const Block& block) const;
   void note(const Block& block, const GcodeState& state);
+  /// As it was before the line.
+  void undo(GcodeState& state, std::vector<Step>& steps) const;
   /// Throws InputError at `place` where the tool is not known.
   void require_place(const Place& place) const;
   void after(int line, const GcodeState& state, std::vector<Step>& steps);

@@ -19,7 +19,7 @@ void check_anything_is_left(const Program& program, const GcodeOptions& options,
       (!moves_left ||
        (std::ranges::any_of(*options.passed_over, printed) && std::ranges::none_of(program.steps, prints))))
     refuse_passed_over(program.file, *options.passed_over);
-  if (moves_left) return;
+  if (moves_left || (options.refused != nullptr && options.refused->lines > 0)) return;
   throw InputError(Place{program.file},
                    empty ? "empty file, at least 1 move is needed" : "0 moves, at least 1 is needed");
 }

@@ -27,12 +27,13 @@ bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != 
 
 }  // namespace
 
-GcodeState::GcodeState(const GcodeOptions& options) : position_(options) {}
+GcodeState::GcodeState(const GcodeOptions& options)
+    : position_(options), relative_extrusion_(options.relative_extrusion) {}
 
 void GcodeState::run(Block& block, std::vector<Step>& steps) {
   if (block.empty()) return;
-  if (ended_) block.fail("a word after the end of the program (M2, M30)");
   if (block.without_effect()) return;
+  if (ended_) return check_nothing_moves(block);
   set_modes(block);
   set_feed(block);
   set_process(block, steps);
@@ -42,6 +43,13 @@ void GcodeState::run(Block& block, std::vector<Step>& steps) {
     steps.push_back(step(StepKind::end, block.line()));
     ended_ = true;
   }
+}
+
+/// After M2 or M30 a controller reads nothing more; slicers put their footers there.
+void GcodeState::check_nothing_moves(const Block& block) {
+  const bool renames = block.find(Command::set_position) != nullptr;
+  if (block.find(Command::home) != nullptr || (!renames && block.find_any(kMotionWords) != nullptr))
+    block.fail("a move after the end of the program (M2, M30): the controller stops there");
 }
 
 void GcodeState::set_modes(const Block& block) {
@@ -343,7 +351,18 @@ double GcodeState::fed_filament(Block& block) {
   if (std::abs(extruder_) > kLargestExtruder)
     block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
                                   to_mm(extruder_), to_mm(kLargestExtruder)));
-  return count_fed(flow_ * (relative ? value : value - before));
+  const double most_before = most_fed_;
+  const double fed = count_fed(flow_ * (relative ? value : value - before));
+  if (!relative && block.find_any("XY") != nullptr)
+    count_absolute(block.line(), value, before, most_fed_ > most_before);
+  return fed;
+}
+
+void GcodeState::count_absolute(int line, double value, double before, bool fresh) {
+  if (extrusion_.moves++ == 0) extrusion_.first_line = line;
+  if (fresh) ++extrusion_.fresh;
+  if (value <= before) ++extrusion_.not_rising;
+  extrusion_.by_words += std::max(0.0, value);
 }
 
 double GcodeState::count_fed(double filament) {

@@ -50,6 +50,7 @@ class GcodeState {
   void extrude_relative() { relative_extrusion_ = true; }
   bool ended() const { return ended_; }
   bool on_arc() const { return is_curve(); }
+  const ExtrusionTally& extrusion() const { return extrusion_; }
   double fed() const { return fed_; }                     ///< [m] of filament, since the beginning
   double drawn_back() const { return most_fed_ - fed_; }  ///< [m] of filament
   /// What a move that is passed over says of the motion and the feed of later lines.
@@ -63,6 +64,7 @@ class GcodeState {
  private:
   enum class Motion { none, rapid, linear, clockwise_arc, counterclockwise_arc, spline };
 
+  static void check_nothing_moves(const Block& block);
   void set_modes(const Block& block);
   void set_feed(Block& block);
   void set_process(Block& block, std::vector<Step>& steps);
@@ -97,12 +99,14 @@ class GcodeState {
   };
 
   double fed_filament(Block& block);
+  void count_absolute(int line, double value, double before, bool fresh);
   double count_fed(double filament);
   Step step(StepKind kind, int line) const;
 
   GcodePosition position_;
-  double extruder_ = 0;                      // [m], reading of E
-  double fed_ = 0, most_fed_ = 0;            // [m]
+  double extruder_ = 0;            // [m], reading of E
+  double fed_ = 0, most_fed_ = 0;  // [m]
+  ExtrusionTally extrusion_;
   double flow_ = 1;                          // filament fed for one that is programmed (M221)
   double speed_ = 1;                         // of feeds, for what is programmed (M220)
   std::optional<double> retraction_;         // [m], of G10 (M207)

@@ -56,56 +56,63 @@ constexpr Meaning kMeanings[] = {
     {'M', 221, Command::flow, Group::process},
 };
 
+constexpr const char* kAny = "*";  // parameters, texts too
+
 constexpr WithoutEffect kWithoutEffect[] = {
     {'G', 29, "ABCEFHIJKLNOPQRSTUVWXYZ"},  // levelling of the bed
     {'G', 40, ""},                         // cutter compensation off
     {'G', 61, ""},                         // exact path
     {'G', 64, "PQ"},                       // blended path
     {'G', 80, "ABCEFHIJKLNOPQRSTUVWXYZ"},  // canned cycles off; Prusa's levelling
-    {'M', 0, "PS"},                        // a stop for the operator
-    {'M', 1, "PS"},
-    {'M', 5, ""},                // spindle off
-    {'M', 9, ""},                // coolant off
-    {'M', 17, "XYZEABCDRUVWS"},  // motors on
-    {'M', 18, "XYZESABCUVW"},    // motors off
-    {'M', 73, "PRQSCDTL"},       // progress shown
-    {'M', 75, ""},               // print timer
-    {'M', 76, ""},               //
-    {'M', 77, ""},               //
-    {'M', 84, "XYZESABCUVW"},    // motors off
-    {'M', 105, "T"},             // temperature asked for
-    {'M', 110, "N"},             // line number
-    {'M', 114, "DER"},           // position asked for
-    {'M', 115, "UVP"},           // firmware asked for
-    {'M', 116, "PHCS"},          // wait for temperatures
-    {'M', 119, ""},              // end switches asked for
-    {'M', 140, "STP"},           // bed temperature
-    {'M', 141, "SP"},            // chamber temperature
-    {'M', 142, "PROSUV"},        // chamber cooling
-    {'M', 150, "RUBWPIKS"},      // lights
-    {'M', 155, "S"},             // reports of temperature
-    {'M', 190, "SRTP"},          // bed temperature, and wait
-    {'M', 191, "SR"},            // chamber temperature, and wait
-    {'M', 201, "XYZETFPS"},      // largest accelerations
-    {'M', 203, "XYZET"},         // largest feeds
-    {'M', 205, "XYZEBSTJ"},      // jerk, junction deviation, least feeds
-    {'M', 300, "SP"},            // a beep
-    {'M', 302, "SP"},            // cold extrusion
-    {'M', 400, "SPU"},           // wait for the moves before
-    {'M', 412, "SHRD"},          // filament sensor
-    {'M', 413, "S"},             // power-loss recovery
-    {'M', 420, "SZVLTC"},        // levelling on or off
-    {'M', 501, ""},              // stored settings
-    {'M', 566, "XYZEP"},         // jerk, of RepRapFirmware
-    {'M', 572, "DSE"},           // pressure advance, of RepRapFirmware
-    {'M', 593, "XYFD"},          // input shaping
-    {'M', 862.1, "PQT"},         // checks of nozzle, model, firmware
-    {'M', 862.2, "PQ"},          //
-    {'M', 862.3, "PQ"},          //
-    {'M', 862.4, "PQ"},          //
-    {'M', 862.5, "PQ"},          //
-    {'M', 862.6, "PQ"},          //
-    {'M', 900, "KLTMSCR"},       // pressure advance
+    {'M', 0, kAny},                        // a stop for the operator
+    {'M', 1, kAny},
+    {'M', 5, ""},        // spindle off
+    {'M', 9, ""},        // coolant off
+    {'M', 17, kAny},     // motors on
+    {'M', 18, kAny},     // motors off
+    {'M', 73, kAny},     // progress shown
+    {'M', 75, ""},       // print timer
+    {'M', 76, ""},       //
+    {'M', 77, ""},       //
+    {'M', 84, kAny},     // motors off
+    {'M', 105, kAny},    // temperature asked for
+    {'M', 110, kAny},    // line number
+    {'M', 114, kAny},    // position asked for
+    {'M', 115, kAny},    // firmware asked for
+    {'M', 116, kAny},    // wait for temperatures
+    {'M', 119, ""},      // end switches asked for
+    {'M', 140, kAny},    // bed temperature
+    {'M', 141, kAny},    // chamber temperature
+    {'M', 142, kAny},    // chamber cooling
+    {'M', 150, kAny},    // lights
+    {'M', 155, kAny},    // reports of temperature
+    {'M', 190, kAny},    // bed temperature, and wait
+    {'M', 191, kAny},    // chamber temperature, and wait
+    {'M', 201, kAny},    // largest accelerations
+    {'M', 203, kAny},    // largest feeds
+    {'M', 205, kAny},    // jerk, junction deviation, least feeds
+    {'M', 300, kAny},    // a beep
+    {'M', 302, kAny},    // cold extrusion
+    {'M', 330, kAny},    // records of Prusa's firmware
+    {'M', 331, kAny},    //
+    {'M', 332, kAny},    //
+    {'M', 334, kAny},    //
+    {'M', 400, kAny},    // wait for the moves before
+    {'M', 412, kAny},    // filament sensor
+    {'M', 413, kAny},    // power-loss recovery
+    {'M', 420, kAny},    // levelling on or off
+    {'M', 501, ""},      // stored settings
+    {'M', 555, kAny},    // where Prusa's firmware will print
+    {'M', 566, kAny},    // jerk, of RepRapFirmware
+    {'M', 572, kAny},    // pressure advance, of RepRapFirmware
+    {'M', 593, kAny},    // input shaping
+    {'M', 862.1, kAny},  // checks of nozzle, model, firmware
+    {'M', 862.2, kAny},  //
+    {'M', 862.3, kAny},  //
+    {'M', 862.4, kAny},  //
+    {'M', 862.5, kAny},  //
+    {'M', 862.6, kAny},  //
+    {'M', 900, kAny},    // pressure advance
 };
 
 /// Of Klipper and its macros, for all that begin so.
@@ -184,8 +191,12 @@ bool is_line_without_effect(std::string_view line) {
 
 std::string command_in_words(std::string_view line) {
   line = without_number(line);
-  if (line.size() < 2 || !is_letter(line[0]) || !(is_letter(line[1]) || line[1] == '_')) return "";
   std::string word;
+  if (line.size() > 2 && line[0] == '#' && is_letter(line[1])) {  // #TRAFO: of controllers by ISG
+    word = "#";
+    line.remove_prefix(1);
+  }
+  if (line.size() < 2 || !is_letter(line[0]) || !(is_letter(line[1]) || line[1] == '_')) return "";
   for (const char c : line) {
     if (!is_letter(c) && !is_digit(c) && c != '_') break;
     word += upper(c);

@@ -75,7 +75,7 @@ Group group_of(Command command);
 struct WithoutEffect {
   char letter;
   double number;
-  const char* parameters;  ///< that it may have
+  const char* parameters;  ///< that a G may have; an M, which firmwares read as they like, may have any
   /// Whether it may share its line with other commands: those that need no parameters.
   constexpr bool combines() const {
     return *parameters == 0 || (letter == 'G' && (number == 64 || number == 80));

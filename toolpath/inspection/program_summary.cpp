@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "core/text/trimmed.h"
@@ -27,14 +28,27 @@ double percentile(const std::vector<std::pair<double, double>>& sorted, double t
   return sorted.empty() ? 0 : sorted.back().first;
 }
 
+void widen(std::optional<Extent>& extent, const Vec3& from, const Vec3& to) {
+  if (!extent) extent = Extent{from, from};
+  for (const Vec3& p : {from, to}) {
+    extent->lower = extent->lower.cwiseMin(p);
+    extent->upper = extent->upper.cwiseMax(p);
+  }
+}
+
 class Summary {
  public:
-  Summary(const Vec3& start_W, double filament_diameter)
-      : tip_W_(start_W), filament_area_(std::numbers::pi / 4 * filament_diameter * filament_diameter) {}
+  Summary(const Vec3& start_W, double filament_diameter, const LayerComments& layers)
+      : layers_(layers),
+        tip_W_(start_W),
+        filament_area_(std::numbers::pi / 4 * filament_diameter * filament_diameter) {}
 
   void add(const Step& step) {
     if (step.kind == StepKind::temperature && step.temperature > kCelsiusZero)
       add_temperature(step.temperature);
+    if (step.kind == StepKind::temperature && !fed_any_)
+      result_.heated_first = step.temperature > kCelsiusZero;
+    if (step.filament > 0) fed_any_ = true;
     fed_ += step.filament;
     const double fresh = std::max(0.0, fed_ - most_fed_);
     most_fed_ = std::max(most_fed_, fed_);
@@ -51,7 +65,8 @@ class Summary {
     result_.area_p5 = percentile(areas_, length_, 0.05);
     result_.area_p50 = percentile(areas_, length_, 0.5);
     result_.area_p95 = percentile(areas_, length_, 0.95);
-    find_layers();
+    if (!result_.part) result_.part = result_.printed;
+    find_layers(layers_.empty() ? heights_of_much_path() : heights_of_comments());
     return std::move(result_);
   }
 
@@ -64,23 +79,37 @@ class Summary {
   void print(const Step& step, double length, double fresh) {
     const Vec3 end_W = step.X_WT.translation();
     ++result_.prints;
-    if (!result_.printed) result_.printed = Extent{tip_W_, tip_W_};
-    for (const Vec3& p : {tip_W_, end_W}) {
-      result_.printed->lower = result_.printed->lower.cwiseMin(p);
-      result_.printed->upper = result_.printed->upper.cwiseMax(p);
-    }
+    const int layer = layers_.at(step.line);
+    widen(result_.printed, tip_W_, end_W);
+    if (layer > 0) widen(result_.part, tip_W_, end_W);
     const double tilt = std::acos(std::clamp(tool_axis(step.X_WT).z(), -1.0, 1.0));
     result_.tilt_max = std::max(result_.tilt_max, tilt);
     if (tilt < kUpright && std::abs(end_W.z() - tip_W_.z()) < kSameHeight)
-      heights_[std::llround(end_W.z() / kSameHeight)] += length;
+      heights_[layer][std::llround(end_W.z() / kSameHeight)] += length;
     areas_.emplace_back(fresh * filament_area_ / length, length);
     length_ += length;
   }
 
-  void find_layers() {
+  std::set<std::int64_t> heights_of_much_path() const {
+    std::set<std::int64_t> heights;
+    for (const auto& [layer, lengths] : heights_)
+      for (const auto& [key, length] : lengths)
+        if (length >= kShareOfLayer * length_) heights.insert(key);
+    return heights;
+  }
+
+  /// Of each layer, the one at which it prints most.
+  std::set<std::int64_t> heights_of_comments() const {
+    std::set<std::int64_t> heights;
+    for (const auto& [layer, lengths] : heights_)
+      if (layer > 0)
+        heights.insert(std::ranges::max_element(lengths, {}, [](const auto& l) { return l.second; })->first);
+    return heights;
+  }
+
+  void find_layers(const std::set<std::int64_t>& heights) {
     double last = 0;
-    for (const auto& [key, length] : heights_) {
-      if (length < kShareOfLayer * length_) continue;
+    for (const std::int64_t key : heights) {
       const double height = static_cast<double>(key) * kSameHeight;
       if (result_.first_layer == 0) result_.first_layer = height;
       if (last != 0 && height - last > kSameHeight) result_.layer_heights.push_back(height - last);
@@ -88,18 +117,21 @@ class Summary {
     }
   }
 
+  const LayerComments& layers_;
   ProgramSummary result_;
+  bool fed_any_ = false;
   Vec3 tip_W_;
   double filament_area_;
   double fed_ = 0, most_fed_ = 0, length_ = 0;
-  std::map<std::int64_t, double> heights_;        // path at each, in steps of kSameHeight
-  std::vector<std::pair<double, double>> areas_;  // with their lengths
+  std::map<int, std::map<std::int64_t, double>> heights_;  // path of a layer at each, in steps of kSameHeight
+  std::vector<std::pair<double, double>> areas_;           // with their lengths
 };
 
 }  // namespace
 
-ProgramSummary summarise(const Program& program, const Vec3& start_W, double filament_diameter) {
-  Summary summary(start_W, filament_diameter);
+ProgramSummary summarise(const Program& program, const Vec3& start_W, double filament_diameter,
+                         const LayerComments& layers) {
+  Summary summary(start_W, filament_diameter, layers);
   for (const Step& step : program.steps) summary.add(step);
   return summary.finish();
 }
@@ -108,7 +140,7 @@ double bead_width(double area, double height) { return area / height + height * 
 
 std::map<std::string, std::string> slicer_facts(std::string_view text) {
   // As files write them, and as we call them.
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 24> kKeys{{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 32> kKeys{{
       {"nozzle_diameter =", "nozzle_diameter"},
       {"layer_height =", "layer_height"},
       {"first_layer_height =", "first_layer_height"},
@@ -118,8 +150,16 @@ std::map<std::string, std::string> slicer_facts(std::string_view text) {
       {"layer_thickness_mm =", "layer_height"},
       {"first_layer_temperature =", "first_layer_temperature"},
       {"temperature =", "temperature"},
+      {"nozzle_temperature_initial_layer =", "first_layer_temperature"},
+      {"nozzle_temperature =", "temperature"},
+      {"outputTemp =", "temperature"},
+      {"filament_type =", "material"},
+      {"Filament Type #1:", "material"},
       {"generated by", "generated by"},
       {"Generated with", "generated by"},
+      {"Generated by", "generated by"},
+      {"Sliced by", "generated by"},
+      {"G-Code generated by", "generated by"},
       {"Layer height:", "layer_height"},
       {"estimated printing time (normal mode) =", "estimated time"},
       {"total estimated time:", "estimated time"},
@@ -144,6 +184,8 @@ std::map<std::string, std::string> slicer_facts(std::string_view text) {
     // BambuStudio tells two times on one line.
     if (const auto total = line.find("total estimated time:"); total != std::string_view::npos)
       line = line.substr(total);
+    if (line.starts_with("BambuStudio") || line.starts_with("KISSlicer"))
+      facts.try_emplace("generated by", line);
     for (const auto& [written, key] : kKeys)
       if (line.starts_with(written))
         facts.try_emplace(std::string(key), trimmed(line.substr(written.size())));

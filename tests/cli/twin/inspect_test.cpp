@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,18 @@ namespace understudy::cli_test {
 namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+/// The command that it proposes, from "rehearse" to its output folder.
+std::string proposed_words(const Outcome& seen) {
+  const auto command = seen.out.find("understudy rehearse");
+  if (command == std::string::npos) return "";
+  const std::string words = seen.out.substr(command + 11);
+  return words.substr(0, words.find(" --out"));
+}
+
+Outcome rehearse_quickly(const std::string& words, const std::string& out) {
+  return understudy(words + " --engine quasistatic --no-pictures --out " + out);
+}
 
 TEST(Inspect, SaysWhatAProgramUsesAndHowToRehearseIt) {
   const Folder folder;
@@ -21,14 +34,12 @@ TEST(Inspect, SaysWhatAProgramUsesAndHowToRehearseIt) {
   EXPECT_THAT(seen.out, HasSubstr("unknown word 'START_PRINT': 1 line, the first is 2"));
   EXPECT_THAT(seen.out, HasSubstr("prints 2 moves from (100.00, 100.00, 0.30) to (120.00, 100.00, 0.50) mm"));
   EXPECT_THAT(seen.out, HasSubstr("the first 0.300 mm above z = 0, then 1 of 0.200 mm"));
-  EXPECT_THAT(seen.out, HasSubstr("0.40 mm for the slicer; no temperature is set, 200 C is taken\n"));
-  const auto command = seen.out.find("understudy rehearse");
-  ASSERT_NE(command, std::string::npos);
-  std::string words = seen.out.substr(command + 11);
-  words = words.substr(0, words.find(" --out"));
+  EXPECT_THAT(
+      seen.out,
+      HasSubstr("0.40 mm for the slicer; no temperature is set before the first bead, 200 C is taken\n"));
+  std::string words = proposed_words(seen);
   EXPECT_THAT(words, HasSubstr("--ignore START_PRINT,M428 --temperature 200"));
-  const Outcome rehearsed =
-      understudy(words + " --engine quasistatic --no-pictures --out " + (folder / "out"));
+  const Outcome rehearsed = rehearse_quickly(words, folder / "out");
   EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
 }
 
@@ -39,7 +50,7 @@ TEST(Inspect, WithoutATemperatureTheMaterialsOwnIsTaken) {
   const std::string program =
       folder.write("line.gcode", "M83\nG0 F3000 X-5 Y0 Z0.2\nG1 X5 E0.4 F600\nG0 Z9\n");
   const Outcome seen = understudy("inspect " + program + " --machine five-axis");
-  EXPECT_THAT(seen.out, HasSubstr("no temperature is set, 210 C is taken\n"));
+  EXPECT_THAT(seen.out, HasSubstr("no temperature is set before the first bead, 210 C is taken\n"));
   EXPECT_THAT(seen.out, HasSubstr(" --temperature 210 --out line"));
 }
 
@@ -62,19 +73,55 @@ TEST(Inspect, WordsThatTheMachineLacksLeadToOneThatHasThem) {
   const std::string program = folder.write("turn.gcode", text);
   const Outcome refused = understudy("rehearse " + program + " --machine hexapod --out " + (folder / "no"));
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("'A0': this machine has no rotary axes"));
+  EXPECT_THAT(refused.err, HasSubstr("'C1': this machine has no rotary axes"));
   EXPECT_THAT(refused.err,
               HasSubstr("`understudy inspect " + program + " --machine hexapod` shows what to do"));
   const Outcome seen = understudy("inspect " + program + " --machine hexapod");
   ASSERT_EQ(seen.status, 0) << seen.err;
   EXPECT_THAT(seen.out, HasSubstr("A C turn axes that hexapod does not have: read here as for "));
   EXPECT_THAT(seen.out, HasSubstr("trunnion-ac"));
-  const auto command = seen.out.find("understudy rehearse");
-  std::string words = seen.out.substr(command + 11);
-  words = words.substr(0, words.find(" --out"));
-  const Outcome rehearsed =
-      understudy(words + " --engine quasistatic --no-pictures --out " + (folder / "out"));
+  std::string words = proposed_words(seen);
+  const Outcome rehearsed = rehearse_quickly(words, folder / "out");
   EXPECT_LE(rehearsed.status, 1) << rehearsed.err << " is what the command that it says gives";
+}
+
+// What it pastes is read and heated, whatever the macro of the printer would have done.
+TEST(Inspect, WhatAStartMacroDoesIsProposed) {
+  const Folder folder;
+  std::string text = "M104 S0\nSTART_PRINT EXTRUDER_TEMP=205 BED_TEMP=60\nG1 X0 Y0 Z0.2 F1800\n";
+  for (int i = 1; i <= 12; ++i) text += fmt::format("G1 X{} E{}\n", 20 * (i % 2), 0.8 + 0.001 * (i * 7 % 5));
+  const std::string program = folder.write("macro.gcode", text + ";Filament used: 9.6mm\n");
+  const Outcome seen = understudy("inspect " + program + " --machine corexy");
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  EXPECT_THAT(seen.out, HasSubstr("E looks relative: it does not rise at "));
+  EXPECT_THAT(seen.out, HasSubstr("; the slicer's comment says 9.6 mm\n"));
+  std::string words = proposed_words(seen);
+  EXPECT_THAT(words, HasSubstr("--ignore START_PRINT --relative-extrusion --temperature 205"));
+  EXPECT_LE(rehearse_quickly(words, folder / "out").status, 1);
+  words.erase(words.find(" --relative-extrusion"), 21);
+  const Outcome misread = rehearse_quickly(words, folder / "misread");
+  EXPECT_EQ(misread.status, 1) << misread.err;
+  EXPECT_THAT(misread.out, HasSubstr("E looks relative"));
+  EXPECT_THAT(misread.out, HasSubstr("--relative-extrusion"));
+}
+
+TEST(Inspect, LinesThatARehearsalRefusesAreToldWithTheRest) {
+  const Folder folder;
+  const std::string program = folder.write(
+      "refused.gcode", "M109 S200\nM83\nT3\nG29 Q\"\nG92\nG0 X-5 Y0 Z0.2\nG1 X5 E0.4 F600\nM115 U3.11.0\n");
+  const Outcome seen = understudy("inspect " + program + " --machine corexy");
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  EXPECT_THAT(seen.out,
+              HasSubstr("line 3 is refused, and left out here: 'T3': the machine has one extruder"));
+  EXPECT_THAT(seen.out, HasSubstr("prints 1 moves"));
+  EXPECT_THAT(seen.out, HasSubstr("--ignore G29"));
+  const Outcome refused = understudy("rehearse " + program + " --machine corexy --out " + (folder / "no"));
+  EXPECT_EQ(refused.status, 2);
+  for (const char* part :
+       {"'T3'", "line 4:", "line 5: G92 names none", "`--ignore G29` passes over such lines"})
+    EXPECT_THAT(refused.err, HasSubstr(part));
+  EXPECT_THAT(understudy("inspect " + program + " --machine corexy --ignore G29,T3").out,
+              Not(HasSubstr("line 4 is refused")));
 }
 
 TEST(Inspect, WhatDoesNotFitIsSentToPlace) {

@@ -126,6 +126,8 @@ std::vector<Setpoint> there_and_back(const machine::MachinePort& port, const mac
   return setpoints;
 }
 
+class ExtendedHalPortTest : public HalPortTest {};
+
 TEST_F(ExtendedHalPortTest, HoldsResumesAndAStopLoseAndRepeatNoSetpoint) {
   const HalMachine hal;
   const auto port = hal.open();
@@ -204,8 +206,6 @@ bool becomes(const char* signal, const std::string& value) {
   }
   return false;
 }
-
-class ExtendedHalPortTest : public HalPortTest {};
 
 TEST_F(ExtendedHalPortTest, FaultsOfTheMachineAreNamedStickyAndCleared) {
   const HalMachine hal;

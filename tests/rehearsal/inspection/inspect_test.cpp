@@ -64,6 +64,53 @@ TEST_F(Inspect, TheFilamentOfTheCommentsIsLoaded) {
               HasSubstr(" --machine corexy "));
 }
 
+TEST_F(Inspect, RelativeExtrusionOfAMacroIsRecognised) {
+  std::string text = "PRINT_START extruder=210\nG1 X0 Y0 Z0.2 F1800\n";
+  for (int i = 1; i <= 20; ++i) text += fmt::format("G1 X{} E{}\n", 20 * (i % 2), 0.8 + 0.001 * (i * 7 % 5));
+  const Inspection found = inspect(file(text + "; filament used [mm] = 16.04\n"), "corexy");
+  ASSERT_TRUE(found.relative_extrusion);
+  EXPECT_EQ(found.summary.prints, 20);
+  EXPECT_NEAR(found.summary.filament, found.told_filament.value(), 1e-6);
+  EXPECT_THAT(rehearse_command(found.request, "out"),
+              HasSubstr(" --ignore PRINT_START --relative-extrusion --temperature 210 "));
+  EXPECT_FALSE(inspect(file("M83\n" + text), "corexy").relative_extrusion);
+}
+
+TEST_F(Inspect, AllRefusedLinesAreToldAndTheirCommandsIgnored) {
+  const Inspection found =
+      inspect(file("M83\nG29 Q\"\nT3\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\nM428\nG92\n"), "corexy");
+  ASSERT_EQ(found.refused.lines, 3);
+  EXPECT_EQ(found.refused.told[1].line, 3);
+  EXPECT_EQ(found.summary.prints, 1);
+  EXPECT_THAT(rehearse_command(found.request, "out"), HasSubstr(" --ignore M428,G29 "));
+}
+
+TEST_F(Inspect, ANozzleThatIsHeatedTooLateIsHeatedByTheMacro) {
+  const std::string late =
+      "M83\nM104 S0\nSTART_PRINT EXTRUDER_TEMP=225 BED_TEMP=60\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\nM104 S200\n";
+  EXPECT_THAT(rehearse_command(inspect(file(late), "corexy").request, "out"),
+              HasSubstr(" --temperature 225 "));
+  EXPECT_THAT(rehearse_command(inspect(file("M109 S200\n" + late.substr(12)), "corexy").request, "out"),
+              Not(HasSubstr(" --temperature ")));
+}
+
+TEST_F(Inspect, TheMaterialOfTheCommentsIsLoaded) {
+  const std::string text = "M83\nSTART\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n; filament_type = ";
+  EXPECT_THAT(rehearse_command(inspect(file(text + "ABS\n"), "corexy").request, "out"),
+              HasSubstr(" --temperature 240 --material abs "));
+  const Inspection unknown = inspect(file(text + "PETG\n"), "corexy");
+  EXPECT_EQ(unknown.told_material, "petg");
+  EXPECT_TRUE(unknown.request.material.empty());
+}
+
+TEST_F(Inspect, ThreeTurningAxesAreOfNoMachine) {
+  const Inspection found = inspect(file("M83\nG0 X-5 Y0 Z0.3\nG1 X5 E1 A5 B6 C7 F600\n"), "corexy");
+  EXPECT_EQ(found.foreign_words, "ABC");
+  EXPECT_TRUE(found.machines_with_words.empty());
+  EXPECT_EQ(found.refused.lines, 0);
+  EXPECT_EQ(found.summary.prints, 1);
+}
+
 TEST_F(Inspect, FeaturesOfCommentsAreMeasured) {
   const Inspection found = inspect(
       file("M83\nG0 X-5 Y0 Z0.3\n;TYPE:Skirt\nG1 X5 E1 F600\n;TYPE:Perimeter\nG1 Y30 E1\n"), "hexapod");

@@ -48,6 +48,17 @@ TEST(ToldProcess, AnotherFilamentThanTheSlicersIsAWarning) {
   EXPECT_THAT(process_warnings({}, nozzle_of(0.4), {{"filament_diameter", "1.78,1.75"}}, 0), IsEmpty());
 }
 
+TEST(ToldProcess, AnotherMaterialThanTheSlicersIsAWarning) {
+  const auto warning = other_material("pla", {{"material", "ABS;ABS"}});
+  ASSERT_TRUE(warning);
+  EXPECT_EQ(warning->severity, Severity::warning);
+  EXPECT_THAT(warning->message, HasSubstr("sliced for ABS;ABS, judged as pla"));
+  EXPECT_TRUE(other_material("pla", {{"material", "PETG"}}));
+  for (const char* same : {"PLA", "PLA+", "pla,pla", "\"PLA\";\"PLA\""})
+    EXPECT_FALSE(other_material("pla", {{"material", same}})) << same;
+  EXPECT_FALSE(other_material("pla", {}));
+}
+
 TEST(ToldProcess, TheLayerIsTheRequestsElseTheComments) {
   DialectRequest dialect;
   EXPECT_EQ(told_layer(dialect, {}), 0);

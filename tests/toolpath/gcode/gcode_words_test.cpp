@@ -48,10 +48,56 @@ TEST(GcodeWords, WhatSlicersOfTodayWriteIsRead) {
                "EXCLUDE_OBJECT_DEFINE NAME=x POLYGON=[[1,2],[3,4]]\nM106 P2 S255\nM107 P2\nG0 X1\nM2\n%\n")
           .size(),
       2u);
-  EXPECT_THAT(rejection("G0 X1\nM2\nG0 X2\n"), HasSubstr("p.gcode:3:1: a word after the end"));
+  EXPECT_THAT(rejection("G0 X1\nM2\nG0 X2\n"), HasSubstr("p.gcode:3:1: a move after the end"));
   const auto waited = steps_of("M109 R200\nG0 X1\n");
   EXPECT_NEAR(waited[0].temperature, 200 + kCelsiusZero, 1e-9);
   EXPECT_EQ(steps_of("T1\nT1 M6\nG0 X1\n").size(), 1u);
+}
+
+TEST(GcodeWords, CommandsWithoutEffectTakeAnyParametersTextsToo) {
+  EXPECT_EQ(steps_of("M115 U3.11.0\nm115 U6.1.0-RC2+1234\nM862.1 P0.4 A0 F0\nM862.3 P \"MK4IS\"\nM593 T2\n"
+                     "M0 Insert the nut M3\nM5 G0 X1\n")
+                .size(),
+            1u);
+  EXPECT_THAT(rejection("M115 U3.9 G1 X5\nG0 X1\n"), HasSubstr("'G1' is no parameter of 'M115'"));
+  EXPECT_THAT(rejection("G61 U3\nG0 X1\n"), HasSubstr("'U3' is no parameter of 'G61'"));
+}
+
+TEST(GcodeWords, FootersMayFollowTheEnd) {
+  EXPECT_EQ(steps_of("G0 X1\nM30\nM82\nM104 S0\nG92 E0\nM84\n").size(), 2u);
+  EXPECT_THAT(rejection("G0 X1\nM2\nG28\n"), HasSubstr("a move after the end"));
+}
+
+TEST(GcodeWords, ACarriageThatTheMachineLacksIsHomedInVain) {
+  EXPECT_EQ(steps_of("G28 X0 U0\nG28 U\nG0 X1\n").size(), 2u) << "G28 U is no G28 of all axes";
+  EXPECT_THAT(rejection("G0 X1 U5\n"), HasSubstr("unknown word 'U5'"));
+}
+
+TEST(GcodeWords, ATurningAxisThatTheMachineLacksStandsAtZero) {
+  EXPECT_EQ(steps_of("G90 G01 X0 Y0 Z5 A0 B0.0 C0 F1000\n").size(), 1u);
+  EXPECT_THAT(rejection("G1 X1 A0 B3 F60\n"), HasSubstr("'B3': this machine has no rotary axes"));
+}
+
+TEST(GcodeWords, AControllersOwnCommandIsAWord) {
+  EXPECT_EQ(command_in_words("#TRAFO ON"), "#TRAFO");
+  EXPECT_EQ(command_in_words("#100=3"), "");
+  EXPECT_THAT(rejection("#TRAFO ON\nG0 X1\n"), HasSubstr("unknown word '#TRAFO'"));
+  GcodeOptions options;
+  options.ignored = {"#TRAFO"};
+  EXPECT_EQ(steps_of("#TRAFO ON\nG0 X1\n#TRAFO OFF\n", options).size(), 1u);
+}
+
+TEST(GcodeWords, AnIgnoredStartMacroHeatsANozzleThatIsStillCold) {
+  GcodeOptions options;
+  options.ignored = {"START_PRINT", "END_PRINT", "M428"};
+  options.ignored_heat = 483.15;
+  const auto steps =
+      steps_of("M104 S0\nM428\nSTART_PRINT T=210\nM83\nG1 X1 E1 F60\nM104 S0\nEND_PRINT\n", options);
+  ASSERT_EQ(steps.size(), 4u);
+  EXPECT_EQ(steps[1].line, 3);
+  EXPECT_EQ(steps[1].temperature, 483.15);
+  EXPECT_TRUE(steps[1].wait);
+  EXPECT_EQ(steps_of("M109 S230\nSTART_PRINT\nG0 X1\n", options).size(), 2u) << "it is hot already";
 }
 
 TEST(GcodeWords, AllUnknownWordsAreToldAtOnceWithTheirCounts) {

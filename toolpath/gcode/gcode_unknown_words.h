@@ -1,0 +1,25 @@
+// Words that the dialect does not know, told together.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "toolpath/gcode/gcode.h"
+#include "toolpath/gcode/gcode_block.h"
+
+namespace understudy::toolpath {
+
+/// So that a user need not mend a program word by word.
+class UnknownWords {
+ public:
+  void add(const UnknownWord& error);
+  /// Throws InputError that tells all of them, UnknownWord where it is one.
+  void fail_if_any() const;
+  const std::vector<UnknownWordCount>& counts() const { return counts_; }
+
+ private:
+  std::optional<UnknownWord> first_;
+  std::vector<UnknownWordCount> counts_;
+};
+
+}  // namespace understudy::toolpath
