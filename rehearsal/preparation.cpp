@@ -46,6 +46,7 @@ void read_into(const RehearsalRequest& request, TwinSetup& setup, Mended& mended
   for (const auto& lines : read.passed_over) mended.passed_over.emplace_back(lines.line, lines.last_line);
   mended.facts = std::move(read.facts);
   mended.features = std::move(read.features);
+  mended.start_block_end = read.start_block_end;
   mended.beads = std::move(read.beads);
 }
 

@@ -22,6 +22,7 @@ struct Mended {
   std::vector<std::pair<int, int>> passed_over;  // lines
   std::map<std::string, std::string> facts;      // that the slicer's comments state
   toolpath::FeatureTypes features;               // likewise
+  int start_block_end = 0;                       // start_block.h
   toolpath::ToldBeads beads;                     // likewise
 };
 

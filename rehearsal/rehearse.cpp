@@ -262,8 +262,7 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress, RunList
   if (record.placement && !record.placement->refused.empty())
     record.findings.push_back(no_place(*record.placement));
   tell_features(mended.features, record.findings);
-  if (!request.program.empty())
-    tell_start_block(start_block_end(read_file(request.program)), record.findings);
+  tell_start_block(mended.start_block_end, record.findings);
   sort_findings(record.findings);
   record.go = !any_error(record.findings);
   if (request.keep_scene) {

@@ -13,6 +13,7 @@
 #include "core/file/read_file.h"
 #include "core/text/shell_quoted.h"
 #include "core/units.h"
+#include "rehearsal/findings/start_block.h"
 #include "rehearsal/program/readings.h"
 #include "rehearsal/program/robot_reading.h"
 #include "rehearsal/program/told_filament.h"
@@ -41,6 +42,7 @@ void read_gcode_into(ReadProgram& read, const std::string& text, const Rehearsal
   options.passed_over = &read.passed_over;
   read.facts = toolpath::slicer_facts(text);
   read.features = toolpath::FeatureTypes(text);
+  read.start_block_end = start_block_end(text);
   read.beads = toolpath::ToldBeads(text);
   const toolpath::ProgramTurn turn{from_deg(request.dialect.turn_deg), from_deg(request.dialect.spin_deg)};
   toolpath::ExtrusionTally tally;

@@ -22,6 +22,7 @@ struct ReadProgram {
   std::map<std::string, std::string> facts;       ///< of the slicer's comments (toolpath::slicer_facts)
   toolpath::FeatureTypes features;                ///< of the slicer's comments
   toolpath::ToldBeads beads;                      ///< of the slicer's comments
+  int start_block_end = 0;                        ///< line, by the slicer's comments (start_block.h)
   std::vector<Finding> extrusion;  ///< where E is misread, or feeds another amount than a comment tells
 };
 
