@@ -69,6 +69,8 @@ std::string raise_nozzle(double height_mm, const Record& record) {
 }
 
 std::string about_contact(const Finding& finding, const Record& record) {
+  const bool tip_is_off = record.accuracy && record.accuracy->tip_max_um >= -1e3 * finding.value;
+  if (finding.about == "nozzle and bead" && tip_is_off) return calibrate(record);
   if (finding.about == "nozzle and bead")
     return "lead the nozzle over what is printed: lift it on these lines (the slicer's Z hop, `G1 Z...`) or "
            "go "

@@ -75,7 +75,10 @@ TEST(Advice, ABeadOverNothingAsksForThePart) {
 // All of the print would rise with the nozzle, and its first layer off the table.
 TEST(Advice, ANozzleThatMeetsABeadIsNotMendedByThePlace) {
   Finding contact{"collision", Severity::error, 9, 1, -0.3, 0, "mm", "", 0, "nozzle and bead"};
-  EXPECT_THAT(advice(contact, on_a_machine(false, "off")), HasSubstr("Z hop"));
+  Record record = on_a_machine(false, "off");
+  EXPECT_THAT(advice(contact, record), HasSubstr("Z hop"));
+  record.accuracy.emplace().tip_max_um = 350;
+  EXPECT_THAT(advice(contact, record), HasSubstr("understudy calibrate")) << "the tip is off by more";
   contact.about = "nozzle and table";
   EXPECT_THAT(advice(contact, on_a_machine(false, "off")), HasSubstr("`--place 0,0,0.4`"));
 }
