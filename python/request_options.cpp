@@ -201,6 +201,7 @@ const std::vector<Option>& options_known() {
       number("nozzle", FIELD(dialect.nozzle_mm), {0.05, 10}),
       number("layer", FIELD(dialect.layer_mm), {0.01, 10}),
       flag("strict", "--strict", FIELD(dialect.strict), true),
+      flag("relative_extrusion", "--relative-extrusion", FIELD(dialect.relative_extrusion), true),
       sign("b_sign", FIELD(dialect.b_sign)),
       sign("c_sign", FIELD(dialect.c_sign)),
       text("coordinates", FIELD(dialect.coordinates)),

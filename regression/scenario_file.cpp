@@ -142,11 +142,15 @@ void read_dialect(YamlMap& map, const fs::path& folder, DialectRequest& dialect)
         map.number("nozzle_mm", {0.05, 10}, "bore that is mounted, if not the machine file's");
   if (map.has("layer_mm"))
     dialect.layer_mm = map.number("layer_mm", {0.01, 10}, "of layers, where the path does not tell");
-  if (map.has("strict")) {
-    const std::string word = map.word("strict", {"yes", "no", "true", "false"},
-                                      "whether lines that cannot be read or made are refused");
-    dialect.strict = word == "yes" || word == "true";
-  }
+  const auto yes = [&map](const char* key, const char* about) {
+    const std::string word = map.word(key, {"yes", "no", "true", "false"}, about);
+    return word == "yes" || word == "true";
+  };
+  if (map.has("strict"))
+    dialect.strict = yes("strict", "whether lines that cannot be read or made are refused");
+  if (map.has("relative_extrusion"))
+    dialect.relative_extrusion =
+        yes("relative_extrusion", "whether E is relative from the start, as after M83");
   const auto sign = [&map](const char* key, const char* about) {
     return map.number(key, {}, about) < 0 ? -1 : 1;
   };

@@ -39,6 +39,7 @@ def rehearse(
     nozzle: float | None = None,
     layer: float | None = None,
     strict: bool | None = None,
+    relative_extrusion: bool | None = None,
     b_sign: int | None = None,
     c_sign: int | None = None,
     coordinates: str | None = None,

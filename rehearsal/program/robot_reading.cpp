@@ -30,8 +30,10 @@ Finding about_reading(const std::string& about, int line, const std::string& mes
 toolpath::RobotOptions robot_options(const DialectRequest& dialect,
                                      const machine::MachineDescription& machine) {
   if (!dialect.extruder_letter.empty() || !dialect.macros.empty() || !dialect.coordinates.empty() ||
-      dialect.b_sign < 0 || dialect.c_sign < 0)
-    throw InputError("--extruder-letter, --macros, --coordinates, --b-sign and --c-sign are for G-code");
+      dialect.b_sign < 0 || dialect.c_sign < 0 || dialect.relative_extrusion)
+    throw InputError(
+        "--extruder-letter, --relative-extrusion, --macros, --coordinates, --b-sign and --c-sign are for "
+        "G-code");
   if (dialect.turn_deg != 0 || dialect.spin_deg != 0) throw InputError("--turn and --spin are for G-code");
   const RobotProgramRequest& robot = dialect.robot;
   if (robot.bead_mm[0] > 0 && robot.flow_mm3_per_s)

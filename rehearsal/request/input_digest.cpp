@@ -96,6 +96,7 @@ std::string inputs_sha256(const RehearsalRequest& request, const std::string& pr
   const DialectRequest& dialect = request.dialect;
   inputs.values("dialect", dialect.place_mm, dialect.extruder_letter, dialect.b_sign, dialect.c_sign,
                 dialect.coordinates);
+  if (dialect.relative_extrusion) inputs.word("extrusion", "relative");
   for (const std::string& word : dialect.ignored) inputs.word("ignored", word);
   if (!dialect.macros.empty()) {
     const auto macros = toolpath::GcodeMacros::read(dialect.macros);

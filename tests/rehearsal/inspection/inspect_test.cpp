@@ -97,7 +97,7 @@ TEST_F(Inspect, ANozzleThatIsHeatedTooLateIsHeatedByTheMacro) {
 TEST_F(Inspect, TheMaterialOfTheCommentsIsLoaded) {
   const std::string text = "M83\nSTART\nG0 X-5 Y0 Z0.3\nG1 X5 E1 F600\n; filament_type = ";
   EXPECT_THAT(rehearse_command(inspect(file(text + "ABS\n"), "corexy").request, "out"),
-              HasSubstr(" --temperature 240 --material abs "));
+              HasSubstr(" --temperature 230 --material abs "));
   const Inspection unknown = inspect(file(text + "PETG\n"), "corexy");
   EXPECT_EQ(unknown.told_material, "petg");
   EXPECT_TRUE(unknown.request.material.empty());

@@ -74,6 +74,7 @@ TEST_F(InputDigest, EveryInputCounts) {
       [](auto& r) { r.dialect.layer_mm = 0.3; },
       [](auto& r) { r.dialect.temperature_c = 200; },
       [](auto& r) { r.dialect.strict = true; },
+      [](auto& r) { r.dialect.relative_extrusion = true; },
       [](auto& r) { r.dialect.place_auto = true; },
       [](auto& r) { r.dialect.turn_deg = 1e-9; },
       [](auto& r) { r.dialect.spin_deg = 1e-9; },
