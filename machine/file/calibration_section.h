@@ -14,7 +14,8 @@ namespace understudy::machine {
 /// Farther from the drawing, a joint or an axis belongs to another machine, or its file to other units.
 constexpr double kFarFromDrawing = 25e-3;    // [m]
 constexpr double kTurnedFromDrawing = 0.17;  // [rad], 10 deg
-/// What the zeros of a chain's axes turn: at zero the tool and the axes are off by that much of the reach too.
+/// What the zeros of a chain's axes turn: at zero the tool and the axes are off by that much of the reach
+/// too.
 constexpr double kZeroFromDrawing = 0.1;  // [rad], 6 deg
 
 /// Throws InputError for a machine whose inverse kinematics cannot follow measured axes.

@@ -40,7 +40,11 @@ class Corrector {
 
   std::string text() {
     find_tool(model_->getRoot(), Pose::Identity());
-    place(model_->getRoot(), Pose::Identity(), Pose::Identity());
+    // A base that the calibration has moved in O takes the root along; poses are told from it.
+    const Pose base = known_.chain.work_axis < 0
+                          ? Pose(known_.chain.X_OS_zero * known_.design.X_OS_zero.inverse())
+                          : Pose::Identity();
+    place(model_->getRoot(), Pose::Identity(), base);
     return to_text(document_);
   }
 

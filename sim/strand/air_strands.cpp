@@ -78,10 +78,9 @@ class Solver {
   }
 
  private:
-  /// A strand sags no farther than until its lower side, a diameter below the tip, lies on what is below.
+  /// A strand sags no farther than to what lies below it.
   static void lay_down(const UnsupportedStretch& stretch, AirStrand& strand) {
-    const bool falls = !std::isfinite(stretch.worst_gap);
-    const double below = falls ? kGapReach : std::max(0.0, stretch.worst_gap - strand.diameter);
+    const double below = std::isfinite(stretch.worst_gap) ? stretch.worst_gap : kGapReach;
     if (strand.sag <= below) return;
     strand.sag_place_W.z() += strand.sag - below;
     strand.sag = below;

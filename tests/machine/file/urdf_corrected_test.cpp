@@ -48,6 +48,7 @@ class UrdfCorrected : public ::testing::Test {
       axis.point += some(1e-3);
       axis.direction = (exp_rotation(some(5e-3)) * axis.direction).normalized();
     }
+    known.chain.X_OS_zero = make_pose(Mat3(exp_rotation(some(5e-3))), some(1e-3));
     known.chain.X_OT_zero = make_pose(Mat3(exp_rotation(some(5e-3)) * known.chain.X_OT_zero.linear()),
                                       known.chain.X_OT_zero.translation() + some(1e-3));
     return machine;
