@@ -27,7 +27,7 @@
 #include "sim/faults/faults.h"
 #include "sim/removal/removal_summary.h"
 #include "sim/strand/air_strands.h"
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 #include "toolpath/program.h"
 
 namespace understudy::sim {

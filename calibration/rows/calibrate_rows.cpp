@@ -115,13 +115,13 @@ void warn_of_noise(RowCalibration& result) {
 struct Asked {
   std::vector<Index> machine;
   std::vector<std::string> estimated, redundant;
-  StandingAxes stands;
+  StationaryAxes stands;
 };
 
 /// Axes of a chain whose readings are all the same but for what a controller's resting jitters.
-StandingAxes standing_axes(const RowProblem& problem) {
+StationaryAxes stationary_axes(const RowProblem& problem) {
   constexpr double kStands = 1e-3;  // [m] or [rad]
-  StandingAxes stands;
+  StationaryAxes stands;
   if (!problem.nominal.chain()) return stands;
   for (std::size_t i = 0; i < problem.nominal.axes(); ++i) {
     double low = problem.rows.front().axes[i], high = low;
@@ -140,7 +140,7 @@ Asked unknowns_of(const RowProblem& problem) {
                        [&](const MeasurementRow& row) { return tells(row, problem); });
   };
   Asked unknowns;
-  unknowns.stands = standing_axes(problem);
+  unknowns.stands = stationary_axes(problem);
   unknowns.machine = problem.nominal.free_parameters(!any(tells_base), !any(tells_tool), unknowns.stands);
   const auto parameters = problem.nominal.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)

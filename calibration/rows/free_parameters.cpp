@@ -46,7 +46,7 @@ std::vector<std::size_t> holding(const kinematics::PerStrut<Vec3>& joints) {
 }  // namespace
 
 std::vector<Index> free_parameters(const ChainParameters& nominal, bool base_free, bool tool_free,
-                                   const StandingAxes& stands) {
+                                   const StationaryAxes& stands) {
   const auto parameters = static_cast<Index>(chain_parameter_names(nominal.chain).size());
   const Index around = (base_free ? 6 : 0) + (tool_free ? 6 : 0);
   Eigen::MatrixXd J(6 * kPoses, around + parameters);

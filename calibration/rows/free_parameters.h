@@ -12,7 +12,7 @@ namespace understudy::calibration {
 /// azimuth and height of the next line (held_columns.h). With `tool_free` what was measured sits on the tool
 /// at a place of its own, unknown as well, and the tool's mount is left at the drawing.
 std::vector<Eigen::Index> free_parameters(const ChainParameters& nominal, bool base_free, bool tool_free,
-                                          const StandingAxes& stands = {});
+                                          const StationaryAxes& stands = {});
 
 /// The same of the 42 of a hexapod. With a free base the drawn place of base joint 1 and two directions from
 /// it are kept, six numbers of base joints in all; with a free tool likewise of platform joints.

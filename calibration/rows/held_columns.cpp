@@ -25,7 +25,7 @@ Motion along_axis(const ChainAxis& axis) {
 
 class Holder {
  public:
-  Holder(const Chain& chain, const StandingAxes& stands) : chain_(chain), stands_(stands) {
+  Holder(const Chain& chain, const StationaryAxes& stands) : chain_(chain), stands_(stands) {
     for (const ChainAxis& axis : chain.axes) {
       first_.push_back(count_);
       count_ += axis.angle ? 5 : 3;
@@ -97,7 +97,7 @@ class Holder {
   }
 
   const Chain& chain_;
-  const StandingAxes& stands_;
+  const StationaryAxes& stands_;
   std::vector<Index> first_, held_;
   Index count_ = 0;
 };
@@ -114,7 +114,7 @@ std::vector<Motion> motions_of_base(const ChainAxis& axis) {
 }  // namespace
 
 std::vector<Index> held_columns(const Chain& chain, bool base_free, bool tool_free,
-                                const StandingAxes& stands) {
+                                const StationaryAxes& stands) {
   Holder holder(chain, stands);
   for (std::size_t i = 0; i < chain.axes.size(); ++i) {
     const Motion motion = along_axis(chain.axes[i]);

@@ -9,7 +9,7 @@
 namespace understudy::calibration {
 
 /// Readings [m] or [rad] of axes that never move; nothing of the others. Empty: all move.
-using StandingAxes = std::vector<std::optional<double>>;
+using StationaryAxes = std::vector<std::optional<double>>;
 
 /// A rigid motion of all that follows axis i, about axis i, is its zero; the lines of the axes behind it and
 /// the tool can do the same. As in the tables of Denavit and Hartenberg, the next line that the motion moves
@@ -19,6 +19,6 @@ using StandingAxes = std::vector<std::optional<double>>;
 /// An axis that `stands` in all rows, if any is named, is a part of what carries it: none of its numbers is
 /// told, and the first axis that moves is axis 0. Columns of chain_rows(), those of whole axes last.
 std::vector<Eigen::Index> held_columns(const kinematics::Chain& chain, bool base_free, bool tool_free,
-                                       const StandingAxes& stands = {});
+                                       const StationaryAxes& stands = {});
 
 }  // namespace understudy::calibration

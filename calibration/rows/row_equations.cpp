@@ -155,4 +155,13 @@ RowEquations row_equations(const RowProblem& problem, const SurroundingsLayout& 
   return out;
 }
 
+MatrixXd jacobian(const RowEquations& equations, const std::vector<Index>& unknowns) {
+  const Index around = equations.around.cols();
+  const Index machine = equations.machine.cols() > 0 ? static_cast<Index>(unknowns.size()) : 0;
+  MatrixXd J(equations.error.size(), machine + around);
+  if (machine > 0) J.leftCols(machine) = equations.machine(Eigen::all, unknowns);
+  if (around > 0) J.rightCols(around) = equations.around;
+  return J;
+}
+
 }  // namespace understudy::calibration

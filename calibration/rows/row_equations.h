@@ -20,6 +20,9 @@ struct RowEquations {
   Eigen::MatrixXd around;  ///< d model / d SurroundingsLayout::names
 };
 
+/// d model / d the machine's `unknowns`, as far as they were asked for, and all of the surroundings.
+Eigen::MatrixXd jacobian(const RowEquations& equations, const std::vector<Eigen::Index>& unknowns);
+
 /// First equation of each row, and at the end that of the known distances.
 std::vector<Eigen::Index> first_equations(const RowProblem& problem);
 

@@ -38,10 +38,7 @@ RowLikelihood::Linear RowLikelihood::linear(const RowState& at, const AddedNoise
   Linear out;
   out.error = equations.error;
   whiten(problem_, noise, equations);
-  const Index machine = machine_too ? prior_.size() : 0;
-  out.J.resize(equations.error.size(), machine + layout_.columns());
-  if (machine_too) out.J.leftCols(machine) = equations.machine(Eigen::all, unknowns_);
-  out.J.rightCols(layout_.columns()) = equations.around;
+  out.J = jacobian(equations, unknowns_);
   out.e = std::move(equations.error);
   if (weights.empty()) return out;
   const auto first = first_equations(problem_);
@@ -139,19 +136,13 @@ void RowLikelihood::tell(const AddedNoise& noise, bool machine_too, const RowWei
       1e-3;  // a direction of which the fit took all but this tells nothing of the row
   const Index unknowns = found.covariance.rows();
   RowEquations equations = row_equations(problem_, layout_, found.state, machine_too);
-  const auto stack = [&] {
-    MatrixXd J(equations.error.size(), unknowns);
-    if (machine_too && unknowns > 0) J.leftCols(prior_.size()) = equations.machine(Eigen::all, unknowns_);
-    if (unknowns > 0) J.rightCols(layout_.columns()) = equations.around;
-    return J;
-  };
   found.fitted = VectorXd::Zero(equations.error.size());
   if (unknowns > 0) {
-    const MatrixXd J = stack();
+    const MatrixXd J = jacobian(equations, unknowns_);
     found.fitted = (J * found.covariance).cwiseProduct(J).rowwise().sum();
   }
   whiten(problem_, noise, equations);
-  const MatrixXd J = stack();
+  const MatrixXd J = jacobian(equations, unknowns_);
   const auto first = first_equations(problem_);
   found.apart.assign(problem_.rows.size(), 0.0);
   for (std::size_t j = 0; j < problem_.rows.size(); ++j) {

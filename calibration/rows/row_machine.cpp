@@ -80,7 +80,7 @@ RowMachine RowMachine::moved(const Eigen::VectorXd& by) const {
 }
 
 std::vector<Eigen::Index> RowMachine::free_parameters(bool base_free, bool tool_free,
-                                                      const StandingAxes& stands) const {
+                                                      const StationaryAxes& stands) const {
   return chain() ? calibration::free_parameters(*chain(), base_free, tool_free, stands)
                  : calibration::free_parameters(hexapod()->geometry, base_free, tool_free);
 }

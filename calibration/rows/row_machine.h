@@ -39,7 +39,7 @@ class RowMachine {
   RowMachine moved(const Eigen::VectorXd& by) const;
   /// Which parameters mean anything (free_parameters.h). Struts of a hexapod all move.
   std::vector<Eigen::Index> free_parameters(bool base_free, bool tool_free,
-                                            const StandingAxes& stands = {}) const;
+                                            const StationaryAxes& stands = {}) const;
 
   /// The one that it is, else nothing.
   const ChainParameters* chain() const { return std::get_if<ChainParameters>(&model_); }

@@ -75,17 +75,17 @@ std::vector<TargetSigma> target_sigmas(const RowProblem& problem, const Surround
                                        const std::vector<Index>& unknowns, const RowFit& fit) {
   const Index machine = fit.covariance.cols() - layout.columns();
   if (machine <= 0) return {};
-  const RowEquations equations = row_equations(problem, layout, fit.state, true);
+  const MatrixXd by_all = jacobian(row_equations(problem, layout, fit.state, true), unknowns);
   const auto first = first_equations(problem);
   std::map<std::string, std::vector<double>> sigmas;
   for (std::size_t j = 0; j < problem.rows.size(); ++j) {
     const RowKind kind = problem.rows[j].kind;
     if (kind != RowKind::position && kind != RowKind::pose && kind != RowKind::point) continue;
     MatrixXd J = MatrixXd::Zero(3, fit.covariance.cols());
-    J.leftCols(machine) = equations.machine.middleRows<3>(first[j])(Eigen::all, unknowns);
+    J.leftCols(machine) = by_all.block(first[j], 0, 3, machine);
     const auto& target = layout.targets[static_cast<std::size_t>(layout.rows[j].target)];
     for (const Index column : {target.position, target.turn})
-      if (column >= 0) J.middleCols<3>(machine + column) = equations.around.block<3, 3>(first[j], column);
+      if (column >= 0) J.middleCols<3>(machine + column) = by_all.block<3, 3>(first[j], machine + column);
     sigmas[target.name].push_back(std::sqrt((J * fit.covariance).cwiseProduct(J).sum()));
   }
   std::vector<TargetSigma> list;

@@ -37,10 +37,7 @@ SharedError shared_error(const RowProblem& problem, const SurroundingsLayout& la
   if (poses.empty() || columns == 0) return shared;
   RowEquations equations = row_equations(problem, layout, fit.state, machine > 0);
   whiten(problem, noise, equations);
-  MatrixXd J(equations.error.size(), columns);
-  if (machine > 0) J.leftCols(machine) = equations.machine(Eigen::all, unknowns);
-  J.rightCols(layout.columns()) = equations.around;
-
+  const MatrixXd J = jacobian(equations, unknowns);
   const auto first = first_equations(problem);
   double products = 0, taken = 0, count = 0;  // over pairs: of residuals, what the fit took of them, how many
   MatrixXd between = MatrixXd::Zero(columns, columns);

@@ -18,7 +18,7 @@
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"
-#include "toolpath/gcode/turned_program.h"
+#include "toolpath/gcode/rewrite/turned_program.h"
 #include "toolpath/robot/robot_program.h"
 
 namespace understudy::cli {

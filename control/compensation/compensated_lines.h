@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "machine/description.h"
-#include "toolpath/gcode/gcode_rewrite.h"
+#include "toolpath/gcode/rewrite/gcode_rewrite.h"
 #include "toolpath/program.h"
 
 namespace understudy::control {

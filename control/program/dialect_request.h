@@ -21,7 +21,7 @@ struct DialectRequest {
   std::array<double, 3> place_mm{0, 0, 0};  ///< where the program's origin stands in W
   bool place_auto = false;                  ///< the place is found before, `place_mm` unused
   /// The program turned about z of W through its origin, and the tool about its own axis besides
-  /// (toolpath/gcode/turned_program.h).
+  /// (toolpath/gcode/rewrite/turned_program.h).
   double turn_deg = 0, spin_deg = 0;
   std::string extruder_letter;          ///< E, A...; empty: the machine's
   bool relative_extrusion = false;      ///< E counts on from the start, as after M83

@@ -17,8 +17,8 @@
 #include "rehearsal/compensation/smoothed_play.h"
 #include "rehearsal/findings/findings.h"
 #include "rehearsal/program/program_reading.h"
-#include "toolpath/gcode/gcode_rewrite.h"
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/gcode_rewrite.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 #include "toolpath/robot/robot_program.h"
 
 namespace understudy::rehearsal {

@@ -6,7 +6,7 @@
 #include "machine/calibrated_parameters.h"
 #include "machine/description.h"
 #include "sim/as_built/as_built.h"
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 #include "toolpath/program.h"
 
 namespace understudy::rehearsal {

@@ -69,9 +69,9 @@ std::string raise_nozzle(double height_mm, const Record& record) {
 }
 
 std::string about_contact(const Finding& finding, const Record& record) {
-  const bool tip_is_off = record.accuracy && record.accuracy->tip_max_um >= -1e3 * finding.value;
-  if (finding.about == "nozzle and bead" && tip_is_off) return calibrate(record);
-  if (finding.about == "nozzle and bead")
+  const bool with_bead = finding.about == "nozzle and bead";
+  if (with_bead && tip_error_explains(record, -finding.value)) return calibrate(record);
+  if (with_bead)
     return "lead the nozzle over what is printed: lift it on these lines (the slicer's Z hop, `G1 Z...`) or "
            "go "
            "around; `--place` would lift the print with it";
@@ -143,19 +143,6 @@ std::string about_registration(const Finding&, const Record& record) {
       shell_quoted(record.machine_word));
 }
 
-/// What is missing shrinks far more slowly than the speed, for short lines are all start: with its fourth
-/// root about, by prints of OrcaSlicer at several speeds.
-std::string print_slower(const Finding& finding) {
-  constexpr double kSlowest = 10;  // per cent: slower, a print takes days
-  const double fed = finding.limit / kLeastOfFed, missing = 1 - finding.value / fed;
-  const double share = 100 * std::pow((1 - kLeastOfFed) / missing, 4);
-  return fmt::format(
-      "no more filament, for enough is fed: print slower (`M220 S{:.0f}`); or, where the firmware makes up "
-      "for the lag (pressure advance), tell what is left of it: `--machine 'NAME{{process.extruder_lag_ms: "
-      "5}}'`",
-      std::max(kSlowest, std::floor(share)));
-}
-
 std::string about_flow(const Finding& finding, const Record&) {
   if (finding.about == kVoids)
     return fmt::format(
@@ -166,7 +153,11 @@ std::string about_flow(const Finding& finding, const Record&) {
     return fmt::format(
         "feed less: lower the slicer's extrusion multiplier (or `M221 S...`) by {:.0f} %, or set lines apart",
         100 * (1 - 1 / finding.value));
-  if (finding.about == kLag) return print_slower(finding);
+  if (finding.about == kLag)
+    return "no more filament, for enough is fed: print slower, at half of the speed (`M220 S50`) and again "
+           "half until nothing lags; or, where the firmware makes up for the lag (pressure advance), tell "
+           "what "
+           "is left of it: `--machine 'NAME{process.extruder_lag_ms: 5}'`";
   if (finding.about == kNozzleCold || finding.about == kNozzleHot)
     return fmt::format(
         "set {:.0f} C or {} (`M109 S...`), or name the material that is loaded: `--material NAME`",
@@ -248,6 +239,10 @@ const std::map<std::string, About>& advice_by_kind() {
 }
 
 }  // namespace
+
+bool tip_error_explains(const Record& record, double depth_mm) {
+  return record.accuracy && record.accuracy->tip_max_um >= 1e3 * depth_mm;
+}
 
 std::string advice(const Finding& finding, const Record& record) {
   if (finding.kind == "unreachable" && finding.about == kStopped)

@@ -11,4 +11,7 @@ namespace understudy::rehearsal {
 /// is nothing to do.
 std::string advice(const Finding& finding, const Record& record);
 
+/// The tip is off by as much as a contact is deep: one that is off by less is not all of its cause.
+bool tip_error_explains(const Record& record, double depth_mm);
+
 }  // namespace understudy::rehearsal

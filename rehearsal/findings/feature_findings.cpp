@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 
 #include <fmt/format.h>
+
+#include "core/text/lower_case.h"
 
 namespace understudy::rehearsal {
 
@@ -13,8 +14,7 @@ namespace {
 
 /// As slicers call what fills a part loosely: "Sparse infill", "Internal infill", "FILL".
 bool is_sparse_infill(std::string_view type) {
-  std::string lower;
-  for (const char c : type) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = lower_case(type);
   if (lower.find("fill") == std::string::npos) return false;
   constexpr std::array kDense{"solid", "top", "bottom", "bridge", "gap"};
   return std::ranges::none_of(kDense,

@@ -19,6 +19,7 @@ struct Finding {
   std::string message;
   int last_line = 0;       ///< of one that spans several lines; 0: it does not
   std::string about = {};  ///< findings of one kind about the same are alike: "strut 3", "nozzle and part"
+  int bead_line = 0;       ///< of a contact with a bead: the line that laid it
 };
 
 // What findings are about, where advice depends on it.

@@ -38,13 +38,12 @@ int rank_of(const Finding& finding, bool tip_error_explains_contacts) {
   return static_cast<int>(stage - kFromCauseToConsequence.begin());
 }
 
-/// A tip that is off by less than the depth of a contact is not all of its cause.
 bool tip_error_explains_contacts(const Record& record) {
   double deepest_mm = 0;
   for (const Finding& finding : record.findings)
     if (finding.kind == "collision" && finding.severity == Severity::error)
       deepest_mm = std::max(deepest_mm, -finding.value);
-  return record.accuracy && record.accuracy->tip_max_um >= 1e3 * deepest_mm;
+  return tip_error_explains(record, deepest_mm);
 }
 
 void add(const Finding& finding, FindingGroup& group) {

@@ -41,7 +41,7 @@ std::vector<ContactStretch> stretches_of(const std::vector<sim::Contact>& contac
   std::map<std::pair<std::string, std::string>, std::size_t> open;
   for (const sim::Contact& contact : contacts) {
     // Beads are many, what was printed is one.
-    const std::string obstacle = contact.obstacle.starts_with("bead") ? "bead" : contact.obstacle;
+    const std::string obstacle = contact.bead_line > 0 ? "bead" : contact.obstacle;
     const auto [entry, is_new] = open.try_emplace({contact.body, obstacle}, stretches.size());
     if (!is_new) {
       ContactStretch& stretch = stretches[entry->second];
@@ -65,6 +65,7 @@ Finding contact_finding(const ContactStretch& stretch, bool touches, double limi
   f.severity = touches ? Severity::error : Severity::warning;
   f.gcode_line = stretch.first_line;
   f.last_line = stretch.last_line;
+  f.bead_line = contact.bead_line;
   f.time_s = stretch.begin_time;
   f.value = to_mm(contact.clearance);
   f.limit = to_mm(limit);

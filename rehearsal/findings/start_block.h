@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "rehearsal/findings/finding.h"
+#include "toolpath/inspection/feature_types.h"
 
 namespace understudy::rehearsal {
 
 /// The line at which a slicer's comments say that the first layer or the first feature of the part begins; 0:
-/// they do not say it. Read are `;LAYER:0` of Cura and ideaMaker, `;LAYER_CHANGE` of PrusaSlicer and its kin,
-/// `; CHANGE_LAYER` of BambuStudio, `; layer 1` of Simplify3D, `; <IceSL`, and types of features.
-int start_block_end(std::string_view text);
+/// they do not say it. IceSL says it by its name, which it writes behind the start block.
+int start_block_end(std::string_view text, const toolpath::FeatureTypes& features);
 
 /// What does not stick or sags on lines before `end` is purged, and spoils no part: a warning. So is a nozzle
 /// that touches the table there by less than 0.05 mm, as a `G1 Z0` does by the machine's errors, and one that

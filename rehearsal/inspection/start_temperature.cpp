@@ -4,8 +4,9 @@
 #include <cctype>
 #include <charconv>
 
+#include "core/text/take_line.h"
 #include "rehearsal/program/told_process.h"
-#include "toolpath/gcode/gcode_words.h"
+#include "toolpath/gcode/words/gcode_words.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -44,9 +45,7 @@ std::optional<double> parameter_of(std::string_view line) {
 std::optional<double> start_temperature(std::string_view text,
                                         const std::map<std::string, std::string>& facts) {
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::string_view line = take_line(text);
     if (toolpath::command_in_words(line).empty()) continue;
     if (const auto temperature = parameter_of(line.substr(0, line.find(';')))) return temperature;
   }

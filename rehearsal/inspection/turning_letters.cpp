@@ -5,9 +5,10 @@
 #include <cstdlib>
 #include <functional>
 
+#include "core/text/take_line.h"
 #include "core/text/trimmed.h"
 #include "toolpath/gcode/gcode.h"
-#include "toolpath/gcode/gcode_words.h"
+#include "toolpath/gcode/words/gcode_words.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -16,14 +17,6 @@ constexpr std::string_view kOfNumbers = "0123456789.-+";
 constexpr std::size_t kMostLetters = 2;  // that a machine's words may have
 
 char capital(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
-
-void for_each_line(std::string_view text, const std::function<void(std::string_view)>& see) {
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    see(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-}
 
 /// Letters and their numbers, of a line that begins with G or N; nothing for any other.
 void for_each_word(std::string_view line, const std::function<void(char, double)>& see) {
@@ -43,23 +36,21 @@ bool is_homing_or_levelling(char letter, double number) {
 
 std::set<char> letters_of(std::string_view text) {
   std::set<char> letters;
-  for_each_line(text, [&](std::string_view line) {
-    for_each_word(line, [&](char letter, double) { letters.insert(letter); });
-  });
+  while (!text.empty()) for_each_word(take_line(text), [&](char letter, double) { letters.insert(letter); });
   return letters;
 }
 
 std::string turning_letters(std::string_view text, char extruder) {
   std::set<char> stated, turned;
-  for_each_line(text, [&](std::string_view line) {
+  while (!text.empty()) {
     bool moves = true;
-    for_each_word(line, [&](char letter, double number) {
+    for_each_word(take_line(text), [&](char letter, double number) {
       if (is_homing_or_levelling(letter, number)) moves = false;
       if (!moves) return;
       stated.insert(letter);
       if (number != 0) turned.insert(letter);
     });
-  });
+  }
   const auto turning = [&](const std::set<char>& letters) {
     std::string found;
     for (const char letter : std::string_view(toolpath::kRotaryLetters))
@@ -73,7 +64,8 @@ std::string turning_letters(std::string_view text, char extruder) {
 
 std::string without_words(std::string_view text, std::string_view letters) {
   std::string result;
-  for_each_line(text, [&](std::string_view line) {
+  while (!text.empty()) {
+    const std::string_view line = take_line(text);
     const std::size_t comment = std::min(line.find_first_of(";("), line.size());
     for (std::size_t i = 0; i < line.size();) {
       if (i < comment && letters.find(capital(line[i])) != std::string_view::npos && i + 1 < comment &&
@@ -83,7 +75,7 @@ std::string without_words(std::string_view text, std::string_view letters) {
         result += line[i++];
     }
     result += '\n';
-  });
+  }
   return result;
 }
 

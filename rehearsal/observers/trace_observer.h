@@ -11,7 +11,7 @@
 #include "rehearsal/record.h"
 #include "sim/deposition/deposition.h"
 #include "sim/observer.h"
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 
 namespace understudy::rehearsal {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "toolpath/gcode/turned_program.h"
+#include "toolpath/gcode/rewrite/turned_program.h"
 
 namespace understudy::rehearsal {
 namespace {

@@ -12,7 +12,7 @@ namespace understudy::rehearsal {
 /// Where the print stands and how it is turned.
 struct Stand {
   Vec2 middle{0, 0};          ///< [m], of what it prints, seen from above, in W
-  double turn = 0, spin = 0;  ///< [rad] (toolpath/gcode/turned_program.h)
+  double turn = 0, spin = 0;  ///< [rad] (toolpath/gcode/rewrite/turned_program.h)
 };
 
 struct ProgramPath {

@@ -6,7 +6,7 @@
 #include "core/digest.h"
 #include "core/file/read_file.h"
 #include "rehearsal/program/program_reading.h"
-#include "toolpath/gcode/gcode_rewrite.h"
+#include "toolpath/gcode/rewrite/gcode_rewrite.h"
 
 namespace understudy::rehearsal {
 

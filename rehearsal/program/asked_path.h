@@ -6,7 +6,7 @@
 
 #include "machine/description.h"
 #include "rehearsal/request/request.h"
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 
 namespace understudy::rehearsal {
 

@@ -17,7 +17,7 @@
 #include "rehearsal/program/readings.h"
 #include "rehearsal/program/robot_reading.h"
 #include "rehearsal/program/told_filament.h"
-#include "toolpath/gcode/turned_program.h"
+#include "toolpath/gcode/rewrite/turned_program.h"
 #include "toolpath/inspection/program_summary.h"
 #include "toolpath/inspection/slicer_filament.h"
 
@@ -42,7 +42,7 @@ void read_gcode_into(ReadProgram& read, const std::string& text, const Rehearsal
   options.passed_over = &read.passed_over;
   read.facts = toolpath::slicer_facts(text);
   read.features = toolpath::FeatureTypes(text);
-  read.start_block_end = start_block_end(text);
+  read.start_block_end = start_block_end(text, read.features);
   read.beads = toolpath::ToldBeads(text);
   const toolpath::ProgramTurn turn{from_deg(request.dialect.turn_deg), from_deg(request.dialect.spin_deg)};
   toolpath::ExtrusionTally tally;

@@ -37,24 +37,19 @@ std::string relative_look(const toolpath::ExtrusionTally& tally) {
 
 std::optional<Finding> misread_extrusion(const toolpath::ExtrusionTally& tally, double fed,
                                          const std::optional<double>& told) {
-  if (tally.looks_relative())
-    return finding_of_amount(
-        Severity::error, tally.first_line, fed, told.value_or(tally.by_words),
-        fmt::format("{}; read as absolute it feeds {:.1f} mm of filament, read as relative {:.1f} mm{}",
-                    relative_look(tally), to_mm(fed), to_mm(tally.by_words), comment_of(told)),
-        kRelativeExtrusion);
-  if (told && *told > 0 && fed < kNearlyNothing * *told)
-    return finding_of_amount(
-        Severity::error, 0, fed, *told,
-        fmt::format("the program feeds {:.1f} mm of filament{}", to_mm(fed), comment_of(told)), kOtherAmount);
-  return std::nullopt;
+  if (!tally.looks_relative()) return std::nullopt;
+  return finding_of_amount(
+      Severity::error, tally.first_line, fed, told.value_or(tally.by_words),
+      fmt::format("{}; read as absolute it feeds {:.1f} mm of filament, read as relative {:.1f} mm{}",
+                  relative_look(tally), to_mm(fed), to_mm(tally.by_words), comment_of(told)),
+      kRelativeExtrusion);
 }
 
 std::optional<Finding> other_amount(double fed, const std::optional<double>& told) {
   if (!told || *told <= 0) return std::nullopt;
   if (fed >= (1 - kSameAmount) * *told && fed <= (1 + kSameAmount) * *told + kPurged) return std::nullopt;
   return finding_of_amount(
-      Severity::warning, 0, fed, *told,
+      fed < kNearlyNothing * *told ? Severity::error : Severity::warning, 0, fed, *told,
       fmt::format("the program feeds {:.1f} mm of filament{}", to_mm(fed), comment_of(told)), kOtherAmount);
 }
 

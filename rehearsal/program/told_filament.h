@@ -14,14 +14,15 @@ namespace understudy::rehearsal {
 double fresh_filament(const toolpath::Program& program);
 
 /// An error where E is read as absolute and looks relative, so that next to nothing is fed of what the moves
-/// say; and where less than a quarter is fed of what the comment `told` [m].
+/// say. `told` [m]: by the comment.
 std::optional<Finding> misread_extrusion(const toolpath::ExtrusionTally& tally, double fed,
                                          const std::optional<double>& told);
 
 /// What `inspect` says of such a program.
 std::string relative_look(const toolpath::ExtrusionTally& tally);
 
-/// A warning where the amount is another than the comment's by a fifth, and by what start lines purge.
+/// A warning where the amount is another than the comment's by a fifth, and by what start lines purge; an
+/// error where it is less than a quarter.
 std::optional<Finding> other_amount(double fed, const std::optional<double>& told);
 
 }  // namespace understudy::rehearsal

@@ -1,12 +1,12 @@
 #include "rehearsal/program/told_process.h"
 
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/quantile.h"
+#include "core/text/lower_case.h"
 #include "core/units.h"
 #include "rehearsal/program/programmed_areas.h"
 
@@ -90,9 +90,8 @@ std::string told_material(const std::map<std::string, std::string>& facts) {
   const auto said = facts.find("material");
   if (said == facts.end()) return "";
   const std::string first = said->second.substr(0, said->second.find_first_of(";, \t"));
-  std::string name;
-  for (const char c : first)
-    if (c != '"' && c != '+') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string name = lower_case(first);
+  std::erase_if(name, [](char c) { return c == '"' || c == '+'; });
   return name;
 }
 

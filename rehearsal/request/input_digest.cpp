@@ -13,7 +13,7 @@
 #include "machine/description.h"
 #include "machine/fixture_file.h"
 #include "machine/material.h"
-#include "toolpath/gcode/gcode_macros.h"
+#include "toolpath/gcode/macros/gcode_macros.h"
 
 namespace understudy::rehearsal {
 namespace {

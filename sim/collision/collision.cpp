@@ -88,8 +88,9 @@ struct CollisionObserver::State {
       at.nearest_bead = found->bead;
       at.clearance = found->separation.distance;
       if (at.clearance <= near_level(pair) || at.clearance < closest.clearance) {
-        const std::string name = "bead of line " + std::to_string(options.beads->bead(found->bead).line);
-        record(index, {bodies.name(pair.body), name, at.clearance, found->separation.place_W, time, line});
+        const int laid_on = options.beads->bead(found->bead).line;
+        record(index, {bodies.name(pair.body), "bead of line " + std::to_string(laid_on), at.clearance,
+                       found->separation.place_W, time, line, laid_on});
       }
     }
     at.budget = allowed_motion(at.clearance, limits(index, line));

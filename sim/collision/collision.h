@@ -22,6 +22,7 @@ struct Contact {
   Vec3 place_W{0, 0, 0};  ///< nearest point on the obstacle; the deepest point where they overlap
   double time = 0;        ///< [s]
   int line = 0;
+  int bead_line = 0;  ///< of a bead: the line that laid it
 };
 
 struct CollisionOptions {

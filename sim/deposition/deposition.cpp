@@ -46,8 +46,8 @@ struct Ground {
 Bead shape_of(const Element& element) {
   const LaidBead& laid = element.bead;
   // What fills the space from the surface to the nozzle is as high as the tip everywhere; a thinner strand
-  // lies on the surface, unless it hangs. Nothing lies higher than the mouth that it came out of, whose flat
-  // presses it down: not where that is buried, nor where the gap is less at one end than elsewhere.
+  // lies on the surface, unless it hangs. Nothing lies higher than the orifice that it came out of, whose
+  // flat presses it down: not where that is buried, nor where the gap is less at one end than elsewhere.
   const bool lies = laid.adhesion != Adhesion::unsupported && laid.adhesion != Adhesion::fused &&
                     laid.adhesion != Adhesion::buried && laid.height < kFills * laid.gap;
   const double half = laid.height / 2;

@@ -20,7 +20,7 @@
 #include "sim/plant/quasistatic/quasistatic.h"
 #include "sim/twin/simulated_port.h"
 #include "studies/gap/lab_machine.h"
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 
 namespace understudy::studies {
 namespace {

@@ -16,8 +16,8 @@
 
 #include "core/units.h"
 #include "toolpath/gcode/gcode_extrusion.h"
-#include "toolpath/gcode/gcode_macros.h"
 #include "toolpath/gcode/gcode_refused.h"
+#include "toolpath/gcode/macros/gcode_macros.h"
 #include "toolpath/program.h"
 
 namespace understudy::toolpath {

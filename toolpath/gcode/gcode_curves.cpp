@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "toolpath/gcode/curves/gcode_spline.h"
 #include "toolpath/gcode/gcode_position.h"
-#include "toolpath/gcode/gcode_spline.h"
 #include "toolpath/gcode/gcode_state.h"
 
 namespace understudy::toolpath {

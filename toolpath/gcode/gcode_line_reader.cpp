@@ -14,10 +14,10 @@
 #include "core/error.h"
 #include "core/text/trimmed.h"
 #include "core/units.h"
-#include "toolpath/gcode/gcode_block.h"
-#include "toolpath/gcode/gcode_lexer.h"
 #include "toolpath/gcode/gcode_passed_over.h"
 #include "toolpath/gcode/gcode_unknown_words.h"
+#include "toolpath/gcode/words/gcode_block.h"
+#include "toolpath/gcode/words/gcode_lexer.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -338,16 +338,5 @@ void GcodeLineReader::finish() { lines_->finish(); }
 const GcodeState& GcodeLineReader::state() const { return lines_->state(); }
 const Letters& GcodeLineReader::letters() const { return lines_->letters(); }
 bool GcodeLineReader::said_place() const { return lines_->said_place(); }
-
-std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
-  const std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end);
-  if (rest.starts_with("\r\n"))
-    rest.remove_prefix(2);
-  else if (!rest.empty())
-    rest.remove_prefix(1);
-  return line;
-}
 
 }  // namespace understudy::toolpath

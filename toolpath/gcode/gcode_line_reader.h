@@ -38,7 +38,4 @@ class GcodeLineReader {
   std::unique_ptr<Lines> lines_;
 };
 
-/// Takes a line off `rest`: up to a line feed, a carriage return, or both; a comment ends there, too.
-std::string_view take_line(std::string_view& rest);
-
 }  // namespace understudy::toolpath

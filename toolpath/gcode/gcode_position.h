@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "toolpath/gcode/curves/gcode_arc.h"
 #include "toolpath/gcode/gcode.h"
-#include "toolpath/gcode/gcode_arc.h"
-#include "toolpath/gcode/gcode_block.h"
 #include "toolpath/gcode/gcode_work_offsets.h"
+#include "toolpath/gcode/words/gcode_block.h"
 
 namespace understudy::toolpath {
 

@@ -5,6 +5,7 @@
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/text/take_line.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/gcode_line_reader.h"
 

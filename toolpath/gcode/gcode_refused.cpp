@@ -3,7 +3,7 @@
 #include <cctype>
 #include <cstdlib>
 
-#include "toolpath/gcode/gcode_words.h"
+#include "toolpath/gcode/words/gcode_words.h"
 
 namespace understudy::toolpath {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "toolpath/gcode/gcode_block.h"
+#include "toolpath/gcode/words/gcode_block.h"
 
 namespace understudy::toolpath {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "toolpath/gcode/gcode_limits.h"
+#include "toolpath/gcode/words/gcode_limits.h"
 
 namespace understudy::toolpath {
 namespace {

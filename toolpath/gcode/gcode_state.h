@@ -9,8 +9,8 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
-#include "toolpath/gcode/gcode_block.h"
 #include "toolpath/gcode/gcode_position.h"
+#include "toolpath/gcode/words/gcode_block.h"
 
 namespace understudy::toolpath {
 

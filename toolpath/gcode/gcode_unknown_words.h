@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "toolpath/gcode/gcode.h"
-#include "toolpath/gcode/gcode_block.h"
+#include "toolpath/gcode/words/gcode_block.h"
 
 namespace understudy::toolpath {
 

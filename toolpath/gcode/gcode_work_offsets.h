@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/frames.h"
-#include "toolpath/gcode/gcode_block.h"
+#include "toolpath/gcode/words/gcode_block.h"
 
 namespace understudy::toolpath {
 

@@ -5,8 +5,8 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
-#include "toolpath/gcode/gcode_limits.h"
-#include "toolpath/gcode/gcode_number.h"
+#include "toolpath/gcode/words/gcode_limits.h"
+#include "toolpath/gcode/words/gcode_number.h"
 
 namespace understudy::toolpath {
 namespace {

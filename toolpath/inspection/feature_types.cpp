@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "core/text/lower_case.h"
 #include "core/text/trimmed.h"
+#include "toolpath/inspection/comments.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -25,14 +26,16 @@ std::string_view type_of(std::string_view comment) {
 }  // namespace
 
 FeatureTypes::FeatureTypes(std::string_view text) {
-  for (int line = 1; !text.empty(); ++line) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view words = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (!words.starts_with(';')) continue;
-    const std::string_view type = type_of(trimmed(words.substr(1)));
+  for_each_comment(text, [this](int line, std::string_view comment) {
+    const std::string_view type = type_of(comment);
     if (!type.empty() && (from_.empty() || from_.back().second != type)) from_.emplace_back(line, type);
-  }
+  });
+}
+
+int FeatureTypes::first_of_part() const {
+  const auto first =
+      std::ranges::find_if(from_, [](const auto& from) { return !is_beside_part(from.second); });
+  return first == from_.end() ? 0 : first->first;
 }
 
 std::string_view FeatureTypes::at(int line) const {
@@ -42,8 +45,7 @@ std::string_view FeatureTypes::at(int line) const {
 }
 
 bool is_beside_part(std::string_view type) {
-  std::string lower;
-  for (const char c : type) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = lower_case(type);
   // "Custom" is PrusaSlicer's word for the start and end blocks of a printer, which draw its purge line.
   constexpr std::array kWords{"skirt", "brim", "custom", "wipe tower", "prime", "purge", "ooze shield"};
   return std::ranges::any_of(kWords, [&](const char* word) { return lower.find(word) != std::string::npos; });

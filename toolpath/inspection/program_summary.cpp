@@ -9,6 +9,7 @@
 
 #include "core/text/trimmed.h"
 #include "core/units.h"
+#include "toolpath/inspection/comments.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -175,12 +176,7 @@ std::map<std::string, std::string> slicer_facts(std::string_view text) {
       {"machine_max_jerk_z =", "machine_max_jerk_z"},
   }};
   std::map<std::string, std::string> facts;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (!line.starts_with(';')) continue;
-    line = trimmed(line.substr(1));
+  for_each_comment(text, [&](int, std::string_view line) {
     // BambuStudio tells two times on one line.
     if (const auto total = line.find("total estimated time:"); total != std::string_view::npos)
       line = line.substr(total);
@@ -189,7 +185,7 @@ std::map<std::string, std::string> slicer_facts(std::string_view text) {
     for (const auto& [written, key] : kKeys)
       if (line.starts_with(written))
         facts.try_emplace(std::string(key), trimmed(line.substr(written.size())));
-  }
+  });
   return facts;
 }
 

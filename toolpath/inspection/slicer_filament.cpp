@@ -1,13 +1,14 @@
 #include "toolpath/inspection/slicer_filament.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string>
 
+#include "core/text/lower_case.h"
 #include "core/text/trimmed.h"
 #include "core/units.h"
+#include "toolpath/inspection/comments.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -15,12 +16,6 @@ namespace {
 constexpr std::string_view kWhole[] = {"filament used [mm]", "total filament length [mm]", "filament length",
                                        "filament used"};
 constexpr std::string_view kOfOneExtruder[] = {"material#", "ext #"};
-
-std::string small(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 /// [m], of "264.59, 0.00" mm, "1.67714m" or "332.4mm (2.3cm3)"; nothing for what begins with no number.
 std::optional<double> written_lengths(std::string_view text) {
@@ -62,19 +57,16 @@ std::optional<double> of_one_extruder(std::string_view line) {
 }  // namespace
 
 std::optional<double> told_filament(std::string_view text) {
-  std::optional<double> of_each;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view comment = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (!comment.starts_with(';')) continue;
+  std::optional<double> of_all, of_each;
+  for_each_comment(text, [&](int, std::string_view comment) {
+    if (of_all) return;
     comment.remove_prefix(std::min(comment.find_first_not_of(";- \t"), comment.size()));
-    const std::string line = small(comment);
+    const std::string words = lower_case(comment);
     for (const std::string_view key : kWhole)
-      if (const auto whole = value_after(line, key)) return whole;
-    if (const auto one = of_one_extruder(line)) of_each = of_each.value_or(0) + *one;
-  }
-  return of_each;
+      if (!of_all) of_all = value_after(words, key);
+    if (const auto one = of_one_extruder(words)) of_each = of_each.value_or(0) + *one;
+  });
+  return of_all ? of_all : of_each;
 }
 
 }  // namespace understudy::toolpath

@@ -1,15 +1,16 @@
 #include "toolpath/inspection/told_beads.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <initializer_list>
 #include <numbers>
 #include <optional>
 #include <string>
 
+#include "core/text/lower_case.h"
 #include "core/text/trimmed.h"
 #include "core/units.h"
+#include "toolpath/inspection/comments.h"
 #include "toolpath/inspection/feature_types.h"
 
 namespace understudy::toolpath {
@@ -35,8 +36,7 @@ void take(std::string_view comment, ToldBead& bead) {
 }
 
 bool has_word(std::string_view type, std::initializer_list<const char*> words) {
-  std::string lower;
-  for (const char c : type) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = lower_case(type);
   return std::ranges::any_of(words, [&](const char* word) { return lower.find(word) != std::string::npos; });
 }
 
@@ -50,18 +50,14 @@ double ToldBead::area() const {
 ToldBeads::ToldBeads(std::string_view text) {
   const FeatureTypes types(text);
   ToldBead told, in_force;  // as the comments say, and what is meant of it
-  for (int line = 1; !text.empty(); ++line) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view words = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (!words.starts_with(';')) continue;
-    take(trimmed(words.substr(1)), told);
+  for_each_comment(text, [&](int line, std::string_view comment) {
+    take(comment, told);
     const std::string_view type = types.at(line);
     supports_ = supports_ || has_word(type, {"support"});
     const ToldBead now = has_word(type, {"bridge", "overhang", "ironing"}) ? ToldBead{} : told;
-    if (now.height == in_force.height && now.width == in_force.width) continue;
+    if (now.height == in_force.height && now.width == in_force.width) return;
     from_.emplace_back(line, in_force = now);
-  }
+  });
 }
 
 ToldBead ToldBeads::at(int line) const {

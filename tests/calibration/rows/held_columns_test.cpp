@@ -52,7 +52,7 @@ TEST(HeldColumns, WithAMeasuredToolTheLastZeroIsToldAndATurnOfTheMountIsNot) {
 // A rail that never moves is a part of the frame: the base is the next axis.
 TEST(HeldColumns, AnAxisThatStandsIsNotTold) {
   const kinematics::Chain chain = DrawnRows({}, 1).nominal.chain()->chain;
-  const StandingAxes stands{0.3, {}, {}, {}, {}, {}};
+  const StationaryAxes stands{0.3, {}, {}, {}, {}, {}};
   const auto names = chain_parameter_names(chain);
   std::vector<std::string> list;
   for (const Eigen::Index column : held_columns(chain, true, true, stands))

@@ -18,7 +18,7 @@
 #include "machine/record/recording_port.h"
 #include "tests/cli/drive/same_bits.h"
 #include "tests/cli/program_run.h"
-#include "toolpath/gcode/turned_program.h"
+#include "toolpath/gcode/rewrite/turned_program.h"
 #include "vision/plain_instructions.h"
 
 namespace understudy::cli_test {

@@ -87,7 +87,7 @@ TEST(Advice, ANozzleThatMeetsABeadIsNotMendedByThePlace) {
 TEST(Advice, LagIsMendedBySpeedAndNotByMoreFilament) {
   const Finding lag = fill_findings(FillFigures{0.926, 0.745, 1, 9, 0, Vec3::Zero()}).at(0);
   const std::string text = advice(lag, on_a_machine(false, "off"));
-  EXPECT_THAT(text, HasSubstr("`M220 S34`"));
+  EXPECT_THAT(text, HasSubstr("`M220 S50`"));
   EXPECT_THAT(text, HasSubstr("process.extruder_lag_ms"));
   EXPECT_THAT(text, Not(HasSubstr("M221")));
 }

@@ -23,10 +23,11 @@ TEST(ToldFilament, RelativeWordsReadAsAbsoluteAreAnError) {
 }
 
 TEST(ToldFilament, NextToNothingOfTheCommentsFilamentIsAnError) {
-  ASSERT_TRUE(misread_extrusion({}, 0.02, 0.2));
-  EXPECT_EQ(misread_extrusion({}, 0.02, 0.2)->severity, Severity::error);
-  EXPECT_FALSE(misread_extrusion({}, 0.1, 0.2));
-  EXPECT_FALSE(misread_extrusion({}, 0, {}));
+  ASSERT_TRUE(other_amount(0.02, 0.2));
+  EXPECT_EQ(other_amount(0.02, 0.2)->severity, Severity::error);
+  EXPECT_EQ(other_amount(0.1, 0.2)->severity, Severity::warning);
+  EXPECT_FALSE(other_amount(0, {}));
+  EXPECT_FALSE(misread_extrusion({}, 0.02, 0.2)) << "no word of E looks relative";
 }
 
 TEST(ToldFilament, AnotherAmountThanTheCommentsIsAWarning) {

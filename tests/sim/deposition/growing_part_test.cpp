@@ -99,15 +99,19 @@ TEST(GrowingPart, CrossingABeadOfTheSameLayerFuses) {
   EXPECT_NEAR(summary.deposited_volume, summary.extruded_volume, 1e-9 * summary.extruded_volume);
 }
 
-// Ploughing 0.15 mm deep through printed material is no fusing.
-TEST(GrowingPart, DeepInAnEarlierBeadTheNozzleIsBuried) {
-  Laying laying(printer());
-  Printer print(laying);
+void plough_through_three_layers(Printer& print) {
   for (int layer = 1; layer <= 3; ++layer) {
     print.line({-5e-3, 0, layer * kLayer}, {5e-3, 0, layer * kLayer});
     print.travel({0, 0, 5e-3});
   }
   print.line({0, -5e-3, kLayer}, {0, 5e-3, kLayer});
+}
+
+// Ploughing 0.15 mm deep through printed material is no fusing.
+TEST(GrowingPart, DeepInAnEarlierBeadTheNozzleIsBuried) {
+  Laying laying(printer());
+  Printer print(laying);
+  plough_through_three_layers(print);
   ASSERT_EQ(laying.unsupported_stretches().size(), 1u);
   EXPECT_EQ(laying.unsupported_stretches()[0].adhesion, Adhesion::buried);
   EXPECT_NEAR(laying.unsupported_stretches()[0].worst_gap, -2 * kLayer, 20e-9);
@@ -128,19 +132,15 @@ double highest_top(Laying& laying, int line) {
 
 constexpr double kSingle = 5e-9;  // [m]: how beads are kept
 
-TEST(GrowingPart, NothingThatComesOutOfABuriedMouthLiesAboveIt) {
+TEST(GrowingPart, NothingThatABuriedNozzleFeedsLiesAboveItsOrifice) {
   Laying laying(printer());
   Printer print(laying);
-  for (int layer = 1; layer <= 3; ++layer) {
-    print.line({-5e-3, 0, layer * kLayer}, {5e-3, 0, layer * kLayer});
-    print.travel({0, 0, 5e-3});
-  }
-  print.line({0, -5e-3, kLayer}, {0, 5e-3, kLayer});
+  plough_through_three_layers(print);
   EXPECT_LE(highest_top(laying, 4), kLayer + kSingle);
 }
 
 // Too thin to reach up to the nozzle where it begins, it is pressed where it ends.
-TEST(GrowingPart, AThinLineWhoseGapClosesStaysBelowTheMouth) {
+TEST(GrowingPart, AThinLineWhoseGapClosesStaysBelowTheOrifice) {
   constexpr double kHigh = 0.2e-3, kLow = 0.1e-3, kThin = 0.2;
   Laying laying(printer());
   laying.observe(at(0, {0, 0, kHigh}, 0));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/text/take_line.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -35,15 +36,6 @@ TEST(GcodeLineReader, ALineThatFailsLeavesNothingBehindWhereThatIsAskedFor) {
   reader.read_or_undo("G1 X2", 4);
   ASSERT_EQ(steps.size(), 2);
   EXPECT_DOUBLE_EQ(steps[1].X_WT.translation().x(), 2e-3) << "G91 of the line that failed is not in force";
-}
-
-TEST(TakeLine, EndsAtEachKindOfLineEnd) {
-  std::string_view rest = "a\r\nb\rc\nd";
-  EXPECT_EQ(take_line(rest), "a");
-  EXPECT_EQ(take_line(rest), "b");
-  EXPECT_EQ(take_line(rest), "c");
-  EXPECT_EQ(take_line(rest), "d");
-  EXPECT_TRUE(rest.empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_arc.h"
+#include "toolpath/gcode/curves/gcode_arc.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_spline.h"
+#include "toolpath/gcode/curves/gcode_spline.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,6 @@
 // Syntax: Klipper, "Command templates" (Macro parameters, G-Code commands) and "Config reference",
 // [gcode_macro].
-#include "toolpath/gcode/gcode_macros.h"
+#include "toolpath/gcode/macros/gcode_macros.h"
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_macro_text.h"
+#include "toolpath/gcode/macros/gcode_macro_text.h"
 
 #include <algorithm>
 #include <cctype>

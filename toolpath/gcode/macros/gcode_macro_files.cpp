@@ -10,8 +10,8 @@
 #include "core/file/outside.h"
 #include "core/file/read_file.h"
 #include "core/text/trimmed.h"
-#include "toolpath/gcode/gcode_macro_text.h"
-#include "toolpath/gcode/gcode_macros.h"
+#include "toolpath/gcode/macros/gcode_macro_text.h"
+#include "toolpath/gcode/macros/gcode_macros.h"
 
 namespace understudy::toolpath {
 namespace fs = std::filesystem;
@@ -24,7 +24,8 @@ constexpr std::size_t kMostFiles = 100;  // docs/limits.md
 
 /// "gcode_macro NAME" -> NAME; nothing for sections of another kind.
 std::optional<std::string_view> name_in(std::string_view section, std::string_view kind) {
-  if (!section.starts_with(kind) || (section.size() > kind.size() && !is_blank(section[kind.size()])))
+  if (!section.starts_with(kind) ||
+      (section.size() > kind.size() && !macro_text::is_blank(section[kind.size()])))
     return std::nullopt;
   return trimmed(section.substr(kind.size()));
 }
@@ -76,7 +77,7 @@ class MacroFiles {
     if (words.empty() || words.front() == ';') return;
     if (line.front() == '[')
       begin_section(words, number);
-    else if (is_blank(line.front()))
+    else if (macro_text::is_blank(line.front()))
       go_on(words, number);
     else
       begin_key(words, number);

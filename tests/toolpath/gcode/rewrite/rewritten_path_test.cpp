@@ -1,4 +1,4 @@
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 
 #include <gtest/gtest.h>
 

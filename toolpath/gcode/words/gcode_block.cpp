@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_block.h"
+#include "toolpath/gcode/words/gcode_block.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/turned_program.h"
+#include "toolpath/gcode/rewrite/turned_program.h"
 
 #include "core/error.h"
 

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_rewrite.h"
+#include "toolpath/gcode/rewrite/gcode_rewrite.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,10 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text/take_line.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode_line_reader.h"
-#include "toolpath/gcode/gcode_number.h"
+#include "toolpath/gcode/words/gcode_number.h"
 
 namespace understudy::toolpath {
 namespace {

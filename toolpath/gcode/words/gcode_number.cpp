@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_number.h"
+#include "toolpath/gcode/words/gcode_number.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_lexer.h"
+#include "toolpath/gcode/words/gcode_lexer.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/rewritten_path.h"
+#include "toolpath/gcode/rewrite/rewritten_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text/take_line.h"
 #include "toolpath/gcode/gcode_line_reader.h"
-#include "toolpath/gcode/gcode_rewrite.h"
+#include "toolpath/gcode/rewrite/gcode_rewrite.h"
 
 namespace understudy::toolpath {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/file/output_file.h"
 #include "tests/temporary_folder.h"
 #include "toolpath/gcode/gcode.h"
-#include "toolpath/gcode/gcode_macros.h"
+#include "toolpath/gcode/macros/gcode_macros.h"
 
 namespace understudy::toolpath {
 namespace {

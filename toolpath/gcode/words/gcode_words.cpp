@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_words.h"
+#include "toolpath/gcode/words/gcode_words.h"
 
 #include <algorithm>
 #include <cctype>

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "toolpath/gcode/gcode_lexer.h"
-#include "toolpath/gcode/gcode_words.h"
+#include "toolpath/gcode/words/gcode_lexer.h"
+#include "toolpath/gcode/words/gcode_words.h"
 
 namespace understudy::toolpath {
 

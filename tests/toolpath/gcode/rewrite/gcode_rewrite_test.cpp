@@ -1,5 +1,5 @@
 // Each expected program is written by hand from the words of the dialect (docs/gcode.md).
-#include "toolpath/gcode/gcode_rewrite.h"
+#include "toolpath/gcode/rewrite/gcode_rewrite.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "toolpath/gcode/gcode_macros.h"
+#include "toolpath/gcode/macros/gcode_macros.h"
 
 #include <algorithm>
 #include <cctype>
@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/text/trimmed.h"
-#include "toolpath/gcode/gcode_macro_text.h"
+#include "toolpath/gcode/macros/gcode_macro_text.h"
 
 namespace understudy::toolpath {
 using namespace macro_text;
@@ -52,7 +52,7 @@ class Expression {
                             shown(trimmed(text_))));
   }
   void skip_blanks() {
-    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+    while (at_ < text_.size() && macro_text::is_blank(text_[at_])) ++at_;
   }
   bool take(char c) {
     skip_blanks();
@@ -127,7 +127,7 @@ class Expression {
 /// M600 X1Y2: there a value ends at the next letter.
 std::size_t value_end(std::string_view text, bool in_words) {
   const auto ends = [&](char c) {
-    return is_blank(c) || (!in_words && std::isalpha(static_cast<unsigned char>(c)) != 0);
+    return macro_text::is_blank(c) || (!in_words && std::isalpha(static_cast<unsigned char>(c)) != 0);
   };
   return static_cast<std::size_t>(std::find_if(text.begin(), text.end(), ends) - text.begin());
 }
