@@ -22,6 +22,11 @@ using toolpath::Step;
 /// it; a flat of 1 mm dips by 0.1 um.
 constexpr double kTurnTolerance = 0.2e-3;
 
+/// [m] of path between two looks at a line's way. A correction that sets in over 2 mm of it turns the way by
+/// little between two of them.
+constexpr double kLookTravel = 0.2e-3;
+constexpr double kNoWay = 1e-9;  // [m]
+
 /// One look at a line's way.
 struct Sample {
   double share = 0;
@@ -100,8 +105,10 @@ class Compensator {
   /// Along a step whose way begins `before` [m] behind that of its line. Its length.
   double look(std::size_t i, double before) {
     const Step& step = program_.steps[i];
+    const double speed = step.feed > 0 ? step.feed : limits_.travel_velocity;
+    bend_max_ = kChordShare * corner_velocity_change(limits_) / speed;
     const PathSegment segment = this->segment(i);
-    const int parts = segment.moves() ? parts_of(segment, kCheckTravel, kCheckTurn) : 1;
+    const int parts = segment.moves() ? parts_of(segment, kLookTravel, kCheckTurn) : 1;
     for (int k = 1; k <= parts; ++k) {
       const double fraction = static_cast<double>(k) / parts, s = fraction * segment.length;
       Pose X_WT = k == parts ? step.X_WT : path_.pose_at(segment, s);
@@ -142,7 +149,19 @@ class Compensator {
     return good;
   }
 
+  Vec3 way(std::size_t to) const {
+    return samples_[to].command.X_WT.translation() - samples_[to - 1].command.X_WT.translation();
+  }
+
+  /// A planner that rounds no corner brakes before one; and braking pushes plays about.
+  bool bends(std::size_t from, std::size_t to) const {
+    const Vec3 first = way(from + 1), last = way(to);
+    if (first.norm() < kNoWay || last.norm() < kNoWay) return false;
+    return std::atan2(first.cross(last).norm(), first.dot(last)) > bend_max_;
+  }
+
   bool straight(std::size_t from, std::size_t to) const {
+    if (bends(from, to)) return false;
     const Sample &a = samples_[from], &b = samples_[to];
     for (std::size_t k = from + 1; k < to; ++k) {
       const Sample& at = samples_[k];
@@ -172,7 +191,8 @@ class Compensator {
   CommandMap map_;
   Pose X_WT_;  // where the original is
   kinematics::AxisVector axes_{};
-  Sample at_;  // where the compensated program is
+  Sample at_;            // where the compensated program is
+  double bend_max_ = 0;  // [rad], within a piece of this line
   std::vector<Sample> samples_;
   toolpath::MovedLines moved_;
 };

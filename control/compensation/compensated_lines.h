@@ -25,8 +25,9 @@ struct CompensationTask {
 };
 
 /// Pieces of the `lines` of a program that say where the tool goes (toolpath::lines_that_place); other lines
-/// stay. The way is looked at every half millimetre and degree. Throws InputError with the line of a pose
-/// that one of the two machines does not reach.
+/// stay. The way is looked at every 0.2 mm and every degree, and no piece bends by more than what the planner
+/// takes at a corner without braking. Throws InputError with the line of a pose that one of the two machines
+/// does not reach.
 toolpath::MovedLines compensated_lines(const toolpath::Program& program, const std::vector<int>& lines,
                                        const CompensationTask& task);
 

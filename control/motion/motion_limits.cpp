@@ -1,5 +1,8 @@
 #include "control/motion/motion_limits.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace understudy::control {
 
 MotionLimits motion_limits(const machine::MachineDescription& machine) {
@@ -15,6 +18,13 @@ MotionLimits motion_limits(const machine::MachineDescription& machine) {
   limits.cycle_time = machine.cycle_time;
   limits.planner = machine.control.planner;
   return limits;
+}
+
+double corner_velocity_change(const MotionLimits& limits) {
+  // What turns the tip's way at once is the axes: where they may, it may.
+  if (std::ranges::any_of(limits.velocity_jump, [](double v) { return v > 0; }))
+    return std::numeric_limits<double>::infinity();
+  return limits.planner.corner_share * limits.tip_acceleration * limits.cycle_time;
 }
 
 }  // namespace understudy::control

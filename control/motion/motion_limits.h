@@ -18,6 +18,13 @@ struct MotionLimits {
 };
 MotionLimits motion_limits(const machine::MachineDescription& machine);
 
+/// [m/s], by which the tip's velocity may change at a corner; infinite where drives may jump. A corner that
+/// takes more is passed at less speed (MotionPlanner).
+double corner_velocity_change(const MotionLimits& limits);
+/// Of chords that stand for a curve: half of it, so that axes, and what is added to the curve, have their
+/// part.
+constexpr double kChordShare = 0.5;
+
 /// What a pose must satisfy to be planned through.
 enum class PoseCheck {
   limits,    ///< every limit of the mechanism

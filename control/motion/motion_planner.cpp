@@ -30,9 +30,7 @@ ChannelLimits channel_limits(const MotionLimits& limits, int axis_count) {
   std::copy_n(limits.velocity_jump.begin(), axis_count, channels.velocity_jump.begin());
   const int tip = axis_count;
   channels.acceleration[tip] = limits.tip_acceleration;
-  // What turns the tip's way at once is the axes: where they may, it may.
-  if (std::any_of(channels.velocity_jump.begin(), channels.velocity_jump.end(),
-                  [](double v) { return v > 0; }))
+  if (std::isinf(corner_velocity_change(limits)))
     channels.velocity_jump[tip] = std::numeric_limits<double>::infinity();
   channels.cycle_time = limits.cycle_time;
   channels.corner_share = limits.planner.corner_share;

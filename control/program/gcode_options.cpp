@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "control/motion/motion_limits.h"
 #include "control/program/rotary_words.h"
 #include "core/error.h"
 #include "core/units.h"
@@ -14,6 +15,7 @@ toolpath::GcodeOptions gcode_options(const DialectRequest& dialect,
   toolpath::GcodeOptions gcode;
   gcode.X_WT_home = machine.X_WB * machine.X_BT_home;
   gcode.rotary = rotary_words(machine);
+  gcode.corner_velocity_change = kChordShare * corner_velocity_change(motion_limits(machine));
   const std::string& extruder = dialect.extruder_letter;
   if (extruder.size() > 1) throw InputError("extruder letter '" + extruder + "': one letter, such as E");
   gcode.extruder_letter = extruder.empty() ? machine.dialect.extruder_letter : extruder[0];

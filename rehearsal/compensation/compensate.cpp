@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,8 +28,28 @@ namespace {
 // [m] of path before and behind a place over which a correction is averaged. A step of it is a corner, before
 // which the planner brakes; and braking pushes plays about.
 constexpr double kSmoothing[] = {4e-3, 2e-3};
-constexpr double kNoGain = 0.02;  // of the error; less is not worth another path
-constexpr int kRounds = 3;        // for each; more of them move the error by its own scatter only
+constexpr double kNoGain = 0.02;       // of the error; less is not worth another path
+constexpr double kLeastGain = 0.2e-6;  // [m], nor is this
+constexpr std::size_t kRounds = 3;     // for each; more of them move the error by its own scatter only
+constexpr std::size_t kAllRounds = kRounds * std::size(kSmoothing) + 1;
+
+/// The correction of one run of the path: a reach, and how many of its predictions; none: no correction.
+struct RunChoice {
+  std::size_t reach = 0, predictions = 0;
+  double square = std::numeric_limits<double>::infinity();  // [m^2], predicted
+};
+
+/// Takes it for each run in which it is predicted to be better than what is chosen so far.
+void choose(const SmoothedPlay& correction, const PlayPrediction& prediction, RunChoice choice,
+            std::vector<RunChoice>& choices) {
+  std::vector<double> squares(choices.size());
+  for (std::size_t step = 0; step < prediction.squares.size(); ++step)
+    squares[correction.run(step)] += prediction.squares[step];
+  for (std::size_t run = 0; run < squares.size(); ++run) {
+    choice.square = squares[run];
+    if (choice.square < choices[run].square) choices[run] = choice;
+  }
+}
 
 class Compensator {
  public:
@@ -57,27 +78,38 @@ class Compensator {
   }
 
  private:
-  /// The best of some rounds: correcting a play moves the drives otherwise, which may push it elsewhere.
+  /// The best of some rounds, and of a last one with each run's own best. Correcting a play moves the drives
+  /// otherwise, which may push it elsewhere.
   void correct_play(const sim::AsBuilt& built, Compensation& best) const {
+    std::vector<SmoothedPlay> corrections;
+    for (const double reach : kSmoothing) corrections.emplace_back(original_, home_, reach);
+    const PlayPrediction without = predicted(best.program, best.text, built);
+    std::vector<RunChoice> choices(corrections[0].runs());
+    choose(corrections[0], without, {}, choices);
     int round = 0;
-    const Compensation without_play = best;
-    for (const double reach : kSmoothing) {
-      const Compensation* from = &without_play;
-      Compensation now;
-      SmoothedPlay correction(original_, home_, reach);
-      for (int k = 0; k < kRounds; ++k) {
-        if (progress_)
-          progress_(0.1 + 0.9 * round / (static_cast<double>(kRounds * std::size(kSmoothing))),
-                    "predicting play");
-        correction.add(predicted(from->program, from->text, built).play);
-        now =
-            written([&](std::size_t step, double fraction) { return Twist(-correction.at(step, fraction)); });
-        now.predicted = predicted(now.program, now.text, built).tip_rms;
-        now.rounds = ++round;
-        if (now.predicted < (1 - kNoGain) * best.predicted) best = now;
-        from = &now;
+    const auto try_round = [&](const control::Correction& correction) {
+      if (progress_) progress_(0.1 + 0.9 * round / static_cast<double>(kAllRounds), "predicting play");
+      Compensation now = written(correction);
+      PlayPrediction prediction = predicted(now.program, now.text, built);
+      now.predicted = prediction.tip_rms;
+      now.rounds = ++round;
+      if (now.predicted < (1 - kNoGain) * best.predicted - kLeastGain) best = std::move(now);
+      return prediction;
+    };
+    for (std::size_t reach = 0; reach < corrections.size(); ++reach) {
+      corrections[reach].add(without.play);
+      for (std::size_t k = 1; k <= kRounds; ++k) {
+        PlayPrediction prediction = try_round([&](std::size_t step, double fraction) {
+          return Twist(-corrections[reach].at(step, fraction, k));
+        });
+        choose(corrections[reach], prediction, {reach, k}, choices);
+        corrections[reach].add(std::move(prediction.play));
       }
     }
+    try_round([&](std::size_t step, double fraction) {
+      const RunChoice& choice = choices[corrections[0].run(step)];
+      return Twist(-corrections[choice.reach].at(step, fraction, choice.predictions));
+    });
   }
 
   PlayPrediction predicted(const toolpath::Program& program, const std::string& text,

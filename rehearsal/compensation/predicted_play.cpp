@@ -89,8 +89,11 @@ class Prediction {
         log_rotation(X_WT.linear() * X_WT_without.linear().transpose());
     result_.play.add(place, shift);
     if (program_.steps[step].kind != StepKind::print) return;
-    squares_ += (X_WT.translation() - path_.asked(place).translation()).squaredNorm();
+    const double square = (X_WT.translation() - path_.asked(place).translation()).squaredNorm();
+    squares_ += square;
     ++count_;
+    if (place.step >= result_.squares.size()) result_.squares.resize(place.step + 1);
+    result_.squares[place.step] += square;
   }
 
   const toolpath::Program& program_;

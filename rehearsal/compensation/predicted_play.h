@@ -43,7 +43,8 @@ class PlayAlongPath {
 
 struct PlayPrediction {
   PlayAlongPath play;
-  double tip_rms = 0;  ///< [m], of the predicted tip from what was asked for, while filament is fed
+  double tip_rms = 0;           ///< [m], of the predicted tip from what was asked for, while filament is fed
+  std::vector<double> squares;  ///< [m^2], summed over the cycles of each step of the original
 };
 
 /// Drives `program` by the nominal description, and the known machine by what its drives are told. Throws

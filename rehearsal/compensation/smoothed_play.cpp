@@ -23,7 +23,7 @@ SmoothedPlay::SmoothedPlay(const toolpath::Program& original, const Pose& X_WT_h
     const Vec3 way = toolpath::moves(step) ? Vec3(step.X_WT.translation() - at) : Vec3::Zero();
     const double length = way.norm();
     const bool goes_on = length < kNoWay || (step.kind == kind && way.dot(direction) > kSmooth * length);
-    if (runs_.empty() || !goes_on) runs_.push_back({path, path});
+    if (runs_.empty() || !goes_on) runs_.push_back({path, path, step.kind == toolpath::StepKind::print});
     begins_.push_back(path);
     lengths_.push_back(length);
     run_.push_back(runs_.size() - 1);
@@ -33,14 +33,17 @@ SmoothedPlay::SmoothedPlay(const toolpath::Program& original, const Pose& X_WT_h
     kind = step.kind;
     at = step.X_WT.translation();
   }
+  leads_to_.resize(runs_.size());
+  for (std::size_t k = runs_.size(); k-- > 0;)
+    leads_to_[k] = runs_[k].prints || k + 1 == runs_.size() ? k : leads_to_[k + 1];
 }
 
 void SmoothedPlay::add(PlayAlongPath play) { plays_.push_back(std::move(play)); }
 
-Twist SmoothedPlay::at(std::size_t step, double fraction) const {
+Twist SmoothedPlay::at(std::size_t step, double fraction, std::size_t predictions) const {
   Twist sum = Twist::Zero();
   double weight = 1;
-  for (std::size_t k = plays_.size(); k-- > 0;) {
+  for (std::size_t k = predictions; k-- > 0;) {
     sum += (k == 0 ? weight : weight * kGain) * averaged(plays_[k], step, fraction);
     weight *= 1 - kGain;
   }
@@ -48,9 +51,9 @@ Twist SmoothedPlay::at(std::size_t step, double fraction) const {
 }
 
 Twist SmoothedPlay::averaged(const PlayAlongPath& play, std::size_t step, double fraction) const {
-  if (lengths_[step] < kNoWay) return play.at(step, fraction);
-  const Run& run = runs_[run_[step]];
-  const double path = begins_[step] + fraction * lengths_[step];
+  const Run& run = runs_[this->run(step)];
+  if (lengths_[step] < kNoWay && run_[step] == this->run(step)) return play.at(step, fraction);
+  const double path = std::max(run.begin, begins_[step] + fraction * lengths_[step]);
   Twist sum = Twist::Zero();
   double weights = 0;
   for (int i = -kTaps; i <= kTaps; ++i) {

@@ -20,12 +20,19 @@ class SmoothedPlay {
   /// first.
   void add(PlayAlongPath play);
   /// The shift to be taken off, at a share of a step's way.
-  Twist at(std::size_t step, double fraction) const;
+  Twist at(std::size_t step, double fraction) const { return at(step, fraction, plays_.size()); }
+  /// The same as it was after the first `predictions`; 0 after none.
+  Twist at(std::size_t step, double fraction, std::size_t predictions) const;
+  /// Steps that go on smoothly are one run, counted from 0. A travel belongs to the print that it leads to,
+  /// and its correction is the one with which that print begins.
+  std::size_t run(std::size_t step) const { return leads_to_[run_[step]]; }
+  std::size_t runs() const { return runs_.size(); }
 
  private:
   /// Steps that go on smoothly. [m], along the program's path
   struct Run {
     double begin = 0, end = 0;
+    bool prints = false;
   };
   Twist averaged(const PlayAlongPath& play, std::size_t step, double fraction) const;
   Twist at_path(const PlayAlongPath& play, double path) const;
@@ -34,6 +41,7 @@ class SmoothedPlay {
   std::vector<double> begins_, lengths_;  // [m], of the steps
   std::vector<std::size_t> run_;          // of each step
   std::vector<Run> runs_;
+  std::vector<std::size_t> leads_to_;  // of each run: the next that prints, else itself
   std::vector<PlayAlongPath> plays_;
 };
 

@@ -53,6 +53,8 @@ std::string compensation_json(const studies::CompensationStudy& study) {
   Json json{{"schema", "understudy.compensation/1"},
             {"machine", study.machine},
             {"driven", study.request.driven},
+            {"estimator", study.request.estimator},
+            {"poses", study.request.poses},
             {"first_seed", study.request.first_seed},
             {"ratio", stable_number(study.ratio(), "compensation")},
             {"worst_ratio", stable_number(study.worst_ratio(), "compensation")},

@@ -23,8 +23,10 @@ constexpr double kBeyond = 1e-3;         // [m]: ten times the play of a strut
 constexpr double kTurnBeyond = from_deg(0.5);
 constexpr double kPeriod = 10e-3;                   // [s], between setpoints
 constexpr double kRestCheck = 0.1, kRestLimit = 4;  // [s]
-// A strut whose load is 0 within its play swings there without end; nothing on a machine is that free.
-constexpr double kSwing = 20e-6;                      // [m]
+// A strut whose load is 0 within its play swings there without end; nothing on a machine is that free. Then
+// the middle of its swing is measured.
+constexpr double kSwing = 100e-6;                     // [m], of the tool; the play of a strut
+constexpr std::size_t kSwingChecks = 20;              // its last 2 s
 constexpr double kTargetsLever = 30e-3;               // [m]
 constexpr double kStill = 100e-9, kTurnStill = 2e-6;  // [m], [rad], within kRestCheck: what engines shake by
 constexpr int kWarmingSteps = 60;                     // of the exponential, straight in between
@@ -117,6 +119,18 @@ double planned_time(const machine::MachineDescription& machine,
   return time;
 }
 
+/// Poses that lie close together.
+Pose middle(const std::vector<Pose>& poses) {
+  Vec3 p = Vec3::Zero(), turn = Vec3::Zero();
+  const Mat3 reference = poses.front().linear();
+  for (const Pose& pose : poses) {
+    p += pose.translation();
+    turn += log_rotation(pose.linear() * reference.transpose());
+  }
+  const auto count = static_cast<double>(poses.size());
+  return make_pose(Mat3(exp_rotation(turn / count) * reference), p / count);
+}
+
 }  // namespace
 
 const std::vector<std::string>& session_engines() {
@@ -168,6 +182,7 @@ Pose PlantSession::rest() {
   const double limit = port_->now() + kRestLimit;
   Pose before = plant_->tool_pose();
   double moved = 0;
+  std::vector<Pose> last;
   while (port_->now() < limit) {
     if (port_->wait_until(port_->now() + kRestCheck) != machine::Status::ok)
       throw MachineError(fmt::format("{}: {}", plant_->engine(), port_->engine_failure()));
@@ -180,8 +195,9 @@ Pose PlantSession::rest() {
     if (moved < still && angle_between(now.linear(), before.linear()) < kTurnStill + still / kTargetsLever)
       return now;
     before = now;
+    if (port_->now() > limit - kSwingChecks * kRestCheck) last.push_back(now);
   }
-  if (moved < kSwing) return before;
+  if (moved < kSwing) return middle(last);
   throw MachineError(
       fmt::format("{}: the tool does not come to rest within {} s: it moves by {:.1f} um in {} s",
                   plant_->engine(), kRestLimit, to_um(moved), kRestCheck));

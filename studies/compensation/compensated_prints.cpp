@@ -34,18 +34,19 @@ constexpr double kLean = 10;        // [deg], at the raster's ends
 constexpr double kFeed = 1200;      // [mm/min]
 constexpr double kFilament = 0.04;  // [mm] for a millimetre of path
 constexpr const char* kFile = "study.gcode";
+constexpr const char* kFindsPlay = "with_play";
 
 /// Where the built machine, without play, has its tip when it is told what the calibration says.
 class WithoutPlay {
  public:
-  WithoutPlay(const MachineDescription& known, const sim::AsBuilt& built, bool driven)
+  WithoutPlay(const MachineDescription& known, const sim::AsBuilt& built, rehearsal::PlayReference reference)
       : known_(known),
         built_(built),
         mechanism_(known.make_mechanism()),
         X_BW_(known.X_WB.inverse()),
         zero_(known.drive_zero()),
         sampler_(known, built, still()) {
-    if (driven) rest_ = sim::QuasistaticSampler(known, built).gap();
+    if (reference == rehearsal::PlayReference::rest) rest_ = sim::QuasistaticSampler(known, built).gap();
     static_cast<void>(mechanism_->inverse(known.X_BT_home, {}, axes_));
   }
 
@@ -120,12 +121,14 @@ void print_on(const MachineDescription& controller, const MachineDescription& tr
 
 CompensatedPrint one_machine(const CompensationStudyRequest& request, const MachineDescription& drawn,
                              std::uint64_t seed) {
-  const CalibratedGeometry lab = calibrate_lab_geometry(drawn, seed, request.driven ? "quasistatic" : "");
+  const CalibratedGeometry lab = calibrate_lab_geometry(
+      drawn, seed, {request.driven ? "quasistatic" : "", request.estimator, request.poses});
   const sim::AsBuilt built = sim::make_as_built(drawn, "manufactured", seed);
   const std::string text = study_program(drawn);
   rehearsal::CompensationRequest asked;
   asked.dialect.temperature_c.reset();
-  asked.reference = request.driven ? rehearsal::PlayReference::rest : rehearsal::PlayReference::middle;
+  const bool rests = request.driven && !lab.calibrated.play;
+  asked.reference = rests ? rehearsal::PlayReference::rest : rehearsal::PlayReference::middle;
   const rehearsal::Compensation done =
       rehearsal::compensate({drawn, lab.machine, lab.calibrated, text, kFile}, asked);
   const auto options = control::gcode_options({}, drawn);
@@ -133,7 +136,7 @@ CompensatedPrint one_machine(const CompensationStudyRequest& request, const Mach
   const Pose home = drawn.X_WB * drawn.X_BT_home;
   const toolpath::RewrittenPath itself(original, original, text, home);
   const toolpath::RewrittenPath rewritten(original, done.program, done.text, home);
-  WithoutPlay without(lab.machine, built, request.driven);
+  WithoutPlay without(lab.machine, built, asked.reference);
   TipErrors of_drawn(itself, nullptr), of_calibrated(itself, &without), of_compensated(rewritten, &without);
   print_on(drawn, drawn, built, original, of_drawn);
   print_on(lab.machine, drawn, built, original, of_calibrated);
@@ -198,6 +201,9 @@ CompensationStudy run_compensation_study(const CompensationStudyRequest& request
   if (drawn.calibration)
     throw InputError(fmt::format("{}: is calibrated; the study builds and calibrates machines of a drawing",
                                  request.machine));
+  if (request.estimator == kFindsPlay && !request.driven)
+    throw InputError(
+        fmt::format("{} finds plays in poses that a machine was driven to: add --driven", kFindsPlay));
   CompensationStudy study;
   study.request = request;
   study.machine = drawn.name;

@@ -19,6 +19,10 @@ struct CompensationStudyRequest {
   /// Poses are measured on the machine with its play (sample-poses --engine quasistatic), and plays count
   /// from where they rest; else as if there were no play, and from their middle.
   bool driven = false;
+  /// Of the geometry. One that finds the plays (with_play) needs driven poses; plays then count from their
+  /// middle.
+  std::string estimator = "maximum_likelihood";
+  int poses = 24;       ///< measured of each machine
   int threads = 1;      ///< the result does not depend on it
   std::string command;  ///< for the record
 };
@@ -54,7 +58,8 @@ struct CompensationStudy {
 /// work space. 20 mm/s.
 std::string study_program(const machine::MachineDescription& machine);
 
-/// Throws InputError for a machine that is calibrated, has no tolerances, or cannot run the program.
+/// Throws InputError for a machine that is calibrated, has no tolerances, or cannot run the program, for an
+/// estimator that does not calibrate it, and for one that finds plays where the machine is not driven.
 CompensationStudy run_compensation_study(const CompensationStudyRequest& request,
                                          const Progress& progress = {});
 

@@ -21,15 +21,16 @@ constexpr double kHeights[] = {0.1e-3, 0.3e-3, 0.5e-3, 0.7e-3, 0.9e-3,
                                1.1e-3, 1.3e-3, 1.5e-3, 1.7e-3, 1.9e-3};  // [m]
 
 calibration::MachineCalibration calibrate_geometry(const MachineDescription& drawn, std::uint64_t seed,
-                                                   const std::string& engine) {
+                                                   const LabCalibration& how) {
   SamplePosesRequest request;
   request.machine = drawn.file.string();
   request.as_built = kBuilt;
   request.seed = seed;
-  request.engine = engine;
+  request.engine = how.engine;
+  request.count = how.poses;
   const calibration::Measurements measured = sample_poses(request, drawn);
   calibration::MachineCalibration result;
-  result.estimator = "maximum_likelihood";
+  result.estimator = how.estimator;
   result.noise_given = measured.noise_given;
   result.noise = request.noise;
   result.machine = drawn;
@@ -72,8 +73,8 @@ void calibrate_gap_sensor(std::uint64_t seed, MachineDescription& machine) {
 }  // namespace
 
 CalibratedGeometry calibrate_lab_geometry(const MachineDescription& drawn, std::uint64_t seed,
-                                          const std::string& engine) {
-  calibration::MachineCalibration geometry = calibrate_geometry(drawn, seed, engine);
+                                          const LabCalibration& how) {
+  calibration::MachineCalibration geometry = calibrate_geometry(drawn, seed, how);
   return {std::move(geometry.machine), std::move(geometry.stored)};
 }
 

@@ -24,10 +24,16 @@ struct CalibratedGeometry {
   machine::CalibratedParameters calibrated;
 };
 
-/// The drawn machine built with this seed, and calibrated with the defaults of `sample-poses` and
-/// `calibrate`. `engine`: the plant that it is driven on to be measured; empty: it is measured without play.
+/// How a lab calibrates the geometry; the defaults are those of `sample-poses` and `calibrate`.
+struct LabCalibration {
+  std::string engine;  ///< plant that the machine is driven on to be measured; empty: it has no play there
+  std::string estimator = "maximum_likelihood";
+  int poses = 24;
+};
+
+/// The drawn machine built with this seed, and calibrated.
 CalibratedGeometry calibrate_lab_geometry(const machine::MachineDescription& drawn, std::uint64_t seed,
-                                          const std::string& engine = "");
+                                          const LabCalibration& how = {});
 
 /// The drawn machine built with this seed and calibrated with the defaults of `sample-poses`, `calibrate`,
 /// `sample-gaps` and `calibrate gap-sensor` (bench/print/built_machines.py), with no file between them.

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -73,6 +74,9 @@ struct GcodeOptions {
   Pose X_WT_home = Pose::Identity();  ///< where the tool starts and where G28 takes it
   double unit_tolerance = 1e-4;       ///< a quaternion or axis farther than this from length 1 is an error
   std::optional<RotaryWords> rotary = std::nullopt;  ///< without it A, B and C are errors
+  /// [m/s], by which the tip's velocity may change between two chords of an arc before the controller brakes
+  /// there: its chords are short enough for that, but for a floor of 0.05 mm.
+  double corner_velocity_change = std::numeric_limits<double>::infinity();
   // Of the dialect.
   char extruder_letter = 'E';       ///< of filament: E, or a rotary letter that turns nothing
   bool relative_extrusion = false;  ///< E counts on from the start, as after M83

@@ -12,13 +12,14 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr double kArcTolerance = 2e-6;  // [m], a fiftieth of what a printer places
+constexpr double kArcTolerance = 2e-6;    // [m], a fiftieth of what a printer places
+constexpr double kShortestChord = 50e-6;  // [m]; an eighth of a bead's width
 constexpr int kMostArcTurns = 100;
 
 }  // namespace
 
 std::vector<Vec3> GcodePosition::move_along_arc(Block& block, double unit, bool relative, int normal,
-                                                bool clockwise) {
+                                                bool clockwise, double turn_max) {
   refuse_turns_on_curve(block);
   spline_end_.reset();
   Arc arc;
@@ -35,7 +36,7 @@ std::vector<Vec3> GcodePosition::move_along_arc(Block& block, double unit, bool 
   }
   read_centre(block, unit, arc);
   X_WT_ = make_pose(Mat3(X_WT_.linear()), programmed_);
-  return arc_points(arc, kArcTolerance);
+  return arc_points(arc, {kArcTolerance, turn_max, kShortestChord});
 }
 
 void GcodePosition::refuse_turns_on_curve(const Block& block) const {
@@ -135,8 +136,10 @@ void GcodeState::move_along_spline(Block& block, std::vector<Step>& steps) {
 
 /// Equal chords: of filament and time each takes its share.
 void GcodeState::move_along_arc(Block& block, std::vector<Step>& steps) {
-  const std::vector<Vec3> ends =
-      position_.move_along_arc(block, unit_, relative_, plane_normal_, motion_ == Motion::clockwise_arc);
+  const double turn_max =
+      feed_ && !inverse_time_ ? corner_velocity_change_ / (speed_ * *feed_) : corner_velocity_change_;
+  const std::vector<Vec3> ends = position_.move_along_arc(block, unit_, relative_, plane_normal_,
+                                                          motion_ == Motion::clockwise_arc, turn_max);
   Step chord = this->chord(block);
   const auto count = static_cast<double>(ends.size());
   chord.filament /= count;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <set>
@@ -14,7 +13,9 @@
 #include "core/error.h"
 #include "core/text/trimmed.h"
 #include "core/units.h"
+#include "toolpath/gcode/gcode_command.h"
 #include "toolpath/gcode/gcode_passed_over.h"
+#include "toolpath/gcode/gcode_saved_state.h"
 #include "toolpath/gcode/gcode_unknown_words.h"
 #include "toolpath/gcode/words/gcode_block.h"
 #include "toolpath/gcode/words/gcode_lexer.h"
@@ -25,48 +26,12 @@ namespace {
 constexpr std::size_t kLineMax = 65'536;  // [bytes]; docs/limits.md
 constexpr std::size_t kDeepestCall = 20;
 constexpr std::size_t kMostSaved = 20;        // names of SAVE_GCODE_STATE
-constexpr double kFastest = 1e5;              // [mm/s]
 constexpr int kMostMacroLines = 100'000;      // docs/limits.md
 constexpr double kCold = 100 + kCelsiusZero;  // [K], of a nozzle that does not print
-
-int column_of(std::string_view line) { return static_cast<int>(line.find_first_not_of(" \t")) + 1; }
-
-/// The command that a line begins with: "G1", "START_PRINT".
-std::string first_command(std::string_view line) {
-  if (const std::string word = command_in_words(line); !word.empty()) return word;
-  const std::size_t start = std::min(line.find_first_not_of(" \t"), line.size());
-  const std::size_t end = std::min(line.find_first_not_of("0123456789.", start + 1), line.size());
-  std::string word(line.substr(start, end - start));
-  if (!word.empty()) word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
-  return word;
-}
 
 bool is_passed_over(std::string_view line, const GcodeOptions& options) {
   if (is_line_without_effect(line)) return true;
   return !options.ignored.empty() && std::ranges::count(options.ignored, first_command(line)) > 0;
-}
-
-/// Throws InputError for a switching command that means something else.
-Letters letters_of(const GcodeOptions& options) {
-  Letters letters;
-  letters.extruder = options.extruder_letter;
-  if (!options.rotary) return letters;
-  letters.rotary = options.rotary->letters;
-  letters.tip_commands = options.rotary->tip_commands;
-  letters.machine_commands = options.rotary->machine_commands;
-  for (const auto* commands : {&letters.tip_commands, &letters.machine_commands})
-    for (const std::string& command : *commands) {
-      double number = 0;
-      const char* end = command.data() + command.size();
-      const bool coded = (command[0] == 'G' || command[0] == 'M') &&
-                         std::from_chars(command.data() + 1, end, number).ptr == end;
-      const Meaning* meaning = coded ? meaning_of(command[0], number) : nullptr;
-      if ((meaning != nullptr && meaning->group != Group::coordinates) ||
-          (coded && without_effect(command[0], number) != nullptr) || is_line_without_effect(command))
-        throw InputError(
-            fmt::format("'{}' cannot switch tool-centre-point control: it has another meaning", command));
-    }
-  return letters;
 }
 
 /// The line of a firmware's command in words: it switches coordinates, or is not known.
@@ -75,13 +40,6 @@ Block block_of(const std::string& command, std::string_view text, const Place& p
   const auto switching = letters.switching(command);
   if (!switching) throw UnknownWord(place, command);
   return {*switching, Word{command[0], 0, text, place.column}, file, place.line, letters};
-}
-
-/// A command of this reader's keeps its meaning, whatever a macro makes of it.
-bool has_meaning(const std::string& command) {
-  if (command.size() < 2 || std::isdigit(static_cast<unsigned char>(command[1])) == 0) return false;
-  const double number = std::strtod(command.c_str() + 1, nullptr);
-  return meaning_of(command[0], number) != nullptr || without_effect(command[0], number) != nullptr;
 }
 
 /// Whether the line moves the tool to a place that its own words say.
@@ -140,7 +98,7 @@ class GcodeLineReader::Lines {
   const Letters& letters() const { return letters_; }
 
   void finish() {
-    if (options_.extrusion != nullptr) *options_.extrusion = state_.extrusion();
+    if (options_.extrusion != nullptr) *options_.extrusion = state_.extruder().tally();
     if (options_.refused != nullptr)
       *options_.refused = refused_;
     else
@@ -247,34 +205,18 @@ class GcodeLineReader::Lines {
     }
   }
 
-  /// SAVE_GCODE_STATE [NAME=a], RESTORE_GCODE_STATE [NAME=a] [MOVE=1 [MOVE_SPEED=mm/s]].
   bool keeps_state(std::string_view words, int line) {
-    const std::string command = command_in_words(words);
-    const bool save = command == "SAVE_GCODE_STATE";
-    if (!save && command != "RESTORE_GCODE_STATE") return false;
     const Place place{file_, line};
-    auto parameters = call_parameters(command, words, place);
-    const std::string name = parameters.contains("NAME") ? parameters["NAME"] : "default";
+    const auto call = saved_state_call(words, place);
+    if (!call) return false;
     if (over_) over_->require_place(place);
-    if (save) {
-      if (saved_names_.insert(name).second && saved_names_.size() > kMostSaved)
-        throw InputError(place, fmt::format("more than {} names of SAVE_GCODE_STATE", kMostSaved));
-      state_.save(name);
+    if (!call->save) {
+      state_.restore(call->name, call->back, call->speed, place, steps_);
       return true;
     }
-    const auto number = [&](const char* key) -> std::optional<double> {
-      if (!parameters.contains(key)) return std::nullopt;
-      const std::string& text = parameters[key];
-      double value = 0;
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= kFastest))
-        throw InputError(place, fmt::format("{}: a number from 0 to {:g} is needed", key, kFastest));
-      return value;
-    };
-    const std::optional<double> speed = number("MOVE_SPEED");
-    if (speed && *speed <= 0) throw InputError(place, "MOVE_SPEED must be above 0 mm/s");
-    state_.restore(name, number("MOVE").value_or(0) != 0,
-                   speed ? std::optional(from_mm(*speed)) : std::nullopt, place, steps_);
+    if (saved_names_.insert(call->name).second && saved_names_.size() > kMostSaved)
+      throw InputError(place, fmt::format("more than {} names of SAVE_GCODE_STATE", kMostSaved));
+    state_.save(call->name);
     return true;
   }
 

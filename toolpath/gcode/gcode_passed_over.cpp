@@ -124,14 +124,14 @@ void LinesPassedOver::drop_moves(int line, std::vector<Step>& steps) {
 
 void LinesPassedOver::end(int line, const GcodeState& state, std::vector<Step>& steps) {
   finish(state);
-  state.rejoin(begin_->X_WT(), begin_->drawn_back() - state.drawn_back(), line, steps);
+  state.rejoin(begin_->X_WT(), begin_->extruder().drawn_back() - state.extruder().drawn_back(), line, steps);
   begin_.reset();
 }
 
 void LinesPassedOver::finish(const GcodeState& state) {
   if (!begin_) return;
   PassedOver& first = found_[first_];
-  const auto laid = [](const GcodeState& s) { return s.fed() + s.drawn_back(); };
+  const auto laid = [](const GcodeState& s) { return s.extruder().most_fed(); };
   constexpr double kRounding = 1e-9;  // [m]
   const double filament = laid(state) - laid(*begin_);
   first.filament = filament > kRounding ? filament : 0;

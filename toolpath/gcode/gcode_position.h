@@ -57,7 +57,8 @@ class GcodePosition {
   void move(Block& block, double unit, bool relative);
   /// Position of a G2 or G3 in the plane across axis `normal`: where its chords end, in W; the orientation
   /// stays.
-  std::vector<Vec3> move_along_arc(Block& block, double unit, bool relative, int normal, bool clockwise);
+  std::vector<Vec3> move_along_arc(Block& block, double unit, bool relative, int normal, bool clockwise,
+                                   double turn_max);
   /// Position of a G5, likewise, in the plane XY.
   std::vector<Vec3> move_along_spline(Block& block, double unit, bool relative);
 

@@ -6,15 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "toolpath/gcode/words/gcode_limits.h"
-
 namespace understudy::toolpath {
 namespace {
 
 constexpr const char* kMotionWords = "XYZBCEWIJKR";
 constexpr double kLongestDwell = 86400;                   // [s]
-constexpr double kLongestRetraction = 1;                  // [m]
-constexpr double kNoTool = 255;                           // and above: Bambu's words for none
 constexpr int kLeastPercent = 1, kLargestPercent = 1000;  // of M220 and M221
 
 /// Of F, in units of `unit` [m] a minute, or one over minutes: what takes for ever is none.
@@ -28,7 +24,9 @@ bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != 
 }  // namespace
 
 GcodeState::GcodeState(const GcodeOptions& options)
-    : position_(options), relative_extrusion_(options.relative_extrusion) {}
+    : position_(options),
+      extruder_(options.relative_extrusion),
+      corner_velocity_change_(options.corner_velocity_change) {}
 
 void GcodeState::run(Block& block, std::vector<Step>& steps) {
   if (block.empty()) return;
@@ -57,8 +55,8 @@ void GcodeState::set_modes(const Block& block) {
   if (block.find(Command::millimetres) != nullptr) unit_ = kMillimetre;
   if (block.find(Command::absolute) != nullptr) relative_ = false;
   if (block.find(Command::relative) != nullptr) relative_ = true;
-  if (block.find(Command::absolute_extrusion) != nullptr) relative_extrusion_ = false;
-  if (block.find(Command::relative_extrusion) != nullptr) relative_extrusion_ = true;
+  if (block.find(Command::absolute_extrusion) != nullptr) extruder_.set_relative(false);
+  if (block.find(Command::relative_extrusion) != nullptr) extruder_.set_relative(true);
   if (block.find(Command::rapid) != nullptr) motion_ = Motion::rapid;
   if (block.find(Command::linear) != nullptr) motion_ = Motion::linear;
   if (block.find(Command::clockwise_arc) != nullptr) motion_ = Motion::clockwise_arc;
@@ -120,12 +118,12 @@ void GcodeState::set_feed(Block& block) {
 
 void GcodeState::set_process(Block& block, std::vector<Step>& steps) {
   set_acceleration(block);  // its T is no tool, its R no arc's
-  select_tool(block);
+  extruder_.select(block);
   set_nozzle(block, steps);
   set_fan(block, steps);
-  set_retraction(block);
+  extruder_.set_retraction(block, unit_);
   if (block.find(Command::flow) != nullptr)
-    if (const auto flow = percent(block, "flow")) flow_ = *flow / 100;
+    if (const auto flow = percent(block, "flow")) extruder_.set_flow(*flow / 100);
   if (block.find(Command::speed) != nullptr)
     if (const auto speed = percent(block, "speed")) speed_ = *speed / 100;
 }
@@ -206,42 +204,6 @@ void GcodeState::set_acceleration(Block& block) {
   set('T', {&travel_acceleration_});
 }
 
-/// M207: what the firmware does at G10.
-void GcodeState::set_retraction(Block& block) {
-  const Word* command = block.find(Command::retraction);
-  if (command == nullptr) return;
-  const Word *s = block.take('S'), *f = block.take('F');
-  block.extract('Z');  // a hop that the slicer adds to its own moves
-  if (s == nullptr || f == nullptr)
-    block.fail(*command,
-               fmt::format("'{}' needs S, the length in mm, and F, the feed in mm/min", command->text));
-  const double length = length_of(block, *s, unit_), feed = f->value * unit_ / 60;
-  if (length < 0 || length > kLongestRetraction)
-    block.fail(*s,
-               fmt::format("'{}': the length is outside 0 to {:g} mm", s->text, to_mm(kLongestRetraction)));
-  if (!(feed > 0)) block.fail(*f, fmt::format("'{}': the feed must be above 0", f->text));
-  retraction_ = length;
-  retraction_feed_ = feed;
-}
-
-/// T alone, or with what concerns one tool. Machines here have one extruder; whether a program calls it T0 or
-/// T1 is its own affair, as long as it keeps to one.
-void GcodeState::select_tool(Block& block) {
-  const Word* tool = block.find('T');
-  if (tool == nullptr) return;
-  const bool of_command = block.find(Command::heat) != nullptr ||
-                          block.find(Command::heat_and_wait) != nullptr ||
-                          block.find(Command::flow) != nullptr || block.find(Command::tool_change) != nullptr;
-  if (!of_command && !block.alone(*tool)) return;
-  block.take('T');
-  if (tool->value >= kNoTool) return;
-  if (tool->value != 0 && tool->value != 1)
-    block.fail(*tool, fmt::format("'{}': the machine has one extruder, T0 or T1", tool->text));
-  if (tool_ && *tool_ != tool->value)
-    block.fail(*tool, fmt::format("'{}' after T{}: the machine has one extruder", tool->text, *tool_));
-  tool_ = tool->value;
-}
-
 void GcodeState::run_motion(Block& block, std::vector<Step>& steps) {
   if (block.find(Command::dwell) != nullptr) return dwell(block, steps);
   if (block.find(Command::home) != nullptr) return home(block, steps);
@@ -281,23 +243,15 @@ void GcodeState::dwell(Block& block, std::vector<Step>& steps) {
   steps.back().duration = duration;
 }
 
-/// G10 and G11 as firmwares have them, by the length of M207.
+/// G10 and G11 as firmwares have them; G10 L2 is of another kind.
 void GcodeState::retract(Block& block, std::vector<Step>& steps) {
   const bool back = block.find(Command::unretract) != nullptr;
-  const Word& code = *block.find(back ? Command::unretract : Command::retract);
   if (!back && block.find('L') != nullptr) return position_.set_work_offset(block, unit_, relative_);
-  if (!block.alone(code))
-    block.fail(code, fmt::format("'{}' is alone on its line, or G10 L2 sets a work offset", code.text));
-  if (!retraction_)
-    block.fail(code, fmt::format("'{}' retracts by a length that the program does not say: "
-                                 "add M207 with S (mm) and F (mm/min) before it",
-                                 code.text));
-  if (back != retracted_) return;  // a second one does nothing
-  retracted_ = !back;
-  Step next = step(back ? StepKind::print : StepKind::move, block.line());
-  next.filament = count_fed((back ? 1 : -1) * *retraction_);
-  next.duration = *retraction_ / retraction_feed_;
-  if (next.filament != 0) steps.push_back(next);
+  const FedAtRest fed = extruder_.retract(block);
+  if (fed.filament == 0) return;
+  steps.push_back(step(back ? StepKind::print : StepKind::move, block.line()));
+  steps.back().filament = fed.filament;
+  steps.back().duration = fed.duration;
 }
 
 void GcodeState::home(Block& block, std::vector<Step>& steps) {
@@ -310,7 +264,7 @@ void GcodeState::set_position(Block& block) {
   if (block.find_any("XYZBCE") == nullptr)
     block.fail(code, fmt::format("G92 names none of X Y Z {}E", position_.rotary_letters()));
   position_.rename(block, unit_);
-  if (const Word* word = block.take('E')) extruder_ = length_of(block, *word, unit_);
+  extruder_.rename(block, unit_);
 }
 
 void GcodeState::move(Block& block, std::vector<Step>& steps) {
@@ -339,36 +293,6 @@ void GcodeState::set_pace(const Block& block, Step& step) const {
                                                                                              : "G1"));
   step.duration = duration_.value_or(0) / speed_;
   step.feed = inverse_time_ ? 0 : speed_ * *feed_;
-}
-
-double GcodeState::fed_filament(Block& block) {
-  const Word* word = block.take('E');
-  if (word == nullptr) return 0;
-  const double value = length_of(block, *word, unit_);
-  const double before = extruder_;
-  const bool relative = relative_extrusion();
-  extruder_ = relative ? before + value : value;
-  if (std::abs(extruder_) > kLargestExtruder)
-    block.fail(*word, fmt::format("'{}' leads to {:.6g} mm of filament, beyond {:.6g} mm", word->text,
-                                  to_mm(extruder_), to_mm(kLargestExtruder)));
-  const double most_before = most_fed_;
-  const double fed = count_fed(flow_ * (relative ? value : value - before));
-  if (!relative && block.find_any("XY") != nullptr)
-    count_absolute(block.line(), value, before, most_fed_ > most_before);
-  return fed;
-}
-
-void GcodeState::count_absolute(int line, double value, double before, bool fresh) {
-  if (extrusion_.moves++ == 0) extrusion_.first_line = line;
-  if (fresh) ++extrusion_.fresh;
-  if (value <= before) ++extrusion_.not_rising;
-  extrusion_.by_words += std::max(0.0, value);
-}
-
-double GcodeState::count_fed(double filament) {
-  fed_ += filament;
-  most_fed_ = std::max(most_fed_, fed_);
-  return filament;
 }
 
 Step GcodeState::step(StepKind kind, int line) const {

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "toolpath/gcode/gcode.h"
+#include "toolpath/gcode/gcode_extruder.h"
 #include "toolpath/gcode/gcode_position.h"
 #include "toolpath/gcode/words/gcode_block.h"
 
@@ -36,7 +37,7 @@ class GcodeState {
   PlaceReading reading_at(const Pose& X_WT, const std::optional<RotaryTurns>& turns, bool in_machine) const {
     return position_.reading_at(X_WT, turns, unit_, relative_, in_machine);
   }
-  double extruder_reading() const { return extruder_ / unit_; }  ///< of E, in the units in force
+  double extruder_reading() const { return extruder_.reading() / unit_; }  ///< of E, in the units in force
   bool inverse_time() const { return inverse_time_; }
   bool on_curve() const { return is_curve(); }  ///< the motion in force is G2, G3 or G5
 
@@ -45,14 +46,12 @@ class GcodeState {
   const Pose& X_WT() const { return position_.X_WT(); }
   bool relative() const { return relative_; }
   /// E counts on: by M83, and as every axis under G91 (Marlin, Klipper).
-  bool relative_extrusion() const { return relative_extrusion_ || relative_; }
+  bool relative_extrusion() const { return extruder_.relative() || relative_; }
   /// As if M83 had been read.
-  void extrude_relative() { relative_extrusion_ = true; }
+  void extrude_relative() { extruder_.set_relative(true); }
   bool ended() const { return ended_; }
   bool on_arc() const { return is_curve(); }
-  const ExtrusionTally& extrusion() const { return extrusion_; }
-  double fed() const { return fed_; }                     ///< [m] of filament, since the beginning
-  double drawn_back() const { return most_fed_ - fed_; }  ///< [m] of filament
+  const GcodeExtruder& extruder() const { return extruder_; }
   /// What a move that is passed over says of the motion and the feed of later lines.
   void take_modes(Block& block);
   /// And of where they begin and what E reads there. Throws InputError with place.
@@ -75,8 +74,6 @@ class GcodeState {
   bool sets_tool(const Block& block) const;
   void set_fan(Block& block, std::vector<Step>& steps);
   std::optional<double> percent(Block& block, const char* what) const;
-  void select_tool(Block& block);
-  void set_retraction(Block& block);
   void set_acceleration(Block& block);
   void retract(Block& block, std::vector<Step>& steps);
   void set_position(Block& block);
@@ -93,32 +90,24 @@ class GcodeState {
 
   struct Saved {
     GcodePosition position;
-    double extruder, flow, speed;
-    bool relative, relative_extrusion;
+    GcodeExtruder extruder;
+    double speed;
+    bool relative;
     std::optional<double> feed;
   };
 
-  double fed_filament(Block& block);
-  void count_absolute(int line, double value, double before, bool fresh);
-  double count_fed(double filament);
+  double fed_filament(Block& block) { return extruder_.feed(block, unit_, relative_extrusion()); }
   Step step(StepKind kind, int line) const;
 
   GcodePosition position_;
-  double extruder_ = 0;            // [m], reading of E
-  double fed_ = 0, most_fed_ = 0;  // [m]
-  ExtrusionTally extrusion_;
-  double flow_ = 1;                          // filament fed for one that is programmed (M221)
+  GcodeExtruder extruder_;
+  double corner_velocity_change_;            // [m/s]
   double speed_ = 1;                         // of feeds, for what is programmed (M220)
-  std::optional<double> retraction_;         // [m], of G10 (M207)
-  double retraction_feed_ = 0;               // [m/s]
   double acceleration_ = kUnlimited;         // [m/s^2], of moves that feed filament (M204)
   double travel_acceleration_ = kUnlimited;  // of the others
-  bool retracted_ = false;                   // by G10
   int plane_normal_ = 2;                     // of arcs (G17, G18, G19)
-  std::optional<double> tool_;               // number of the only extruder, once a line has said it
   double unit_ = kMillimetre;                // [m]
   bool relative_ = false;
-  bool relative_extrusion_ = false;
   bool inverse_time_ = false;
   Motion motion_ = Motion::none;
   std::optional<double> feed_;      // [m/s] under G94

@@ -61,6 +61,13 @@ void add_benchmark_compensation(CLI::App& benchmark, Action& action) {
       ->capture_default_str();
   command->add_flag("--driven", request.driven,
                     "calibrate from poses that were measured on the machine with its play in place");
+  command
+      ->add_option("--estimator", request.estimator,
+                   "of the geometry, as of `calibrate`; with_play finds a hexapod's plays, with --driven")
+      ->capture_default_str();
+  command->add_option("--poses", request.poses, "measured of each machine")
+      ->check(CLI::Range(3, 10000))
+      ->capture_default_str();
   add_jobs(*command, request.threads);
   add_output_options(*command, call->told, "the name of the file alone", "compensation.json");
   command->add_option("--out", call->folder, "folder of results")->capture_default_str();

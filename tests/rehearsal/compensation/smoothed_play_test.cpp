@@ -73,5 +73,30 @@ TEST(SmoothedPlay, EachFurtherPredictionCountsHalf) {
   EXPECT_NEAR(smooth.at(0, 1)[2], 30e-6, 1e-12);
 }
 
+// So the print begins where the travel ends.
+TEST(SmoothedPlay, ATravelEndsWithTheCorrectionOfThePrintThatItLeadsTo) {
+  toolpath::Program program = one_line(0.1);
+  program.steps[0].kind = toolpath::StepKind::travel;
+  toolpath::Step print;
+  print.kind = toolpath::StepKind::print;
+  print.X_WT = make_pose(Mat3(Mat3::Identity()), Vec3(0.1, 0.05, 0));
+  program.steps.push_back(print);
+  SmoothedPlay smooth(program, Pose::Identity(), 4e-3);
+  PlayAlongPath play;
+  Twist travels = Twist::Zero(), prints = Twist::Zero();
+  travels[2] = -80e-6;
+  prints[2] = 60e-6;
+  for (const double at : {0.001, 1.0}) play.add({0, at}, travels);
+  for (const double at : {0.001, 1.0}) play.add({1, at}, prints);
+  smooth.add(play);
+  EXPECT_EQ(smooth.run(0), smooth.run(1));
+  EXPECT_NEAR(smooth.at(0, 1)[2], smooth.at(1, 0)[2], 1e-12);
+  EXPECT_NEAR(smooth.at(0, 0.2)[2], smooth.at(1, 0)[2], 1e-12) << "all along the travel";
+  EXPECT_NEAR(smooth.at(1, 0.5)[2], 60e-6, 1e-9);
+  smooth.add(play);
+  EXPECT_NEAR(smooth.at(1, 0.5, 1)[2], 60e-6, 1e-9);
+  EXPECT_EQ(smooth.at(1, 0.5, 0)[2], 0) << "no prediction, no correction";
+}
+
 }  // namespace
 }  // namespace understudy::rehearsal

@@ -11,23 +11,23 @@
 namespace understudy::studies {
 namespace {
 
-CompensationStudy study_of(const char* machine, int machines, bool driven = false) {
+CompensationStudyRequest request_of(const char* machine, int machines) {
   CompensationStudyRequest request;
   request.machine = machine;
   request.machines = machines;
-  request.driven = driven;
   request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return run_compensation_study(request);
+  return request;
 }
 
-// The goal is 1.3 times the error of a controller that knows the calibration, which is met, and 70 % of the
-// play's part gone, which is missed on this program (docs/compensation.md): half of it is what the tests
-// hold.
-constexpr double kLargestRatio = 1.3, kPlayGone = 0.5;
+// The goals: 1.3 times the error of a controller that knows the calibration, and 70 % of the play's part
+// gone. Plays that nothing has measured differ from those of the file by 20 %
+// (tolerances.drives.play_permille), which leaves a hexapod a few per cent short (docs/compensation.md).
+constexpr double kLargestRatio = 1.3, kPlayGone = 0.7, kWithoutItsPlays = 0.6;
 
-void expect_promise(const CompensationStudy& study) {
+void expect_promise(const CompensationStudyRequest& request, double play_gone = kPlayGone) {
+  const CompensationStudy study = run_compensation_study(request);
   EXPECT_LE(study.ratio(), kLargestRatio);
-  EXPECT_GE(study.play_reduction(), kPlayGone);
+  EXPECT_GE(study.play_reduction(), play_gone);
   // A nominal controller is off by what manufacture leaves, or there would be nothing to compensate. Of fifty
   // machines one may be as drawn by chance.
   std::size_t as_drawn = 0;
@@ -40,13 +40,26 @@ void expect_promise(const CompensationStudy& study) {
 }
 
 TEST(ExtendedCompensatedPrints, AHexapodsNominalControllerPrintsAsTheCalibratedOne) {
-  expect_promise(study_of("hexapod", 4));
+  expect_promise(request_of("hexapod", 4), kWithoutItsPlays);
 }
 TEST(SlowCompensatedPrints, AnArmsNominalControllerPrintsAsTheCalibratedOne) {
-  expect_promise(study_of("arm", 4));
+  expect_promise(request_of("arm", 4));
 }
-TEST(SlowCompensatedPrints, FiftyHexapods) { expect_promise(study_of("hexapod", 50)); }
-TEST(SlowCompensatedPrints, FiftyArms) { expect_promise(study_of("arm", 50)); }
+TEST(SlowCompensatedPrints, FiftyHexapods) { expect_promise(request_of("hexapod", 50), kWithoutItsPlays); }
+TEST(SlowCompensatedPrints, FiftyHexapodsWhosePlaysWereMeasured) {
+  CompensationStudyRequest request = request_of("hexapod", 50);
+  request.driven = true;
+  request.estimator = "with_play";
+  request.poses = 100;
+  expect_promise(request);
+}
+TEST(SlowCompensatedPrints, FiftyArms) { expect_promise(request_of("arm", 50)); }
+
+TEST(CompensatedPrints, PlaysAreFoundInPosesThatWereDrivenTo) {
+  CompensationStudyRequest request = request_of("hexapod", 1);
+  request.estimator = "with_play";
+  EXPECT_THROW(static_cast<void>(run_compensation_study(request)), InputError);
+}
 
 TEST(CompensatedPrints, ACalibratedMachineIsRefused) {
   CompensationStudyRequest request;

@@ -61,14 +61,17 @@ std::optional<double> arc_mismatch(const Arc& arc) {
   return difference;
 }
 
-std::vector<Vec3> arc_points(const Arc& arc, double tolerance) {
+std::vector<Vec3> arc_points(const Arc& arc, const ChordLimits& limits) {
   const Plane plane = plane_of(arc.normal);
   const Vec2 centre = in_plane(arc.centre, plane);
   const Vec2 from = in_plane(arc.from, plane) - centre, to = in_plane(arc.to, plane) - centre;
   const double r0 = from.norm(), r1 = to.norm(), sweep = sweep_of(arc, from, to);
   const double largest = std::max(r0, r1);
-  const double chord =
-      largest > tolerance ? std::min(kLongestChord, 2 * std::acos(1 - tolerance / largest)) : kLongestChord;
+  double chord = kLongestChord;
+  if (largest > limits.tolerance) {
+    chord = std::min(chord, 2 * std::acos(1 - limits.tolerance / largest));
+    chord = std::min(chord, std::max(limits.turn, limits.shortest / largest));
+  }
   const int count = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / chord - 1e-9)));
   std::vector<Vec3> points;
   points.reserve(static_cast<std::size_t>(count));

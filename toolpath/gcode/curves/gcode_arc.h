@@ -1,6 +1,7 @@
 // G2 and G3: circles and helices as rows of chords.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,9 +26,15 @@ std::optional<Vec3> arc_centre(const Arc& arc, double radius);
 /// file explains; else nothing.
 std::optional<double> arc_mismatch(const Arc& arc);
 
-/// The ends of chords no farther than `tolerance` [m] from the arc; the last is `to`. The radius runs
-/// linearly from that of `from` to that of `to`, as does the way along the normal. Ends that agree in the
-/// plane make a whole turn.
-std::vector<Vec3> arc_points(const Arc& arc, double tolerance);
+/// What chords keep to.
+struct ChordLimits {
+  double tolerance = 0;                                   ///< [m], from the arc
+  double turn = std::numeric_limits<double>::infinity();  ///< [rad], from one to the next
+  double shortest = 0;                                    ///< [m], whatever the turn
+};
+
+/// The ends of chords; the last is `to`. The radius runs linearly from that of `from` to that of `to`, as
+/// does the way along the normal. Ends that agree in the plane make a whole turn.
+std::vector<Vec3> arc_points(const Arc& arc, const ChordLimits& limits);
 
 }  // namespace understudy::toolpath

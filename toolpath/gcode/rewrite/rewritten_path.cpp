@@ -113,18 +113,19 @@ Pose RewrittenPath::asked(const AskedPlace& place) const {
 Pose RewrittenPath::asked(int line, const Pose& X_WT) const {
   const auto [first, last] = by_line_.equal_range(line);
   if (first == last) return X_WT;
-  double nearest = std::numeric_limits<double>::infinity();
-  AskedPlace best;
+  double nearest = std::numeric_limits<double>::infinity(), fraction = 0;
+  std::size_t best = first->second;
   for (auto step = first; step != last; ++step) {
     const Vec3 from = rewritten_begin_[step->second].translation();
     const Vec3 to = rewritten_end_[step->second].translation();
-    const double fraction = projected(from, to, X_WT.translation());
-    const double off = (from + fraction * (to - from) - X_WT.translation()).norm();
+    const double share = projected(from, to, X_WT.translation());
+    const double off = (from + share * (to - from) - X_WT.translation()).squaredNorm();
     if (off > nearest) continue;
     nearest = off;
-    best = place(step->second, fraction);
+    fraction = share;
+    best = step->second;
   }
-  return asked(best);
+  return asked(place(best, fraction));
 }
 
 int RewrittenPath::original_line(int line) const {
