@@ -1,5 +1,6 @@
 // How long the gap loop computes on this computer, and how evenly: the print loop with continuous gap control
-// on the quasistatic twin, by the time that passes outside its calls of the port.
+// on the quasistatic twin of a machine that was built within its tolerances and then calibrated, by the time
+// that passes outside its calls of the port.
 //   gap_loop_bench [PROGRAM] [SEED]     default scenarios/song-bottle.gcode 6
 #include <algorithm>
 #include <chrono>
@@ -15,9 +16,9 @@
 #include "core/file/read_file.h"
 #include "geometry/mesh.h"
 #include "machine/fixture_file.h"
-#include "sim/as_built/truth.h"
 #include "sim/sensors/microscope.h"
 #include "sim/twin/simulated_port.h"
+#include "studies/gap/lab_machine.h"
 #include "toolpath/gcode/gcode.h"
 #include "vision/plain_instructions.h"
 
@@ -133,20 +134,18 @@ bool print_histogram(const char* what, std::vector<double> seconds, double limit
 
 int run(const std::string& file, std::uint64_t seed) {
   vision::hold_opencv_to_plain_instructions();  // as the command does
-  const machine::MachineDescription machine = machine::load_machine("hexapod");
-  const auto program = toolpath::parse_gcode(read_file(file), file, control::gcode_options({}, machine));
+  const studies::LabMachine lab = studies::make_lab_machine(machine::load_machine("hexapod"), seed);
+  const auto program = toolpath::parse_gcode(read_file(file), file, control::gcode_options({}, lab.machine));
   const std::shared_ptr<const geometry::Mesh> part = geometry::read_stl(machine::find_fixture("bottle"));
-  const sim::AsBuilt as_built = sim::make_as_built(machine, "manufactured", seed);
-  const machine::MachineDescription truth = sim::true_description(machine, as_built);
-  const auto plant = sim::make_quasistatic_plant(truth, as_built);
-  sim::Microscope microscope(truth, part, seed);
-  sim::SimulatedPort twin(machine, *plant, [&](const sim::Shot& shot) { return microscope.expose(shot); },
+  const auto plant = sim::make_quasistatic_plant(lab.truth, lab.built);
+  sim::Microscope microscope(lab.truth, part, seed);
+  sim::SimulatedPort twin(lab.machine, *plant, [&](const sim::Shot& shot) { return microscope.expose(shot); },
                           {});
   TimedPort port(twin);
   control::PrintOptions options;
   options.gap_control = control::GapControl::continuous;
   options.part = part.get();
-  const control::PrintResult result = control::print(program, machine, port, options);
+  const control::PrintResult result = control::print(program, lab.machine, port, options);
   if (!result.completed) throw MachineError("the print stopped: " + result.stop.why);
   std::printf("%s: %.1f s of print\n", file.c_str(), result.duration);
   // Of the port's clock alone: exposure and transfer, and what the loop waits for.

@@ -138,7 +138,7 @@ SolveStatus ChainMechanism::axis_rates(const Pose& X_ST, std::span<const double>
   const TaskRows rows = task_rows(X_ST, follows_spin_, scale);
   const TaskJacobian scaled = scaled_jacobian(chain_, rows, J, scale);
   AxisRows solution;
-  const bool full_rank = solve_by_singular_values(scaled, rows, solution);
+  const bool full_rank = solve_minimum_norm(scaled, rows, solution);
   rates.topRows(n) = solution;
   for (int i = 0; i < n; ++i)
     if (chain_.axes[i].angle) rates.row(i) /= scale;

@@ -40,7 +40,7 @@ bool smallest_solution(const TipAndAxisJacobian& J, const TipAndAxis& wanted, Ax
     y = J.transpose() * normal.solve(wanted);
     return true;
   }
-  return solve_by_singular_values(J, wanted, y);
+  return solve_minimum_norm(J, wanted, y);
 }
 
 /// From here on to the end of half a range its weight grows.

@@ -4,19 +4,21 @@
 #include <cmath>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 
 namespace understudy::kinematics {
 namespace {
 
-/// A singular value below this share of the largest is a direction that the axes do not move.
+/// A pivot below this share of the largest is a direction that the axes do not move.
 constexpr double kRankTolerance = 1e-9;
 
-/// A square J of which this is a bound of the condition number is solved without singular values: what is
-/// lost is 1e-10 of the solution.
+/// A square J of which this is a bound of the condition number is solved by elimination: what is lost is
+/// 1e-10 of the solution.
 constexpr double kWellConditioned = 1e6;
 
-using Decomposition = Eigen::JacobiSVD<TaskJacobian>;
+/// Column per dimension of the task, row per axis.
+using TransposedJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxAxes, kTaskMax>;
 
 /// Never below the condition number of a square J: the product of all singular values is |det J|, and of all
 /// but the smallest it is largest for a given norm where they are equal (inequality of the means).
@@ -24,6 +26,27 @@ double bound_of_condition(const TaskJacobian& J, double determinant) {
   const double norm = J.norm();
   const auto others = static_cast<double>(J.rows() - 1);
   return norm * std::pow(norm / std::sqrt(std::max(others, 1.0)), others) / std::abs(determinant);
+}
+
+/// J P = Q R, and the rows of R that are not lost as (Z T)^T: y = P Z T^-T Q^T wanted (Golub, Van Loan,
+/// Matrix Computations, 5.5). Eigen's CompleteOrthogonalDecomposition does the same but allocates.
+template <typename Wanted, typename Solution>
+bool solve_by_pivots(const TaskJacobian& J, const Wanted& wanted, Solution& y) {
+  Eigen::ColPivHouseholderQR<TaskJacobian> qr(J);
+  qr.setThreshold(kRankTolerance);
+  const Eigen::Index rank = qr.rank();
+  y = Solution::Zero(J.cols(), wanted.cols());
+  if (rank == 0) return false;
+  Wanted c = wanted;
+  c.applyOnTheLeft(qr.householderQ().adjoint());
+  const TaskJacobian kept = qr.matrixR().topRows(rank).template triangularView<Eigen::Upper>();
+  const Eigen::HouseholderQR<TransposedJacobian> z(kept.transpose());
+  const auto T = z.matrixQR().topRows(rank).template triangularView<Eigen::Upper>();
+  y.topRows(rank) = c.topRows(rank);
+  T.transpose().solveInPlace(y.topRows(rank));
+  y.applyOnTheLeft(z.householderQ());
+  y = (qr.colsPermutation() * y).eval();
+  return rank == J.rows();
 }
 
 template <typename Wanted, typename Solution>
@@ -35,24 +58,21 @@ bool solve(const TaskJacobian& J, const Wanted& wanted, Solution& y) {
       return true;
     }
   }
-  Decomposition svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(kRankTolerance);
-  y = svd.solve(wanted);
-  return svd.rank() == J.rows();
+  return solve_by_pivots(J, wanted, y);
 }
 
 }  // namespace
 
-bool solve_by_singular_values(const TaskJacobian& J, const TaskColumn& wanted, AxisColumn& y) {
+bool solve_minimum_norm(const TaskJacobian& J, const TaskColumn& wanted, AxisColumn& y) {
   return solve(J, wanted, y);
 }
 
-bool solve_by_singular_values(const TaskJacobian& J, const TaskRows& wanted, AxisRows& y) {
+bool solve_minimum_norm(const TaskJacobian& J, const TaskRows& wanted, AxisRows& y) {
   return solve(J, wanted, y);
 }
 
 double condition_number(const TaskJacobian& J, double worst) {
-  const Decomposition svd(J);
+  const Eigen::JacobiSVD<TaskJacobian> svd(J);
   const auto& values = svd.singularValues();
   const double smallest = J.cols() < J.rows() ? 0.0 : values(J.rows() - 1);
   return smallest * worst > values(0) ? values(0) / smallest : worst;

@@ -15,11 +15,11 @@ using TaskColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kTaskMax, 1>;
 using TaskRows = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kTaskMax, 6>;
 using AxisRows = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxAxes, 6>;
 
-/// The smallest y nearest to J y = wanted: by singular values, of which those below 1e-9 of the largest count
-/// as zero. False where that is so of any: J has lost rank. Never allocates.
-bool solve_by_singular_values(const TaskJacobian& J, const TaskColumn& wanted, AxisColumn& y);
+/// The smallest y nearest to J y = wanted: by a pivoted QR decomposition, of whose pivots those below 1e-9 of
+/// the largest count as zero. False where that is so of any: J has lost rank. Never allocates.
+bool solve_minimum_norm(const TaskJacobian& J, const TaskColumn& wanted, AxisColumn& y);
 /// Column by column.
-bool solve_by_singular_values(const TaskJacobian& J, const TaskRows& wanted, AxisRows& y);
+bool solve_minimum_norm(const TaskJacobian& J, const TaskRows& wanted, AxisRows& y);
 
 /// Largest over smallest singular value of the rows of J; `worst` where it is above, as with fewer columns
 /// than rows.
