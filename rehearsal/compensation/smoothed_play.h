@@ -19,9 +19,7 @@ class SmoothedPlay {
   /// Goes half of the way to another prediction, of a program with the correction so far; all of it to the
   /// first.
   void add(PlayAlongPath play);
-  /// The shift to be taken off, at a share of a step's way.
-  Twist at(std::size_t step, double fraction) const { return at(step, fraction, plays_.size()); }
-  /// The same as it was after the first `predictions`; 0 after none.
+  /// The shift to be taken off, at a share of a step's way, after the first `predictions`; 0 after none.
   Twist at(std::size_t step, double fraction, std::size_t predictions) const;
   /// Steps that go on smoothly are one run, counted from 0. A travel belongs to the print that it leads to,
   /// and its correction is the one with which that print begins.

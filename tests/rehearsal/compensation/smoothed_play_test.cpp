@@ -27,15 +27,15 @@ PlayAlongPath crossing(double shift) {
 TEST(SmoothedPlay, AStepBecomesARampOfTwiceItsReach) {
   SmoothedPlay smooth(one_line(0.1), Pose::Identity(), 4e-3);
   smooth.add(crossing(80e-6));
-  EXPECT_NEAR(smooth.at(0, 0.5)[2], 40e-6, 1e-9) << "half of it in the middle, by symmetry";
-  EXPECT_NEAR(smooth.at(0, 0.45)[2], 0, 1e-12) << "5 mm before";
-  EXPECT_NEAR(smooth.at(0, 0.55)[2], 80e-6, 1e-12);
+  EXPECT_NEAR(smooth.at(0, 0.5, 1)[2], 40e-6, 1e-9) << "half of it in the middle, by symmetry";
+  EXPECT_NEAR(smooth.at(0, 0.45, 1)[2], 0, 1e-12) << "5 mm before";
+  EXPECT_NEAR(smooth.at(0, 0.55, 1)[2], 80e-6, 1e-12);
   double last = 0;
   for (double f = 0.46; f < 0.54; f += 0.0025) {
-    EXPECT_GE(smooth.at(0, f)[2], last);
+    EXPECT_GE(smooth.at(0, f, 1)[2], last);
     // 21 taps of a raised cosine: the largest weight is 2 / 22.
-    EXPECT_LE(smooth.at(0, f)[2] - last, 80e-6 * 2 / 22 + 1e-9);
-    last = smooth.at(0, f)[2];
+    EXPECT_LE(smooth.at(0, f, 1)[2] - last, 80e-6 * 2 / 22 + 1e-9);
+    last = smooth.at(0, f, 1)[2];
   }
 }
 
@@ -59,18 +59,18 @@ TEST(SmoothedPlay, ShortStepsThatGoOnAreOneWayAndASharpCornerEndsIt) {
     for (const double at : {0.001, 1.0}) play.add({i, at}, i < 5 ? none : some);
   for (const double at : {0.001, 1.0}) play.add({10, at}, other);
   smooth.add(play);
-  EXPECT_NEAR(smooth.at(4, 1)[2], 40e-6, 5e-6) << "half in the middle, but for the tap that falls on it";
-  EXPECT_GT(smooth.at(3, 0.5)[2], 1e-6) << "over the joints of steps";
-  EXPECT_NEAR(smooth.at(9, 0.5)[2], 80e-6, 1e-9) << "what comes behind the corner does not count";
+  EXPECT_NEAR(smooth.at(4, 1, 1)[2], 40e-6, 5e-6) << "half in the middle, but for the tap that falls on it";
+  EXPECT_GT(smooth.at(3, 0.5, 1)[2], 1e-6) << "over the joints of steps";
+  EXPECT_NEAR(smooth.at(9, 0.5, 1)[2], 80e-6, 1e-9) << "what comes behind the corner does not count";
 }
 
 TEST(SmoothedPlay, EachFurtherPredictionCountsHalf) {
   SmoothedPlay smooth(one_line(0.1), Pose::Identity(), 1e-3);
   smooth.add(crossing(80e-6));
   smooth.add(crossing(40e-6));
-  EXPECT_NEAR(smooth.at(0, 1)[2], 60e-6, 1e-12);
+  EXPECT_NEAR(smooth.at(0, 1, 2)[2], 60e-6, 1e-12);
   smooth.add(crossing(0));
-  EXPECT_NEAR(smooth.at(0, 1)[2], 30e-6, 1e-12);
+  EXPECT_NEAR(smooth.at(0, 1, 3)[2], 30e-6, 1e-12);
 }
 
 // So the print begins where the travel ends.
@@ -90,9 +90,9 @@ TEST(SmoothedPlay, ATravelEndsWithTheCorrectionOfThePrintThatItLeadsTo) {
   for (const double at : {0.001, 1.0}) play.add({1, at}, prints);
   smooth.add(play);
   EXPECT_EQ(smooth.run(0), smooth.run(1));
-  EXPECT_NEAR(smooth.at(0, 1)[2], smooth.at(1, 0)[2], 1e-12);
-  EXPECT_NEAR(smooth.at(0, 0.2)[2], smooth.at(1, 0)[2], 1e-12) << "all along the travel";
-  EXPECT_NEAR(smooth.at(1, 0.5)[2], 60e-6, 1e-9);
+  EXPECT_NEAR(smooth.at(0, 1, 1)[2], smooth.at(1, 0, 1)[2], 1e-12);
+  EXPECT_NEAR(smooth.at(0, 0.2, 1)[2], smooth.at(1, 0, 1)[2], 1e-12) << "all along the travel";
+  EXPECT_NEAR(smooth.at(1, 0.5, 1)[2], 60e-6, 1e-9);
   smooth.add(play);
   EXPECT_NEAR(smooth.at(1, 0.5, 1)[2], 60e-6, 1e-9);
   EXPECT_EQ(smooth.at(1, 0.5, 0)[2], 0) << "no prediction, no correction";

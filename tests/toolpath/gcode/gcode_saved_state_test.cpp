@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/complaint.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::toolpath {
@@ -12,16 +13,6 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr double kRounding = 1e-12;
-
-template <typename Call>
-std::string complaint(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 // Klipper, "G-Codes", SAVE_GCODE_STATE: modes, shifts, percentages, feed and reading of E come back; the
 // place with MOVE=1.

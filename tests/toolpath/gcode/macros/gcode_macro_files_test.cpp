@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/file/output_file.h"
+#include "tests/complaint.h"
 #include "tests/temporary_folder.h"
 #include "toolpath/gcode/gcode.h"
 #include "toolpath/gcode/macros/gcode_macros.h"
@@ -21,16 +22,6 @@ std::vector<std::string> texts(const std::vector<MacroLine>& lines) {
   std::vector<std::string> result;
   for (const MacroLine& line : lines) result.push_back(line.text);
   return result;
-}
-
-template <typename Call>
-std::string complaint(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 class IncludedMacros : public testing::Test {

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/complaint.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::toolpath {
@@ -56,15 +57,6 @@ Program parse(const std::string& text, const std::string& macros) {
   return parse_gcode(text, "p.gcode", options);
 }
 
-template <typename Call>
-std::string complaint(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 std::string rejection(const std::string& text, const std::string& macros) {
   return complaint([&] { parse(text, macros); });
 }
