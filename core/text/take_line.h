@@ -6,7 +6,7 @@
 
 namespace understudy {
 
-/// The first line of `rest`, which begins behind it afterwards. A line ends at \n, \r\n or \r.
+/// The first line of `rest`, which begins behind it afterwards. A line ends at CR, LF or both.
 constexpr std::string_view take_line(std::string_view& rest) {
   const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
   const std::string_view line = rest.substr(0, end);
