@@ -22,10 +22,24 @@ struct Choice {
 };
 
 /// Something that holds when all choices are answered so.
-// NOLINTNEXTLINE(bugprone-exception-escape): of Json, which says that it does not throw where it moves
 struct Rule {
   std::vector<Choice> when;
-  Json value;
+  std::size_t value = 0;  ///< its number among Values
+};
+
+/// Each value once: rules are compared by its number.
+class Values {
+ public:
+  std::size_t number_of(Json value) {
+    const auto at = std::find(all_.begin(), all_.end(), value);
+    if (at != all_.end()) return static_cast<std::size_t>(at - all_.begin());
+    all_.push_back(std::move(value));
+    return all_.size() - 1;
+  }
+  const Json& operator[](std::size_t number) const { return all_[number]; }
+
+ private:
+  std::vector<Json> all_;
 };
 
 Choice choice_of(const Condition& condition) {
@@ -231,7 +245,10 @@ Json Writer::object(const std::vector<MapVariant>& variants) {
   Json json{{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
   Json required = Json::array();
   Consequences consequences;
+  constexpr std::size_t kOptional = 0, kNeeded = 1;
   for (const std::string& name : names) {
+    Values known;
+    const std::size_t none = known.number_of(Json(false));
     std::vector<Rule> values, needs;
     for (const MapVariant& variant : variants) {
       Rule rule;
@@ -244,27 +261,27 @@ Json Writer::object(const std::vector<MapVariant>& variants) {
       const auto key = std::find_if(variant.keys.begin(), variant.keys.end(),
                                     [&](const KeySchema& schema) { return schema.key == name; });
       const bool asked = key != variant.keys.end() && key->type != Type::none;
-      needs.push_back({rule.when, asked && key->required});
-      rule.value = asked ? value(*key) : Json(false);
+      needs.push_back({rule.when, asked && key->required ? kNeeded : kOptional});
+      rule.value = asked ? known.number_of(value(*key)) : none;
       if (asked || !absent) values.push_back(rule);
     }
     needs = simplified(needs);
     for (const Rule& rule : needs)
-      if (rule.value == true && rule.when.empty())
+      if (rule.value == kNeeded && rule.when.empty())
         required.push_back(name);
-      else if (rule.value == true)
+      else if (rule.value == kNeeded)
         under(consequences, rule.when)["required"].push_back(name);
     values = simplified(values);
-    std::vector<Json> forms;
+    std::vector<std::size_t> forms;
     for (const Rule& rule : values)
-      if (rule.value != false && std::find(forms.begin(), forms.end(), rule.value) == forms.end())
+      if (rule.value != none && std::find(forms.begin(), forms.end(), rule.value) == forms.end())
         forms.push_back(rule.value);
     if (forms.empty()) continue;
-    json["properties"][name] =
-        forms.size() == 1 ? forms.front() : Json{{"description", forms.front()["description"]}};
+    const Json& first = known[forms.front()];
+    json["properties"][name] = forms.size() == 1 ? first : Json{{"description", first["description"]}};
     for (const Rule& rule : values)
-      if (!rule.when.empty() && (forms.size() > 1 || rule.value == false))
-        under(consequences, rule.when)["properties"][name] = rule.value;
+      if (!rule.when.empty() && (forms.size() > 1 || rule.value == none))
+        under(consequences, rule.when)["properties"][name] = known[rule.value];
   }
   if (!required.empty()) json["required"] = required;
   for (const auto& [when, then] : consequences)

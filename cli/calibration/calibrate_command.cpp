@@ -47,11 +47,13 @@ std::optional<calibration::RowsRequest> rows_request(CalibrateCall& call) {
     if (!map) return std::nullopt;
     request.map = *map;
   }
+  // Rows that do not agree with the others are left out of either.
   const std::string& estimator = call.request.estimator;
-  if (!call.request.plugin.empty() || (!estimator.empty() && estimator != "maximum_likelihood"))
+  const bool of_rows = estimator.empty() || estimator == "maximum_likelihood" || estimator == "robust";
+  if (!call.request.plugin.empty() || !of_rows)
     throw InputError(
-        "--plugin, and --estimator other than maximum_likelihood, take whole poses in the columns of "
-        "docs/calibration-data.md");
+        "--plugin, and --estimator other than maximum_likelihood and robust, take whole poses in the columns "
+        "of docs/calibration-data.md");
   request.measurements = call.measurements;
   request.compared = call.compared;
   request.machine = call.request.machine;

@@ -283,6 +283,10 @@ std::string ContinuousGapController::why_follower_stopped() const {
   if (stop_ == GapStop::too_far && sample.used)
     return fmt::format("the surface lies {:.3f} mm off the programmed one, at most {:.3f} mm are followed",
                        to_mm(-follower_.wanted()), to_mm(limits.travel_max));
+  if (follower_.prevented() > 0)
+    return fmt::format(
+        "{} of the last {} frames could not be used, and the others do not tell the dot from another spot",
+        follower_.prevented(), FrameOutcomes::kFrames);
   if (stop_ == GapStop::no_progress && follower_.unanswered() > 0)
     return fmt::format(
         "the gap reads {:.3f} mm and has not followed the tool, which rose by {:.3f} mm: "

@@ -39,7 +39,11 @@ GapFollowerOptions gap_follower_options(const machine::MachineDescription& machi
 }
 
 GapFollower::GapFollower(const GapFollowerOptions& options)
-    : options_(options), line_(options.line), excitation_(excitation_options(options)) {}
+    : options_(options),
+      line_(options.line),
+      step_({options.step_max, options.gate, options.step_samples}),
+      step_from_rest_(step_),
+      excitation_(excitation_options(options)) {}
 
 void GapFollower::aim_at(double aim, double calibration_sigma) {
   options_.aim = aim;
@@ -52,6 +56,7 @@ void GapFollower::start(double time, double path, double gap, double sigma) {
   start_unknown(time, path);
   known_ = true;
   line_.set_height(time, path, gap, sigma * sigma + options_.unmodelled * options_.unmodelled);
+  stood_ = gap;
 }
 
 void GapFollower::start_unknown(double time, double path) {
@@ -102,13 +107,15 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
   const double innovation = o.gap - o.correction - line_.height();
   if (o.path - used_path_ > options_.extrapolated_max) response_.forget();
   const double spread = std::sqrt(line_.covariance().height + o.sigma * o.sigma) + options_.unmodelled;
-  if (std::abs(innovation) > options_.gate * spread && !lasting_step(innovation, o.sigma * o.sigma)) {
-    miss(o.time, o.path, GapStop::implausible);
+  const bool off = std::abs(innovation) > options_.gate * spread;
+  frames_.add(GapStop::none);
+  if (off && !lasting_step(innovation, o.sigma * o.sigma)) {
+    pass_over(o.time, o.path, GapStop::implausible);
     judge_mixture(true);
     return GapVerdict::jump;
   }
   judge_mixture(false);
-  if (steps_ >= options_.step_samples) {
+  if (off) {
     response_.forget();
   } else {
     const bool follows =
@@ -116,10 +123,9 @@ GapVerdict GapFollower::observe(const GapObservation& o) {
     line_.correct(innovation, variance);
     if (follows) prove(o);
   }
-  steps_ = 0;
-  step_sum_ = step_squares_ = 0;
-  used_path_ = o.path;
-  resume(o.time, o.path);
+  step_.clear();
+  step_from_rest_.clear();
+  use(o);
   judge(o);
   return GapVerdict::used;
 }
@@ -134,47 +140,45 @@ void GapFollower::judge_mixture(bool jump) {
   raise(GapStop::implausible);
 }
 
-/// Readings in a row that agree on a step too small for a bead: the machine's own (play that changes sides).
+/// Of the line as it goes on, or as it stood: a slope that the step itself has spoilt leads away from what
+/// the readings agree on.
 bool GapFollower::lasting_step(double innovation, double variance) {
-  const bool other_side = steps_ > 0 && innovation * step_sum_ < 0;
-  if (other_side || std::abs(innovation) > options_.step_max) {
-    steps_ = 0;
-    step_sum_ = step_squares_ = 0;
-    if (!other_side) return false;
-  }
-  ++steps_;
-  step_sum_ += innovation;
-  step_squares_ += innovation * innovation;
-  if (steps_ < options_.step_samples) return false;
-  const double mean = step_sum_ / steps_, scatter = step_squares_ / steps_ - mean * mean;
-  if (scatter > options_.gate * options_.gate * (variance + options_.unmodelled * options_.unmodelled)) {
-    steps_ = 0;
-    step_sum_ = step_squares_ = 0;
-    return false;
-  }
-  line_.step(mean, variance / steps_);
+  const double gone_on = line_.height() - stood_;
+  const double spread = variance + options_.unmodelled * options_.unmodelled;
+  const bool from_line = step_.add(innovation, spread),
+             from_rest = step_from_rest_.add(innovation + gone_on, spread);
+  if (!from_line && !from_rest) return false;
+  const double by = from_line ? step_.mean() : step_from_rest_.mean() - gone_on;
+  line_.step(by, variance / options_.step_samples);
+  stood_ = line_.height();
+  jumps_ &= jumps_ + 1;  // the last run of them was the step
   return true;
 }
 
 /// The mean of the first readings that agree.
 void GapFollower::begin(const GapObservation& o) {
   const double error = o.gap - o.correction;
-  const double mean = steps_ > 0 ? step_sum_ / steps_ : error;
+  const double mean = begun_ > 0 ? begun_sum_ / begun_ : error;
   if (std::abs(error - mean) > options_.gate * o.sigma + options_.step_max) {
-    steps_ = 0;
-    step_sum_ = 0;
+    begun_ = 0;
+    begun_sum_ = 0;
   }
-  if (steps_ == 0) begun_path_ = o.path;
-  ++steps_;
-  step_sum_ += error;
-  if (steps_ < options_.step_samples) return;
+  if (begun_ == 0) begun_path_ = o.path;
+  ++begun_;
+  begun_sum_ += error;
+  if (begun_ < options_.step_samples) return;
   known_ = true;
   const double variance =
-      o.sigma * o.sigma / steps_ + std::pow(options_.line.slope_sigma * (o.path - begun_path_), 2);
-  line_.set_height(o.time, o.path, step_sum_ / steps_, variance);
+      o.sigma * o.sigma / begun_ + std::pow(options_.line.slope_sigma * (o.path - begun_path_), 2);
+  line_.set_height(o.time, o.path, begun_sum_ / begun_, variance);
+  use(o);
+}
+
+/// The line has taken a reading up. One alone between others that are off may have met it by chance.
+void GapFollower::use(const GapObservation& o) {
+  constexpr std::uint32_t kLastTwo = 3;
   used_path_ = o.path;
-  steps_ = 0;
-  step_sum_ = 0;
+  if ((jumps_ & kLastTwo) == 0) stood_ = line_.height();
   resume(o.time, o.path);
 }
 
@@ -187,6 +191,11 @@ void GapFollower::pass(double dt, double way) {
 }
 
 void GapFollower::miss(double time, double path, GapStop why) {
+  frames_.add(why);
+  pass_over(time, path, why);
+}
+
+void GapFollower::pass_over(double time, double path, GapStop why) {
   ++missed_;
   ++reasons_[static_cast<std::size_t>(why)];
   const double blind = time - seen_time_;
@@ -217,7 +226,13 @@ void GapFollower::judge_proof(const GapObservation& o) {
   }
   held_ = held;
   if (held && o.time - held_time_ >= options_.blind_time && o.path - held_path_ >= options_.blind_path)
-    raise(GapStop::no_progress);
+    raise_unproved();
+}
+
+/// Nothing shows that the readings follow the tool: because they do not, or because most frames gave none.
+void GapFollower::raise_unproved() {
+  if (frames_.blind() && stop_ == GapStop::none) prevented_ = frames_.missed();
+  raise(frames_.blind() ? frames_.reason() : GapStop::no_progress);
 }
 
 /// The correction that is proved to be safe. A bead's first excitation is waited for: what shines may have
@@ -255,7 +270,7 @@ void GapFollower::judge_excitation(const GapObservation& o) {
       return;
     case GapExcitation::Answer::stands_still:
       unanswered_ = excitation_.value();
-      raise(GapStop::no_progress);
+      raise_unproved();
   }
 }
 
@@ -266,7 +281,7 @@ void GapFollower::judge_silence(const GapObservation& o) {
   asked_ = true;
   if (o.time - asked_time_ < options_.silent_time_max) return;
   unanswered_ = options_.excitation;
-  raise(GapStop::no_progress);
+  raise_unproved();
 }
 
 void GapFollower::excite(double dt, double path, bool follow) {

@@ -14,10 +14,12 @@
 #include <cstdint>
 
 #include "control/gap/confidence.h"
+#include "control/gap/frame_outcomes.h"
 #include "control/gap/gap_controller.h"
 #include "control/gap/gap_excitation.h"
 #include "control/gap/gap_line.h"
 #include "control/gap/gap_response.h"
+#include "control/gap/lasting_step.h"
 
 namespace understudy::control {
 
@@ -107,6 +109,9 @@ class GapFollower {
   int mixed() const { return mixed_; }
   /// Its stop is that of a reading that has not followed the tool, which rose by this [m]; else 0.
   double unanswered() const { return unanswered_; }
+  /// Of the last frames (FrameOutcomes), those without a reading, where for want of them nothing shows that
+  /// the readings follow the tool; 0: its stop has another reason.
+  int prevented() const { return prevented_; }
   double wanted() const {
     return options_.aim - line_.height();
   }  ///< [m], the correction that would reach the aim
@@ -118,6 +123,7 @@ class GapFollower {
   void judge_mixture(bool jump);
   bool contradicted() const { return (jumps_ & 1) != 0; }  ///< by the last reading
   void begin(const GapObservation& o);
+  void use(const GapObservation& o);
   void judge(const GapObservation& o);
   void judge_proof(const GapObservation& o);
   double lowest() const;
@@ -126,18 +132,22 @@ class GapFollower {
   void judge_excitation(const GapObservation& o);
   void judge_silence(const GapObservation& o);
   void prove(const GapObservation& o);
+  void raise_unproved();
+  void pass_over(double time, double path, GapStop why);
   void raise(GapStop reason) { stop_ = stop_ == GapStop::none ? reason : stop_; }
 
   GapFollowerOptions options_;
   double calibration_sigma_ = 0;  // [m]
   bool known_ = false;
   GapLine line_;
-  double begun_path_ = 0;  // of the first reading that counts
+  int begun_ = 0;  // readings before it is known that agree, and their sum
+  double begun_sum_ = 0;
+  double begun_path_ = 0;  // of the first of them
   double used_path_ = 0;   // of the last reading that was used
+  double stood_ = 0;       // [m], the line's height when it last took up two readings in a row
   double last_reading_ = -1;
-  int same_readings_ = 0;  // in a row, to the last bit
-  int steps_ = 0;          // readings in a row that are off to one side
-  double step_sum_ = 0, step_squares_ = 0;
+  int same_readings_ = 0;                 // in a row, to the last bit
+  LastingStep step_, step_from_rest_;     // of the line as it goes on, and as it stood
   double seen_time_ = 0, seen_path_ = 0;  // of the last good reading, or where readings began
   int missed_ = 0;
   std::uint32_t jumps_ = 0;  // a bit for each of the last readings, the newest lowest
@@ -154,6 +164,8 @@ class GapFollower {
   bool asked_ = false;
   double proved_path_ = 0;  // [m], where, and the line's covariance there
   GapLineCovariance proved_line_;
+  FrameOutcomes frames_;
+  int prevented_ = 0;
   double unanswered_ = 0;
   double advanced_path_ = 0;
 };

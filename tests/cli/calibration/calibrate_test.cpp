@@ -135,7 +135,7 @@ TEST(Calibrate, TablesOfAnyKindNeedAMapAndSayWhatIsWrong) {
       {few + " --columns " + (folder / "map.yaml") + " --machine hexapod",
        "where this machine's range is 170 to 240"},
       {few + " " + few + " --machine arm", "--columns"},
-      {few + " --columns " + (folder / "map.yaml") + " --machine arm --estimator robust", "whole poses"}};
+      {few + " --columns " + (folder / "map.yaml") + " --machine arm --estimator whitened", "whole poses"}};
   for (const auto& [words, part] : calls) {
     const Outcome outcome = understudy("calibrate " + words + out);
     EXPECT_EQ(outcome.status, 2) << words;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -257,6 +260,33 @@ TEST(GapFollower, AStepOfTheMachineIsFollowedWhenItLasts) {
   EXPECT_LT(rms_from(loop, 1.5, kAim), 5e-6);
 }
 
+/// Linear between the corners (path, gap).
+double between(const std::vector<std::pair<double, double>>& corners, double path) {
+  const auto next =
+      std::find_if(corners.begin(), corners.end(), [&](const auto& corner) { return corner.first > path; });
+  if (next == corners.begin() || next == corners.end())
+    return next == corners.end() ? corners.back().second : next->second;
+  const auto& [x, y] = *std::prev(next);
+  return y + (next->second - y) * (path - x) / (next->first - x);
+}
+
+// Where a bead begins, plays change sides one after the other: the gap falls by 25 um and rises by 50. The
+// fall is taken for a slope, and the line would lead more than 50 um away from what is read from then on.
+TEST(GapFollower, AStepIsFoundWhereThePlaysBeforeItHaveSpoiltTheSlope) {
+  const std::vector<std::pair<double, double>> corners{{0.08e-3, kAim},
+                                                       {0.43e-3, kAim - 25e-6},
+                                                       {0.73e-3, kAim + 25e-6},
+                                                       {1.5e-3, kAim + 15e-6},
+                                                       {1.9e-3, kAim + 25e-6}};
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    auto loop = loop_with([&](double, double path) { return between(corners, path); }, 1.4e-6, seed);
+    loop.speed = 2.6e-3;
+    loop.run(3);
+    EXPECT_EQ(loop.follower.stop(), GapStop::none) << "seed " << seed;
+    EXPECT_LT(rms_from(loop, 1.5, kAim), 5e-6) << "seed " << seed;
+  }
+}
+
 TEST(GapFollower, LostFramesAreWaitedForAndThenSaidToBeLost) {
   for (const auto& [seconds, stop] : {std::pair{0.3, GapStop::none}, {0.7, GapStop::port_failed}}) {
     auto loop = loop_with([](double t, double) { return kAim - 50e-6 * t; }, 4e-6);
@@ -333,6 +363,19 @@ TEST(GapFollower, ASpotThatLeadsTheToolAwayIsNoSurface) {
       stopped += loop.follower.unanswered() > 0;
     }
   EXPECT_GT(stopped, 0);
+}
+
+// Four of five frames give nothing, and the surface sinks: what is left does not prove that it may be
+// followed.
+TEST(GapFollower, WhereFramesAreWantingTheirReasonIsTheOneThatIsSaid) {
+  auto loop = loop_with([](double t, double) { return kAim + 0.1e-3 * t; }, 1.5e-6, 1, options_of_hexapod());
+  int n = 0;
+  loop.set_camera([&](double, double, double gap) {
+    return FollowerLoop::Look{++n % 5 ? GapStop::saturated : GapStop::none, gap};
+  });
+  loop.run(12);
+  EXPECT_EQ(loop.follower.stop(), GapStop::saturated);
+  EXPECT_GT(loop.follower.prevented(), FrameOutcomes::kFrames / 2);
 }
 
 TEST(GapFollower, DoesNothingBeforeReadingsAgree) {
