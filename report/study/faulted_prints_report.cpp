@@ -1,6 +1,7 @@
 #include "report/study/faulted_prints_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "core/text/stable_number.h"
@@ -72,6 +73,9 @@ std::string faulted_prints_table(const FaultedPrints& prints) {
     for (std::size_t i = 0; i < counts.answers.size(); ++i) all.answers[i] += counts.answers[i];
   }
   table += line_of(all);
+  if (!prints.left_out.empty())
+    table += fmt::format("left out: {}: none of what is drawn is within their limits\n",
+                         fmt::join(prints.left_out, ", "));
   for (const FaultedPrint& run : prints.runs)
     if (run.answer == PrintAnswer::silent)
       table += fmt::format("go on a spoilt part ({}): run {}\n  {}\n", studies::flaw_words(run.truth.flaws),
@@ -84,6 +88,7 @@ std::string faulted_prints_json(const FaultedPrints& prints) {
   json["schema"] = "understudy.faulted-prints/1";
   json["seed"] = prints.seed;
   json["machines"] = prints.machines;
+  json["left_out"] = prints.left_out;
   json["prints"] = prints.prints;
   json["faults"] = Json::array();
   for (const FaultCounts& counts : prints.by_fault()) {

@@ -249,7 +249,10 @@ FaultedPrints run_faulted_prints(const FaultedPrintsRequest& request, const Prog
   FaultedPrints result;
   result.seed = request.seed;
   result.command = request.command;
-  result.machines = request.machines.empty() ? printing_machines() : request.machines;
+  result.machines = request.machines;
+  if (request.machines.empty())
+    for (const std::string& name : printing_machines())
+      (can_print_any(name, request.seed) ? result.machines : result.left_out).push_back(name);
   const auto count = static_cast<std::size_t>(request.runs);
   const std::size_t prints = kPrintsPerBlock * ((count + block_size() - 1) / block_size());
   result.prints = static_cast<int>(prints);

@@ -63,7 +63,8 @@ struct FaultedPrints {
   std::uint64_t seed = 0;
   std::string command;
   std::vector<std::string> machines;
-  int prints = 0;  ///< different ones
+  std::vector<std::string> left_out;  ///< of those that print: none of what is drawn is within their limits
+  int prints = 0;                     ///< different ones
   std::vector<FaultedPrint> runs;
 
   std::vector<FaultCounts> by_fault() const;  ///< in the order of drawn_fault_kinds()

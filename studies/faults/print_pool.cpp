@@ -1,6 +1,8 @@
 #include "studies/faults/print_pool.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -44,19 +46,43 @@ std::optional<DrawnPrint> try_to_plan(const machine::MachineDescription& machine
   }
 }
 
+struct GoodDraw {
+  DrawnPrint drawn;
+  double duration = 0;  // [s], planned
+};
+
+/// Nothing where the machine as drawn cannot print it.
+std::optional<GoodDraw> within_limits(const machine::MachineDescription& machine,
+                                      std::optional<DrawnPrint> drawn) {
+  if (!drawn) return std::nullopt;
+  const auto report = control::check_constraints(drawn->program, machine);
+  if (!report.findings.empty() || report.duration > kLongestPrint) return std::nullopt;
+  return GoodDraw{std::move(*drawn), report.duration};
+}
+
+/// Every pose has a solution, whatever its limits: quickly asked.
+bool has_poses_of(const machine::MachineDescription& machine, const toolpath::Program& program) {
+  const auto mechanism = machine.make_mechanism();
+  const Pose X_BW = machine.X_WB.inverse();
+  std::vector<double> axes(static_cast<std::size_t>(mechanism->axis_count()));
+  return std::all_of(program.steps.begin(), program.steps.end(), [&](const toolpath::Step& step) {
+    return step.kind != toolpath::StepKind::print ||
+           mechanism->inverse(X_BW * step.X_WT, {}, axes) == kinematics::SolveStatus::ok;
+  });
+}
+
 /// True when the machine as drawn can print it.
 bool draw_once(Random& random, const fs::path& folder, PoolPrint& print) {
-  const std::optional<DrawnPrint> drawn = try_to_plan(print.machine, random);
-  if (!drawn) return false;
-  const auto report = control::check_constraints(drawn->program, print.machine);
-  if (!report.findings.empty() || report.duration > kLongestPrint) return false;
-  print.what = drawn->what;
-  print.fixture = drawn->fixture;
-  print.duration = report.duration;
-  print.approaches = count_approaches(drawn->program);
+  const std::optional<GoodDraw> good = within_limits(print.machine, try_to_plan(print.machine, random));
+  if (!good) return false;
+  const DrawnPrint& drawn = good->drawn;
+  print.what = drawn.what;
+  print.fixture = drawn.fixture;
+  print.duration = good->duration;
+  print.approaches = count_approaches(drawn.program);
   write_file(folder / print.program,
              toolpath::write_gcode(
-                 drawn->program, {fmt::format("{}, drawn at random", drawn->what)},
+                 drawn.program, {fmt::format("{}, drawn at random", drawn.what)},
                  {print.machine.dialect.extruder_letter, print.machine.dialect.commands_for_tips()}));
   const auto part =
       print.fixture.empty() ? nullptr : geometry::read_stl(machine::find_fixture(print.fixture));
@@ -88,6 +114,18 @@ void choose_world(std::uint64_t seed, std::size_t number, const fs::path& folder
 }
 
 }  // namespace
+
+bool can_print_any(const std::string& machine_word, std::uint64_t seed) {
+  const auto machine = machine::load_machine(machine_word);
+  Random random(seed, "whether it can print: " + machine.name);
+  for (int draw = 0; draw < kDraws; ++draw) {
+    stop_if_interrupted();
+    std::optional<DrawnPrint> drawn = try_to_plan(machine, random);
+    if (drawn && has_poses_of(machine, drawn->program) && within_limits(machine, std::move(drawn)))
+      return true;
+  }
+  return false;
+}
 
 PoolPrint make_pool_print(const std::string& machine_word, std::uint64_t seed, std::size_t number,
                           const fs::path& folder) {

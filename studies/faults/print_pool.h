@@ -25,6 +25,9 @@ struct PoolPrint {
   std::optional<IntendedPrint> intended;
 };
 
+/// Whether the machine as drawn can print any of what is drawn for it; a nozzle that always leans cannot.
+bool can_print_any(const std::string& machine_word, std::uint64_t seed);
+
 /// Number `number` of a seed on this machine: redrawn until it breaks no limit of the machine as drawn, and
 /// written below `folder`. Throws InputError where nothing is, MachineError, Interrupted.
 PoolPrint make_pool_print(const std::string& machine_word, std::uint64_t seed, std::size_t number,

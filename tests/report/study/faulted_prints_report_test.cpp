@@ -44,6 +44,14 @@ TEST(FaultedPrintsReport, TheTableCountsByFaultAndTellsHowToRepeatASilentOne) {
   EXPECT_THAT(table, HasSubstr("go on a spoilt part (too high): run 1\n  understudy rehearse out/programs/"
                                "print-001.gcode --fault '{fault: stall}'\n"));
   EXPECT_THAT(table, Not(HasSubstr("print-000")));
+  EXPECT_THAT(table, Not(HasSubstr("left out")));
+}
+
+TEST(FaultedPrintsReport, NamesTheMachinesThatAreLeftOut) {
+  FaultedPrints prints = sample();
+  prints.left_out = {"tilted-nozzle"};
+  EXPECT_THAT(faulted_prints_table(prints), HasSubstr("left out: tilted-nozzle: none of what is drawn"));
+  EXPECT_EQ(nlohmann::json::parse(faulted_prints_json(prints)).at("left_out").at(0), "tilted-nozzle");
 }
 
 TEST(FaultedPrintsReport, JsonHasEveryRunWithItsCommand) {

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "report/study/faulted_prints_report.h"
+#include "studies/faults/print_pool.h"
 #include "tests/temporary_folder.h"
 
 namespace understudy::studies {
@@ -43,6 +44,12 @@ TEST(FaultedPrints, AGoOnASpoiltPartIsSilentWhateverElseIsSaid) {
   EXPECT_TRUE(prints.good());
   prints.runs[1].answer = PrintAnswer::silent;
   EXPECT_FALSE(prints.good());
+}
+
+// What is drawn is printed with an upright tool, more or less; this nozzle leans by 45 degrees.
+TEST(FaultedPrints, AMachineThatCanPrintNothingThatIsDrawnIsKnown) {
+  EXPECT_FALSE(can_print_any("tilted-nozzle", 1));
+  EXPECT_TRUE(can_print_any("hexapod", 1));
 }
 
 TEST(ExtendedFaultedPrints, OfABlockEveryFaultHasOneRunAndNoneHasTwo) {
