@@ -81,11 +81,12 @@ Finding contact_finding(const ContactStretch& stretch, bool touches, double limi
 }
 
 /// The end of a line that goes on from something, or comes to it: it droops, and what lies on it is judged by
-/// itself.
+/// itself. On a part or the table it was to lie, not to span a hollow of the print.
 bool is_short_end(const sim::UnsupportedStretch& loose, const machine::Tool& tool) {
-  constexpr double kBores = 5;
+  constexpr double kBoresOfPrint = 5, kBoresOfPart = 1;
   return loose.adhesion == sim::Adhesion::unsupported && (loose.held_at_start || loose.held_at_end) &&
-         std::isfinite(loose.worst_gap) && loose.length <= kBores * tool.nozzle_diameter;
+         std::isfinite(loose.worst_gap) &&
+         loose.length <= (loose.on_printed ? kBoresOfPrint : kBoresOfPart) * tool.nozzle_diameter;
 }
 
 Finding loose_finding(const sim::UnsupportedStretch& loose, const TwinSetup& setup) {

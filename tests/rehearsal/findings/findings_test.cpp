@@ -1,6 +1,8 @@
 // What the observers saw, as findings.
 #include "rehearsal/findings/findings.h"
 
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -70,6 +72,7 @@ sim::UnsupportedStretch hanging_start(double length) {
   stretch.length = length;
   stretch.worst_gap = from_mm(3.6);
   stretch.width = from_mm(0.45);
+  stretch.held_at_end = stretch.on_printed = true;
   return stretch;
 }
 
@@ -80,6 +83,17 @@ TEST(Findings, TheShortEndOfALineOverAHollowIsAWarningAndALongOneAnError) {
   const auto longer = findings_of_stretch(hanging_start(from_mm(2.1)));
   ASSERT_EQ(longer.size(), 1u);
   EXPECT_EQ(longer[0].severity, Severity::error) << "more than five bores";
+}
+
+// On a part or the table the bead was to lie: what does not is lost.
+TEST(Findings, TheEndOfALineThatLeavesAPartIsAnError) {
+  for (const auto& [bores, severity] : {std::pair{0.9, Severity::warning}, {2.5, Severity::error}}) {
+    sim::UnsupportedStretch stretch = hanging_start(bores * from_mm(0.4));
+    stretch.on_printed = false;
+    const auto findings = findings_of_stretch(stretch);
+    ASSERT_EQ(findings.size(), 1u) << bores;
+    EXPECT_EQ(findings[0].severity, severity) << bores;
+  }
 }
 
 TEST(Findings, ABeadOfNoLengthIsNone) {
