@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "core/yaml/yaml_map.h"
+#include "tests/complaint.h"
 
 namespace understudy {
 namespace {
@@ -12,16 +12,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
-
-template <typename Work>
-std::string error_of(const Work& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(ChangedFile, IsTheFileAndItsChangesInTheirOrder) {
   const ChangedFile changed = changed_file("models/arm/machine.yaml{gap.aim_mm: 0.14, axes.2.play_um: 30}");
@@ -44,10 +34,10 @@ TEST(ChangedFile, TakesAnotherValueOfAKeyThatIsChangedAlready) {
 }
 
 TEST(ChangedFile, RefusesWhatIsNoValue) {
-  EXPECT_THAT(error_of([] { changed_file("m{a: [1, 2]}"); }), HasSubstr("a value is a number or a word"));
-  EXPECT_THAT(error_of([] { changed_file("m{a: 1, a: 2}"); }), HasSubstr("a is changed twice"));
-  EXPECT_THAT(error_of([] { changed_file("m{a: ../b}"); }), HasSubstr("is no key and value"));
-  EXPECT_THAT(error_of([] { changed_file("m{1 2 3}"); }),
+  EXPECT_THAT(complaint([] { changed_file("m{a: [1, 2]}"); }), HasSubstr("a value is a number or a word"));
+  EXPECT_THAT(complaint([] { changed_file("m{a: 1, a: 2}"); }), HasSubstr("a is changed twice"));
+  EXPECT_THAT(complaint([] { changed_file("m{a: ../b}"); }), HasSubstr("is no key and value"));
+  EXPECT_THAT(complaint([] { changed_file("m{1 2 3}"); }),
               HasSubstr("changed values are told as FILE{key: value, ...}"));
 }
 
@@ -73,11 +63,11 @@ TEST(ChangedText, GainsASectionThatWasNotThere) {
 }
 
 TEST(ChangedText, RefusesWhatItCouldOnlyGuessAt) {
-  EXPECT_THAT(error_of([] { text_with("gap.floor_mm: 0.1"); }),
+  EXPECT_THAT(complaint([] { text_with("gap.floor_mm: 0.1"); }),
               HasSubstr("m.yaml: gap.floor_mm: does not stand in the file, so it cannot be written there"));
-  EXPECT_THAT(error_of([] { text_with("gap: 0.1"); }),
+  EXPECT_THAT(complaint([] { text_with("gap: 0.1"); }),
               HasSubstr("gap: is no plain word or number in the file"));
-  EXPECT_THAT(error_of([] { text_with("axes.3.play_um: 1"); }), HasSubstr("item 3 is outside 1..2"));
+  EXPECT_THAT(complaint([] { text_with("axes.3.play_um: 1"); }), HasSubstr("item 3 is outside 1..2"));
 }
 
 /// What a reader finds of a file whose word changes values.
@@ -90,7 +80,7 @@ Found read(const std::string& changes) {
   const std::string text =
       "gap: {aim_mm: 0.13}\ncentre_px: [1, 2]\naxes:\n  - {name: a, play_um: 1}\n  - {name: b, play_um: 2}\n";
   Found found;
-  found.error = error_of([&] {
+  found.error = complaint([&] {
     YamlMap::read_text(text, "m.yaml" + changes, [&](YamlMap& map) {
       map.section("gap", "g", [&](YamlMap& gap) { found.aim = gap.number("aim_mm", {0.1, 0.2}, "a"); });
       found.second = map.numbers("centre_px", 2, {}, "c")[1];

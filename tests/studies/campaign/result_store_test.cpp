@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include "core/error.h"
+#include "tests/complaint.h"
 #include "tests/temporary_folder.h"
 
 namespace understudy::studies {
@@ -33,16 +33,6 @@ RunRow row(std::uint64_t index) {
   one.seconds = 1.5;
   one.metrics = {{"gap.start_mm", 0.131 + 1e-3 * static_cast<double>(index)}, {"findings.gap.count", 0.0}};
   return one;
-}
-
-template <typename Work>
-std::string error_of(const Work& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 class ResultStoreTest : public ::testing::Test {
@@ -124,7 +114,7 @@ TEST_F(ResultStoreTest, IsRefusedWhileAnotherProcessWritesIt) {
   char byte = 0;
   ASSERT_EQ(::read(ready[0], &byte, 1), 1);
   EXPECT_TRUE(being_written(path()));
-  EXPECT_THAT(error_of([&] { ResultStore(path(), kHeader); }),
+  EXPECT_THAT(complaint([&] { ResultStore(path(), kHeader); }),
               HasSubstr("another campaign is writing this result store"));
   ::close(end[1]);
   ::waitpid(child, nullptr, 0);
@@ -145,32 +135,32 @@ TEST_F(ResultStoreTest, AnotherVersionCampaignOrInputIsRefused) {
   ResultStore(path(), kHeader).add(row(1));
   StoreHeader other = kHeader;
   other.version = "1.2.4";
-  EXPECT_THAT(error_of([&] { ResultStore(path(), other); }),
+  EXPECT_THAT(complaint([&] { ResultStore(path(), other); }),
               HasSubstr("runs of understudy 1.2.3; this is 1.2.4"));
   other = kHeader;
   other.campaign = "other";
-  EXPECT_THAT(error_of([&] { stored_runs(path(), other); }),
+  EXPECT_THAT(complaint([&] { stored_runs(path(), other); }),
               HasSubstr("runs of the campaign 'aim', not of 'other'"));
   other = kHeader;
   other.inputs_sha256 = "def";
-  EXPECT_THAT(error_of([&] { read_rows(path(), other); }), HasSubstr("was changed since"));
+  EXPECT_THAT(complaint([&] { read_rows(path(), other); }), HasSubstr("was changed since"));
 }
 
 TEST_F(ResultStoreTest, AnotherSchemaVersionIsRefused) {
   ResultStore(path(), kHeader).add(row(1));
   ASSERT_EQ(run_sql(path(), "PRAGMA user_version = 2"), SQLITE_OK);
-  EXPECT_THAT(error_of([&] { ResultStore(path(), kHeader); }),
+  EXPECT_THAT(complaint([&] { ResultStore(path(), kHeader); }),
               HasSubstr("a result store of schema version 2; this program reads version 1"));
 }
 
 TEST_F(ResultStoreTest, WhatIsNoStoreIsRefused) {
   std::ofstream(path()) << "run,go\n1,yes\nand enough text to be no empty file of SQLite, which has a header "
                            "of 100 bytes ......\n";
-  EXPECT_THAT(error_of([&] { ResultStore(path(), kHeader); }),
+  EXPECT_THAT(complaint([&] { ResultStore(path(), kHeader); }),
               HasSubstr("not a result store that can be read"));
   const auto other = folder_.path() / "other.sqlite";
   ASSERT_EQ(run_sql(other, "CREATE TABLE photos(name TEXT)"), SQLITE_OK);
-  EXPECT_THAT(error_of([&] { ResultStore(other, kHeader); }),
+  EXPECT_THAT(complaint([&] { ResultStore(other, kHeader); }),
               HasSubstr("not the result store of a campaign"));
 }
 

@@ -5,20 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
+#include "tests/complaint.h"
 
 namespace understudy::toolpath {
 namespace {
-
-template <typename Check>
-std::string complaint(const Check& check) {
-  try {
-    check();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 TEST(PlanChecks, APositiveValueIsFiniteAndAboveZero) {
   EXPECT_EQ(complaint([] { check_positive("feed", 0.1, "mm/min"); }), "accepted");

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/complaint.h"
 #include "toolpath/bead.h"
 
 namespace understudy::toolpath {
@@ -32,22 +33,7 @@ WaypointPlan plan() {
 }
 
 std::string rejection(const std::string& text) {
-  try {
-    parse_waypoints(text, "layer.txt");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-template <typename Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return complaint([&] { parse_waypoints(text, "layer.txt"); });
 }
 
 // Points of a dome of 30 mm radius along a meridian, from -a to a degrees.
@@ -166,15 +152,15 @@ TEST(Waypoints, WhatCannotBePrintedIsRefused) {
   WaypointPlan p = plan();
   p.tilt_max = 15 * kDegree;
   EXPECT_THAT(
-      refusal([&] { plan_waypoints({layer}, p); }),
+      complaint([&] { plan_waypoints({layer}, p); }),
       HasSubstr("waypoint 1 of layer 1 at (-10.261, 0.000, 28.191) mm tilts the tool 20.000 deg, more "
                 "than 15.000 deg"));
   WaypointLayer low = layer;
   low[3].position.z() = -1e-3;
-  EXPECT_THAT(refusal([&] { plan_waypoints({low}, plan()); }), HasSubstr("waypoint 4 of layer 1 at"));
+  EXPECT_THAT(complaint([&] { plan_waypoints({low}, plan()); }), HasSubstr("waypoint 4 of layer 1 at"));
   p = plan();
   p.largest_step = 0.1e-3;
-  EXPECT_THAT(refusal([&] { plan_waypoints({layer}, p); }),
+  EXPECT_THAT(complaint([&] { plan_waypoints({layer}, p); }),
               HasSubstr("no two waypoints in a row are within the largest step of 0.1 mm"));
   for (double WaypointPlan::*field :
        {&WaypointPlan::bead_width, &WaypointPlan::bead_height, &WaypointPlan::feed,
@@ -183,7 +169,7 @@ TEST(Waypoints, WhatCannotBePrintedIsRefused) {
     for (const double bad : {0.0, -1.0, std::nan("")}) {
       p = plan();
       p.*field = bad;
-      EXPECT_THAT(refusal([&] { plan_waypoints({layer}, p); }), HasSubstr("must be above 0")) << bad;
+      EXPECT_THAT(complaint([&] { plan_waypoints({layer}, p); }), HasSubstr("must be above 0")) << bad;
     }
   }
 }

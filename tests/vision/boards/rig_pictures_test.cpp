@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "core/error.h"
 #include "core/file/output_file.h"
+#include "tests/complaint.h"
 #include "tests/vision/boards/drawn_picture.h"
 #include "tests/vision/boards/two_cameras.h"
 
@@ -23,16 +23,6 @@ RigDescription description() {
   d.board_pictures = board_picture_name();
   d.pose_pictures = pose_picture_name();
   return d;
-}
-
-template <typename Function>
-std::string refusal(const Function& function) {
-  try {
-    function();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "accepted";
 }
 
 TEST(RigPictures, WithoutFilesTheBoardsAreThoseThatTheRigNames) {
@@ -57,10 +47,10 @@ TEST(RigPictures, FilesAreSortedByWhatTheirNamesSay) {
 TEST(RigPictures, NamesThatCannotBePlacedAreRefused) {
   const RigDescription d = description();
   const auto board = [&](const std::vector<std::string>& files) {
-    return refusal([&] { board_pictures(d, files); });
+    return complaint([&] { board_pictures(d, files); });
   };
   const auto pair = [&](const std::vector<std::string>& files) {
-    return refusal([&] { pose_picture_pairs(d, files); });
+    return complaint([&] { pose_picture_pairs(d, files); });
   };
   EXPECT_THAT(board({"x.png"}), HasSubstr("x.png: its name does not fit the pattern boards/camera{camera}"));
   EXPECT_THAT(board({"camera2-layer00.png"}), HasSubstr("is of camera 2; the set-up has cameras 0 and 1"));
@@ -94,7 +84,7 @@ TEST(RigPictures, BoardsAreMeasuredFromFilesOfTheSensorsSize) {
   EXPECT_EQ(seen[0].layer, 1);
   EXPECT_EQ(seen[1].camera, 1);
   EXPECT_EQ(seen[0].corners_px.size(), 28u);
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(complaint([&] {
                 measure_boards(d, {{pgm("small.pgm", 400, 200), 0, 0}});
               }),
               HasSubstr("has 400 x 200 px, must have the 400 x 300 px of camera 0 in rigs/rig.yaml"));
