@@ -28,6 +28,7 @@
 #include "rehearsal/library_versions.h"
 #include "rehearsal/placement/placement.h"
 #include "rehearsal/preparation.h"
+#include "rehearsal/program/programmed_support.h"
 #include "rehearsal/removal.h"
 #include "rehearsal/request/input_digest.h"
 #include "rehearsal/run_figures.h"
@@ -187,6 +188,9 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
   if (before) fill_comparison(*before, runs, record);
   for (const auto& findings :
        {findings_of(runs.main, setup, options.gap_control),
+        setup.layers
+            ? support_findings({setup.program, *setup.layers, setup.machine, setup.part}, runs.main.loose)
+            : std::vector<Finding>{},
         setup.machine.tool.prints() && !setup.cure ? temperature_findings(setup.program, setup.material)
                                                    : std::vector<Finding>{},
         accuracy_findings(runs.main.tip_peak, runs.main.orientation_peak, setup.accepted)})

@@ -1,18 +1,14 @@
 #include "rehearsal/program/programmed_layers.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <utility>
 
-#include "geometry/printed_clearance.h"
 #include "rehearsal/program/programmed_areas.h"
+#include "rehearsal/program/programmed_stack.h"
 #include "sim/deposition/bead_section.h"
-#include "sim/deposition/workpiece.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -24,56 +20,19 @@ constexpr double kSpacing = 2e-3;      // [m], between two looks along a line
 constexpr int kMostLooks = 25;         // on one line
 constexpr double kLeastLayer = 20e-6;  // [m]: what is nearer is the side of a bead of the same layer
 constexpr double kStrandSlope = 0.1;   // a line that leaves what is below it more steeply has no layer
-constexpr double kMostLayer = 2e-3;    // [m]: what is farther below is no layer but air
 
-std::array<float, 3> floats(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+std::vector<double> gaps_along(const ProgrammedLine& laid, const ProgrammedStack& stack) {
+  const int looks = std::clamp(static_cast<int>(std::ceil(laid.length / kSpacing)), 1, kMostLooks);
+  std::vector<double> gaps;
+  for (int i = 0; i < looks; ++i)
+    gaps.push_back(stack.gap(laid.from_W + (i + 0.5) / looks * (laid.to_W - laid.from_W), laid.R));
+  return gaps;
 }
 
-/// The part as it grows, in lines as long as the program has them.
-class Stack {
- public:
-  Stack(const machine::MachineDescription& machine, const std::shared_ptr<const geometry::Mesh>& part)
-      : workpiece_(part),
-        flat_(machine.tool.flat_diameter),
-        widest_(sim::kWidestLine * machine.tool.nozzle_diameter) {}
-
-  double gap(const Vec3& tip_W, const Mat3& R) const {
-    const auto below = workpiece_.below(make_pose(R, tip_W), fresh_from_);
-    return below ? below->distance : std::numeric_limits<double>::infinity();
-  }
-
-  void move(double path) {
-    path_ += path;
-    while (!ends_.empty() && ends_.front() < path_ - geometry::fresh_path(flat_, last_width_)) {
-      ends_.pop_front();
-      ++fresh_from_;
-    }
-  }
-
-  void add(const Vec3& from_W, const Vec3& to_W, const Vec3& axis_W, double gap, double area, int line) {
-    const double strand = std::min(widest_, std::sqrt(4 * area / std::numbers::pi));
-    const bool lies = gap > 0 && gap < kMostLayer;
-    last_width_ = lies ? std::min(widest_, sim::bead_width(area, gap)) : strand;
-    sim::Bead bead;
-    bead.height = static_cast<float>(lies ? std::min(gap, last_width_) : strand);
-    bead.width = std::max(bead.height, static_cast<float>(last_width_));
-    const Vec3 down = 0.5 * static_cast<double>(bead.height) * axis_W;
-    bead.from_W = floats(from_W - down);
-    bead.to_W = floats(to_W - down);
-    bead.up_W = floats(axis_W);
-    bead.line = line;
-    workpiece_.add(bead);
-    ends_.push_back(path_);
-  }
-
- private:
-  sim::Workpiece workpiece_;
-  double flat_, widest_;              // [m]
-  double path_ = 0, last_width_ = 0;  // [m]
-  std::deque<double> ends_;           // path at the end of each bead that is still under the nozzle
-  std::size_t fresh_from_ = 0;
-};
+/// It leaves what is below it, as a strut does.
+bool rises(const ProgrammedLine& laid, const std::vector<double>& gaps) {
+  return !(std::abs(gaps.back() - gaps.front()) <= kStrandSlope * laid.length) && laid.length > kMostLayer;
+}
 
 /// Of values with their lengths.
 double quantile_by_length(std::vector<std::pair<double, double>> values, double share) {
@@ -111,37 +70,24 @@ ProgrammedLayers::ProgrammedLayers(const toolpath::Program& program,
   for (const float area : areas)
     if (area > 0) printed.emplace_back(area, 1);
   told_area_ = quantile_by_length(std::move(printed), 0.5);
-  Stack stack(machine, part);
   std::vector<Sample> samples;
   std::vector<Stretch> stretches;
   double length_so_far = 0;
-  Vec3 tip = (machine.X_WB * machine.X_BT_home).translation();
-  for (const toolpath::Step& step : program.steps) {
-    if (!toolpath::moves(step)) continue;
-    const Vec3 from = tip, to = step.X_WT.translation();
-    const double length = (to - from).norm();
-    tip = to;
-    stack.move(length);
-    const double area = static_cast<double>(areas[static_cast<std::size_t>(std::max(0, step.line))]);
-    if (step.filament <= 0 || area <= 0 || length == 0) continue;
-    const int looks = std::clamp(static_cast<int>(std::ceil(length / kSpacing)), 1, kMostLooks);
-    std::vector<double> gaps;
-    for (int i = 0; i < looks; ++i)
-      gaps.push_back(stack.gap(from + (i + 0.5) / looks * (to - from), step.X_WT.linear()));
+  lay_program(program, machine, part, areas, [&](const ProgrammedLine& laid, const ProgrammedStack& stack) {
+    const std::vector<double> gaps = gaps_along(laid, stack);
     double least = std::numeric_limits<double>::infinity();
-    const bool strand =
-        !(std::abs(gaps.back() - gaps.front()) <= kStrandSlope * length) && length > kMostLayer;
     for (const double gap : gaps) {
       if (gap > kLeastLayer) least = std::min(least, gap);
-      if (gap > kLeastLayer && gap < kMostLayer && !strand)
-        samples.push_back({length / looks, gap, area, step.line});
+      if (gap > kLeastLayer && gap < kMostLayer && !rises(laid, gaps))
+        samples.push_back({laid.length / static_cast<double>(gaps.size()), gap, laid.area, laid.line});
     }
-    stack.add(from, to, step.X_WT.linear().col(2), least, area, step.line);
-    length_so_far += length;
-    if (length_so_far < kStretch) continue;
-    stretches.push_back(close(samples));
-    length_so_far = 0;
-  }
+    length_so_far += laid.length;
+    if (length_so_far >= kStretch) {
+      stretches.push_back(close(samples));
+      length_so_far = 0;
+    }
+    return least;
+  });
   stretches.push_back(close(samples));
   for (const Stretch& stretch : stretches) assign(stretch);
   take_told(beads, areas);
@@ -232,6 +178,11 @@ sim::GapBand ProgrammedLayers::band(int line) const {
   const Layer layer = at < layers_.size() ? layers_[at] : Layer{};
   if (layer.layer <= 0) return told_band();
   return sim::gap_band(limits_, static_cast<double>(layer.layer), static_cast<double>(layer.area));
+}
+
+double ProgrammedLayers::layer(int line) const {
+  const auto at = static_cast<std::size_t>(std::max(0, line));
+  return at < layers_.size() ? static_cast<double>(layers_[at].layer) : 0;
 }
 
 sim::GapBand ProgrammedLayers::typical_band() const {

@@ -32,6 +32,8 @@ class ProgrammedLayers {
 
   /// The band of gaps that is good on this line of the file; the machine's own where it has no layer.
   sim::GapBand band(int line) const;
+  /// [m], that the line is meant to lie over what is below; 0: none.
+  double layer(int line) const;
   /// The band over most of the path.
   sim::GapBand typical_band() const;
   /// [m], median over the path; 0: nothing is printed on anything.

@@ -45,7 +45,8 @@ struct LaidBead {
 struct UnsupportedStretch {
   Adhesion adhesion = Adhesion::unsupported;
   int line = 0;                      ///< where it begins
-  double time = 0;                   ///< [s], there
+  int last_line = 0;                 ///< where it ends
+  double time = 0;                   ///< [s], where it begins
   Vec3 place_W{0, 0, 0};             ///< there
   double length = 0;                 ///< [m]
   double volume = 0;                 ///< [m^3]

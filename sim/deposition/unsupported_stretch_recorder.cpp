@@ -51,6 +51,7 @@ void UnsupportedStretchRecorder::begin(const Element& element, const Conditions&
 void UnsupportedStretchRecorder::extend(const Element& element, const Conditions& conditions) {
   const LaidBead& bead = element.bead;
   UnsupportedStretch& stretch = stretches_.back();
+  stretch.last_line = bead.line;
   stretch.length += bead.length;
   stretch.volume += bead.volume;
   // Not the widest of it, nor what stuck before at any width: a drop is no beam.

@@ -19,6 +19,7 @@ using rehearsal::Record;
 using rehearsal::TracePoint;
 
 constexpr double kPlacesPerBore = 4;
+constexpr double kOwnBead = 2;        // bores of path: what was laid since is the bead that is being laid
 constexpr int kNextLines = 3;         // a setpoint carries the line of its step, a corner those of both
 constexpr double kRounding = 0.2e-6;  // [m], of a gap: printed surfaces are known to single precision
 constexpr double kReach = 5e-3;       // [m], beyond it nothing lies below a nozzle
@@ -92,8 +93,8 @@ void IntendedPrint::add_segment(const toolpath::Step& step, const Pose& X_WT_bef
   for (std::size_t i = 0; i < count; ++i) {
     const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     add_place(interpolate(X_WT_before, step.X_WT, t), length / static_cast<double>(count), part);
+    path_ += length / static_cast<double>(count);
   }
-  path_ += length;
 }
 
 void IntendedPrint::add_place(const Pose& X_WT, double length, const geometry::Mesh* part) {
@@ -104,18 +105,19 @@ void IntendedPrint::add_place(const Pose& X_WT, double length, const geometry::M
   double layer = gap;
   if (!on_ground) {
     layer = std::numeric_limits<double>::infinity();
-    for (const Vec3& below : tips_W_) {
-      const double height = (tip - below).dot(axis);
+    for (std::size_t i = 0; i < tips_W_.size() && path_ - ways_[i] > kOwnBead * tolerances_.bore; ++i) {
+      const double height = (tip - tips_W_[i]).dot(axis);
       if (height >= tolerances_.gap_min / 2 && height <= tolerances_.gap_max + kRounding &&
-          (tip - below - height * axis).norm() <= half_a_bore)
+          (tip - tips_W_[i] - height * axis).norm() <= half_a_bore)
         layer = std::min(layer, height);
     }
   }
   const bool lies = std::isfinite(layer);
-  const Place place{length, on_ground, lies,
+  const Place place{length, on_ground, lies, lies ? layer : 0,
                     lies ? std::max(tolerances_.gap_max, layer + tolerances_.gap_above) : 0};
   places_.push_back(place);
   tips_W_.push_back(tip);
+  ways_.push_back(path_);
 }
 
 std::pair<IntendedPrint::Segments::const_iterator, IntendedPrint::Segments::const_iterator>
@@ -225,7 +227,10 @@ class Judge {
     truth_.orientation_max = std::max(truth_.orientation_max, at.angle);
     cover(point);
     const double way = last_ ? (point.X_WT.translation() - last_->X_WT.translation()).norm() : 0;
-    low_.add(place.on_ground && point.gap < allowed_.gap_min - kRounding, way);
+    way_ += way;
+    // A closed outline ends on the bead that it began with.
+    if (!place.on_ground || !over_laid_bead(point))
+      low_.add(place.on_ground && point.gap < allowed_.gap_min - kRounding, way);
     high_.add(place.lies && !(point.gap <= place.highest + kRounding), way);
     // No deeper than that is a nozzle that crosses the bead that it has laid, which is as high as its tip.
     if (place.on_ground && point.gap < -allowed_.gap_min / 2) touched_ = true;
@@ -234,7 +239,23 @@ class Judge {
       truth_.gap_max = gaps_ ? std::max(truth_.gap_max, point.gap) : point.gap;
       gaps_ = true;
     }
+    if (place.lies && point.gap > 0 &&
+        (laid_.empty() || way_ - laid_.back().way > allowed_.bore / kPlacesPerBore))
+      laid_.push_back({point.X_WT.translation(), way_, allowed_.bore * place.layer / point.gap / 2});
     last_ = &point;
+  }
+
+  /// Over one that is as wide as its material makes it at the gap that it was laid with.
+  bool over_laid_bead(const TracePoint& point) const {
+    const Vec3 axis = tool_axis(point.X_WT);
+    for (const Laid& bead : laid_) {
+      if (way_ - bead.way <= kOwnBead * allowed_.bore) break;
+      const Vec3 from_bead = point.X_WT.translation() - bead.tip_W;
+      const double height = from_bead.dot(axis);
+      if (std::abs(height) <= allowed_.gap_max && (from_bead - height * axis).norm() <= bead.half_width)
+        return true;
+    }
+    return false;
   }
 
   /// Once in a part of a place's length is enough.
@@ -246,9 +267,17 @@ class Judge {
     covering_ = tip;
   }
 
+  struct Laid {
+    Vec3 tip_W;
+    double way = 0;         // [m] of path with extrusion
+    double half_width = 0;  // [m]
+  };
+
   const IntendedPrint& intended_;
   const PrintTolerances& allowed_;
   PrintTruth truth_;
+  std::vector<Laid> laid_;  // in order
+  double way_ = 0;          // [m]
   std::vector<bool> covered_;
   Stretch low_, high_;
   bool touched_ = false, printing_ = false, gaps_ = false;

@@ -39,6 +39,7 @@ class IntendedPrint {
     double length = 0;       ///< [m]
     bool on_ground = false;  ///< over part or table, not over beads: the nozzle may not come too near
     bool lies = false;       ///< on part, table or a bead before it: the bead may not hang
+    double layer = 0;        ///< [m], over what it lies on
     /// [m], above which a bead hangs: gap_max, or as much over the programmed layer as that over the aim.
     double highest = 0;
   };
@@ -73,6 +74,7 @@ class IntendedPrint {
   Segments segments_;  // by line
   std::vector<Place> places_;
   std::vector<Vec3> tips_W_;  // in the middle of each
+  std::vector<double> ways_;  // [m] of path with extrusion, likewise
   double filament_ = 0, path_ = 0;
 };
 

@@ -1,25 +1,15 @@
 #include "rehearsal/program/programmed_layers.h"
 
-#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/rehearsal/program/printer.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
 namespace {
-
-// Filament of 1 mm2: E is the volume in mm3.
-machine::MachineDescription printer() {
-  machine::MachineDescription machine;
-  machine.tool.filament_diameter = std::sqrt(4 / std::numbers::pi) * 1e-3;
-  machine.tool.flat_diameter = 1e-3;
-  machine.tool.nozzle_diameter = 0.4e-3;
-  machine.gap = {0.1e-3, 0.2e-3, 0.13e-3, 2e-3};
-  return machine;
-}
 
 /// Rows of 20 mm, 0.386 mm apart, at each of these heights [mm]; 0.1157 mm2 of bead.
 std::string rows(const std::vector<double>& heights) {

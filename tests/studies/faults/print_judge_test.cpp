@@ -1,6 +1,7 @@
 #include "studies/faults/print_judge.h"
 
 #include <functional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -179,6 +180,57 @@ TEST(PrintJudge, WhatIsNotLaidIsMissed) {
   loose.print->deposited_mm *= 0.9;
   EXPECT_EQ(flaws(loose), "loose");
   EXPECT_EQ(flaws({}), "incomplete") << "nothing was simulated";
+}
+
+/// One line of the program through these points; the trace goes along it with `gap` of what was gone.
+struct Path {
+  std::vector<Vec3> points;
+  std::function<double(double way, const Vec3& tip)> gap;
+};
+
+PrintTruth judged(const Path& path) {
+  toolpath::Program program;
+  Record run;
+  double way = 0;
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    toolpath::Step step;
+    step.line = static_cast<int>(i) + 1;
+    step.kind = i == 0 ? toolpath::StepKind::move : toolpath::StepKind::print;
+    step.X_WT = make_pose(Quat::Identity(), path.points[i]);
+    step.filament = i == 0 ? 0 : kFilament;
+    program.steps.push_back(step);
+    if (i == 0) continue;
+    const Vec3 from = path.points[i - 1], to = path.points[i];
+    for (int k = 1; k <= kPoints; ++k) {
+      TracePoint point;
+      point.line = step.line;
+      point.extruding = true;
+      point.X_WT = make_pose(Quat::Identity(), from + static_cast<double>(k) / kPoints * (to - from));
+      point.gap = path.gap(way + (point.X_WT.translation() - from).norm(), point.X_WT.translation());
+      run.trace.push_back(point);
+    }
+    way += (to - from).norm();
+  }
+  run.print.emplace();
+  run.print->extruded_mm = run.print->printed_mm = run.print->deposited_mm =
+      to_mm(kFilament) * static_cast<double>(path.points.size() - 1);
+  return judge_print(IntendedPrint(program, nullptr, kAllowed), run);
+}
+
+TEST(PrintJudge, AClosedOutlineEndsOnTheBeadThatItBeganWith) {
+  // At 0.11 mm in place of 0.13 mm a bead is 0.47 mm wide.
+  const auto square = [](double low_from) {
+    return Path{{{0, 0, kGap}, {4e-3, 0, kGap}, {4e-3, 4e-3, kGap}, {0, 4e-3, kGap}, {0, -0.3e-3, kGap}},
+                [=](double way, const Vec3&) { return way > low_from ? 0 : 0.11e-3; }};
+  };
+  EXPECT_EQ(flaw_words(judged(square(15.8e-3)).flaws), "") << "0.5 mm, over the bead";
+  EXPECT_EQ(flaw_words(judged(square(15.1e-3)).flaws), "too low") << "0.66 mm before it";
+}
+
+TEST(PrintJudge, ALineThatRisesFromTheTableLiesOnNothing) {
+  const Path rises{{{0, 0, kGap}, {10e-3, 0, kGap + 2.9e-3}},
+                   [](double, const Vec3& tip) { return tip.z(); }};
+  EXPECT_EQ(flaw_words(judged(rises).flaws), "") << "its own bead, 16 degrees lower, is nothing below it";
 }
 
 TEST(PrintJudge, ATouchSpoils) {
