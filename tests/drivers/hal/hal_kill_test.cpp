@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -88,6 +89,49 @@ Stop stop_in(const std::vector<std::vector<double>>& samples, std::size_t begin,
   return stop;
 }
 
+/// The lead, the watchdog, the brake, and what the samplers are behind: up to ten seconds.
+Stop wait_for_stop(HalRecorder& recorder, std::size_t begin, std::size_t axes,
+                   std::vector<std::vector<double>>& samples) {
+  Stop stop;
+  for (int k = 0; k < 100 && !(stop.moved && stop.stopped); ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    samples = recorder.so_far();
+    if (samples.size() > begin) stop = stop_in(samples, begin, axes);
+  }
+  return stop;
+}
+
+/// A controller that prints on the HAL that runs, until it is killed; nothing, where it ended before it came
+/// to print, with `status`.
+std::optional<pid_t> start_victim(const HalMachine& hal, const machine::AxisVector& home, int& status) {
+  int told[2];
+  if (::pipe(told) != 0) return std::nullopt;
+  std::fflush(nullptr);
+  const pid_t victim = ::fork();
+  if (victim == 0) move_until_killed(hal, home, told[1]);
+  ::close(told[1]);
+  char ready = 0;
+  const bool prints = victim > 0 && ::read(told[0], &ready, 1) == 1;
+  ::close(told[0]);
+  if (prints) return victim;
+  if (victim > 0) ::waitpid(victim, &status, 0);
+  return std::nullopt;
+}
+
+/// On a computer that is too busy for real time, a controller's first setpoints can come too late and be
+/// refused. That is no death to look at: one of ten may begin again.
+std::optional<pid_t> start_victim_or_again(const HalMachine& hal, const machine::AxisVector& home,
+                                           int& spare) {
+  for (;;) {
+    int status = 0;
+    const auto victim = start_victim(hal, home, status);
+    if (victim) return victim;
+    std::printf("a controller did not come to print, and ended with %d (3: fault or refused setpoints)\n",
+                status / 256);
+    if (--spare < 0) return std::nullopt;
+  }
+}
+
 void kill_and_see(int times, unsigned seed) {
   HalOptions options = HalMachine::trial_options();
   options.watchdog = kWatchdog;
@@ -101,34 +145,16 @@ void kill_and_see(int times, unsigned seed) {
   int worst_starved = 0, deepest = 0, kills = 0;
   std::size_t begin = 0;
   std::vector<std::vector<double>> samples;
+  int spare = 1 + times / 10;
   for (int i = 0; i < times; ++i) {
-    int told[2];
-    ASSERT_EQ(::pipe(told), 0);
-    std::fflush(nullptr);
-    const pid_t victim = ::fork();
-    ASSERT_GE(victim, 0);
-    if (victim == 0) move_until_killed(hal, home, told[1]);
-    ::close(told[1]);
-    char ready = 0;
     int status = 0;
-    if (::read(told[0], &ready, 1) != 1) {
-      ::waitpid(victim, &status, 0);
-      FAIL() << "kill " << i << ": the controller did not come to print, and ended with " << status / 256
-             << " (3: fault or refused setpoints), signal " << status % 128;
-    }
-    ::close(told[0]);
+    const auto victim = start_victim_or_again(hal, home, spare);
+    ASSERT_TRUE(victim) << "kill " << i;
     std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution(20, 600)(random)));
-    ::kill(victim, SIGKILL);
-    ASSERT_EQ(::waitpid(victim, &status, 0), victim);
+    ::kill(*victim, SIGKILL);
+    ASSERT_EQ(::waitpid(*victim, &status, 0), *victim);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) ++kills;
-    // The lead, the watchdog, the brake, and what the samplers are behind.
-    for (int k = 0; k < 100; ++k) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      if (RunningHal::command({"gets", "drives-on"}).find("FALSE") != std::string::npos) break;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    samples = recorder.so_far();
-    const Stop stop = stop_in(samples, begin, hal.settings().axes.size());
+    const Stop stop = wait_for_stop(recorder, begin, hal.settings().axes.size(), samples);
     EXPECT_TRUE(stop.moved) << i;
     EXPECT_TRUE(stop.stopped) << i;
     // In periods of HAL, whatever the computer does meanwhile: the watchdog's time, and one to see it.

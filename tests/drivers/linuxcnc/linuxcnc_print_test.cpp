@@ -64,7 +64,8 @@ class RestWatch : public control::PrintObserver {
   std::uint64_t executed_ = 0;
 };
 
-void print_helix(int moves) {
+/// False: LinuxCNC says that the computer was too busy for it, which is no failure of the port.
+bool print_helix_once(int moves) {
   const RunningLinuxcnc linuxcnc;
   const auto port = open_gcode(parse_port_uri(linuxcnc.uri("&home=yes&reply_s=20")), linuxcnc.machine());
   const toolpath::Program program = helix(linuxcnc.machine(), moves);
@@ -74,7 +75,8 @@ void print_helix(int moves) {
   const auto begin = std::chrono::steady_clock::now();
   const control::PrintResult result = control::print(program, linuxcnc.machine(), *port, options, &watch);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  ASSERT_TRUE(result.completed) << result.stop.why << port->fault_text();
+  if (port->fault_text().find("the computer is too busy") != std::string::npos) return false;
+  EXPECT_TRUE(result.completed) << result.stop.why << port->fault_text();
   EXPECT_GE(result.moves, moves);
   EXPECT_GE(watch.rests, moves / kMovesInAPiece);
   EXPECT_LE(watch.worst_joint, 1e-6);
@@ -85,6 +87,12 @@ void print_helix(int moves) {
       "%d moves in %.1f s as planned, %.1f s here; %d rests: joints %.2f um, drives %.2f um from ours\n",
       result.moves, result.duration, taken.count(), watch.rests, 1e6 * watch.worst_joint,
       1e6 * watch.worst_drive);
+  return true;
+}
+
+void print_helix(int moves) {
+  const bool in_time = print_helix_once(moves) || print_helix_once(moves);
+  EXPECT_TRUE(in_time) << "twice the computer was too busy for LinuxCNC";
 }
 
 TEST(SlowLinuxcncPrint, RestsWhereOurInverseKinematicsSays) {
