@@ -311,6 +311,23 @@ const tests = {
     await page.context().close();
   },
 };
+const millionTests = {
+  async 'a million moves open, and the page says how much it leaves out'() {
+    const size = statSync(join(samples, 'large/report.html')).size;
+    const page = await open('large');
+    const { metrics } = await page.session.send('Performance.getMetrics');
+    const heap = metrics.find((m) => m.name === 'JSHeapUsedSize').value / 1e6;
+    console.log(`   ${(size / 1e6).toFixed(2)} MB, ${heap.toFixed(0)} MB of heap`);
+    assert.ok(size < 5e6 && heap < 500);
+    assert.deepEqual(page.faults, []);
+    const notes = (await page.$$eval('.note', (nodes) => nodes.map((node) => node.textContent))).join(' ');
+    assert.match(notes, /999.999 beads, drawn to within [\d.]+ µm; one stretch of \d+ is drawn, the others are left out; the path is thinned to 25.000 instants/);
+    assert.match(notes, /The last \d+ kB of the program are left out/);
+    const last = await page.$eval('.scrub', (node) => { node.value = node.max; node.dispatchEvent(new Event('input')); return Number(node.max); });
+    assert.ok(Math.abs(last - 50000) < 1, 'the replay goes to the end of the print: ' + last);
+    await page.context().close();
+  },
+};
 const plainTests = {
   async 'the plain page says what it is, and the answer'() {
     for (const name of ['go', 'no-go', 'stopped', 'hostile']) {
@@ -325,7 +342,7 @@ const plainTests = {
 
 let failed = 0;
 const only = process.argv[6];
-for (const [name, test] of Object.entries(kind === 'plain' ? plainTests : tests)) {
+for (const [name, test] of Object.entries({ plain: plainTests, million: millionTests }[kind] ?? tests)) {
   if (only && !name.includes(only)) continue;
   const began = Date.now();
   try {

@@ -7,6 +7,7 @@
 
 #include "core/units.h"
 #include "machine/description.h"
+#include "rehearsal/observers/trace_observer.h"
 #include "sim/as_built/as_built.h"
 #include "tests/report/sample_record.h"
 
@@ -62,6 +63,16 @@ void add_sample_replay(Record& record) {
   record.scene->printed = std::move(workpiece);
 }
 
+/// As a rehearsal does: beads come of all that happens, the trace keeps no more than its capacity.
+void thin_trace(Record& record) {
+  std::vector<TracePoint>& trace = record.trace;
+  while (trace.size() > rehearsal::TraceObserver::kCapacity) {
+    for (std::size_t i = 0; 2 * i < trace.size(); ++i) trace[i] = trace[2 * i];
+    trace.resize((trace.size() + 1) / 2);
+    record.trace_stride *= 2;
+  }
+}
+
 Record sample_large(int moves) {
   Record record = sample_no_go();
   record.title = "vase.gcode on hexapod";
@@ -94,6 +105,7 @@ Record sample_large(int moves) {
     record.findings[i].time_s = 0.05 * record.findings[i].gcode_line;
   }
   add_sample_replay(record);
+  thin_trace(record);
   return record;
 }
 

@@ -193,6 +193,9 @@ function linked(trace: Trace, chart: Chart) {
   return { x: between(time, path), time: between(path, time) };
 }
 
+/** [px] between two labels, so that the widest does not meet its neighbour. */
+function labelSpace(most: number): number { return Math.max(50, 8 * Math.round(most).toLocaleString().length + 12); }
+
 function plot(report: Report, trace: Trace, chart: Chart, host: HTMLElement, clock: Clock | null) {
   const data = merged(chart);
   const link = linked(trace, chart);
@@ -210,7 +213,7 @@ function plot(report: Report, trace: Trace, chart: Chart, host: HTMLElement, clo
   const u = new uPlot({
     width: host.clientWidth || 640, height: 240, series, bands, cursor: { y: false, points: { size: 6 } },
     scales: { x: { time: false }, y: chart.log ? { distr: 3, range: chart.range } : { range: chart.range } },
-    axes: [{ ...axis, label: chart.xLabel, labelSize: 18, size: 34 }, { ...axis, label: chart.yLabel, labelSize: 18, size: 54 }],
+    axes: [{ ...axis, label: chart.xLabel, labelSize: 18, size: 34, space: (_: uPlot, __: number, ___: number, most: number) => labelSpace(most) }, { ...axis, label: chart.yLabel, labelSize: 18, size: 54 }],
     hooks: { drawClear: [(plot) => ground(plot, chart)], draw: [(plot) => overlay(plot, chart, marks, link && link.x)], ready: [(plot) => attach(plot)], setScale: [() => place()] },
     legend: { live: true },
   }, data, host);
