@@ -175,8 +175,11 @@ std::map<std::string, std::string> slicer_facts(std::string_view text) {
       {"machine_max_jerk_x =", "machine_max_jerk_x"},
       {"machine_max_jerk_z =", "machine_max_jerk_z"},
   }};
+  constexpr std::string_view kElapsed = "TIME_ELAPSED:", kTimeUntold = "6666";
   std::map<std::string, std::string> facts;
+  std::string elapsed;  // [s], at the end of the last layer
   for_each_comment(text, [&](int, std::string_view line) {
+    if (line.starts_with(kElapsed)) elapsed = trimmed(line.substr(kElapsed.size()));
     // BambuStudio tells two times on one line.
     if (const auto total = line.find("total estimated time:"); total != std::string_view::npos)
       line = line.substr(total);
@@ -186,6 +189,11 @@ std::map<std::string, std::string> slicer_facts(std::string_view text) {
       if (line.starts_with(written))
         facts.try_emplace(std::string(key), trimmed(line.substr(written.size())));
   });
+  // CuraEngine by itself writes its head before it knows the time; Cura replaces it.
+  if (const auto time = facts.find("estimated time"); time != facts.end() && time->second == kTimeUntold) {
+    facts.erase(time);
+    if (!elapsed.empty()) facts.emplace("estimated time", elapsed);
+  }
   return facts;
 }
 

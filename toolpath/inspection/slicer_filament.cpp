@@ -66,7 +66,8 @@ std::optional<double> told_filament(std::string_view text) {
       if (!of_all) of_all = value_after(words, key);
     if (const auto one = of_one_extruder(words)) of_each = of_each.value_or(0) + *one;
   });
-  return of_all ? of_all : of_each;
+  const std::optional<double> told = of_all ? of_all : of_each;
+  return told && *told > 0 ? told : std::nullopt;  // CuraEngine by itself writes 0m before it has sliced
 }
 
 }  // namespace understudy::toolpath

@@ -26,7 +26,7 @@ TEST(SlicerFilament, OfSeveralExtrudersIsASum) {
 TEST(SlicerFilament, OtherCommentsTellNone) {
   for (const char* text :
        {"", "G1 E5 ; filament used\n", "; filament used [g] = 5\n", "; filament used: much\n",
-        "; total filament used [g] = 0.67\n", "; filament used = -1\n"})
+        "; total filament used [g] = 0.67\n", "; filament used = -1\n", ";Filament used: 0m\n"})
     EXPECT_FALSE(told_filament(text).has_value()) << text;
 }
 
