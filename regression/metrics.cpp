@@ -130,7 +130,8 @@ constexpr const char* kFigures[] = {"print.duration_s",
                                     "engine.closure_max_um",
                                     "timing.simulated_s",
                                     "timing.wall_s",
-                                    "timing.real_time_factor"};
+                                    "timing.real_time_factor",
+                                    "timing.to_first_setpoint_s"};
 // What a series of machines knows besides the summaries (run_scenario.h).
 constexpr const char* kSeriesFigures[] = {"approach.min_gap_mm"};
 constexpr const char* kTexts[] = {"verdict",

@@ -136,6 +136,7 @@ struct EngineFigures {
 /// By the clock on the wall: the one part of a record that differs from run to run.
 struct TimingFigures {
   double simulated_s = 0, wall_s = 0;
+  std::optional<double> to_first_setpoint_s = {};  ///< from the start of the process
 };
 struct Provenance {
   std::string version, machine_sha256, program_sha256;

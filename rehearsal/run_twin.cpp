@@ -330,7 +330,7 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   run.altered_frames = port.altered_frames();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
   run.engine = engine_of(*plant, port);
-  run.timing = {plant->time(), wall.count()};
+  run.timing = {plant->time(), wall.count(), port.first_setpoint_at()};
   return run;
 }
 

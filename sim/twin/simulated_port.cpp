@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/process_age.h"
 
 namespace understudy::sim {
 
@@ -97,6 +98,7 @@ bool SimulatedPort::read_load(machine::LoadReading& reading) const {
 Status SimulatedPort::submit(std::span<const Setpoint> setpoints, double deadline) {
   if (fault_ != Fault::none) return Status::faulted;
   if (plant_.time() > deadline) return Status::deadline_exceeded;
+  if (!first_setpoint_at_) first_setpoint_at_ = process_age();
   return queue_.submit(setpoints, plant_.time());
 }
 

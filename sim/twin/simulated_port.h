@@ -55,6 +55,8 @@ class SimulatedPort : public machine::MachinePort, public machine::LoadSide {
   /// What the engine said when it failed; empty otherwise. A run with a failure has no result.
   const std::string& engine_failure() const { return engine_failure_; }
   std::uint64_t steps() const { return steps_; }
+  /// [s], the age of this process when the first setpoint came; nothing before.
+  std::optional<double> first_setpoint_at() const { return first_setpoint_at_; }
   double closure_max() const { return closure_max_; }  ///< [m]
   /// Frames that the camera's faults have changed visibly, or withheld.
   int altered_frames() const { return camera_.altered(); }
@@ -86,6 +88,7 @@ class SimulatedPort : public machine::MachinePort, public machine::LoadSide {
   machine::Outputs outputs_;
   machine::Fault fault_ = machine::Fault::none;
   std::string engine_failure_;
+  std::optional<double> first_setpoint_at_;
   std::uint64_t steps_ = 0, frame_number_ = 0;
   int steps_per_observation_ = 1;
   double closure_max_ = 0;
