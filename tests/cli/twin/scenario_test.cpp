@@ -41,10 +41,28 @@ TEST(ScenarioRun, EveryShippedScenarioHoldsWhatIsExpectedOfIt) {
   EXPECT_THAT(read_file(folder / "junit.xml"), HasSubstr("<testsuite"));
 }
 
-TEST(SlowScenarioRun, TheExperimentsOfThePapersHoldWhatIsExpectedOfThem) {
-  const Outcome outcome = understudy("scenario run " + kSource + "/scenarios/papers");
+/// Of scenarios/papers, on both cores.
+void run_papers(const std::vector<std::string>& names) {
+  std::string files;
+  for (const std::string& name : names) files += " " + kSource + "/scenarios/papers/" + name + ".yaml";
+  const Outcome outcome = understudy("scenario run" + files + " --processes 2");
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("7 passed, 0 failed"));
+  EXPECT_THAT(outcome.out, HasSubstr(std::to_string(names.size()) + " passed, 0 failed"));
+}
+
+TEST(PaperScenarios, HansPartsHoldWhatIsExpectedOfThem) {
+  run_papers({"han-cylinder", "han-rectangle", "han-s"});
+}
+
+TEST(ExtendedPaperScenarios, PartsWithTwoBendsHoldWhatIsExpectedOfThem) {
+  run_papers({"han-two-bends-bar", "han-two-bends-oval", "han-two-bends-round", "han-side-level"});
+}
+
+TEST(PaperScenarios, AreAllRun) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kSource + "/scenarios/papers"))
+    files += entry.path().extension() == ".yaml" ? 1 : 0;
+  EXPECT_EQ(files, 7) << "name a new one in a test above";
 }
 
 // Which kinds there must be: tests/regression/limits_and_faults_test.cpp.
