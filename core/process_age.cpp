@@ -1,8 +1,8 @@
 #include "core/process_age.h"
 
-#include <time.h>
 #include <unistd.h>
 
+#include <ctime>
 #include <fstream>
 #include <limits>
 #include <string>

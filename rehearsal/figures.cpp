@@ -251,8 +251,7 @@ std::vector<Figure> timing_figures(const Record& record) {
   all.put("wall_s", record.timing->wall_s);
   if (record.timing->wall_s > 0)
     all.put("real_time_factor", record.timing->simulated_s / record.timing->wall_s);
-  if (record.timing->to_first_setpoint_s)
-    all.put("to_first_setpoint_s", *record.timing->to_first_setpoint_s);
+  if (record.timing->to_first_setpoint_s) all.put("to_first_setpoint_s", *record.timing->to_first_setpoint_s);
   return all.take();
 }
 

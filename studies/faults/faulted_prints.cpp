@@ -122,7 +122,7 @@ DrawnRun draw_run(const FaultedPrintsRequest& study, const PoolPrint& print, std
   request.as_built = run.as_built;
   request.seed = run.seed;
   request.gap_control = run.gap_control;
-  request.keep_scene = request.compare_without_gap_control = false;
+  request.compare_without_gap_control = false;
   if (!run.fault_words.empty()) rehearsal::add_fault(run.fault_words, request);
   return drawn;
 }

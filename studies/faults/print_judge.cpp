@@ -113,7 +113,7 @@ void IntendedPrint::add_place(const Pose& X_WT, double length, const geometry::M
     }
   }
   const bool lies = std::isfinite(layer);
-  const Place place{length, on_ground, lies, lies ? layer : 0,
+  const Place place{length, on_ground, lies,
                     lies ? std::max(tolerances_.gap_max, layer + tolerances_.gap_above) : 0};
   places_.push_back(place);
   tips_W_.push_back(tip);
@@ -185,8 +185,11 @@ namespace {
 /// Walks along the truth of a print.
 class Judge {
  public:
-  explicit Judge(const IntendedPrint& intended)
-      : intended_(intended), allowed_(intended.tolerances()), covered_(intended.places().size()) {}
+  Judge(const IntendedPrint& intended, const sim::Workpiece* printed)
+      : intended_(intended),
+        allowed_(intended.tolerances()),
+        printed_(printed),
+        covered_(intended.places().size()) {}
 
   void look(const TracePoint& point) {
     printing_ = printing_ || point.extruding;
@@ -227,10 +230,7 @@ class Judge {
     truth_.orientation_max = std::max(truth_.orientation_max, at.angle);
     cover(point);
     const double way = last_ ? (point.X_WT.translation() - last_->X_WT.translation()).norm() : 0;
-    way_ += way;
-    // A closed outline ends on the bead that it began with.
-    if (!place.on_ground || !over_laid_bead(point))
-      low_.add(place.on_ground && point.gap < allowed_.gap_min - kRounding, way);
+    low_.add(place.on_ground && over_ground(point) < allowed_.gap_min - kRounding, way);
     high_.add(place.lies && !(point.gap <= place.highest + kRounding), way);
     // No deeper than that is a nozzle that crosses the bead that it has laid, which is as high as its tip.
     if (place.on_ground && point.gap < -allowed_.gap_min / 2) touched_ = true;
@@ -239,23 +239,15 @@ class Judge {
       truth_.gap_max = gaps_ ? std::max(truth_.gap_max, point.gap) : point.gap;
       gaps_ = true;
     }
-    if (place.lies && point.gap > 0 &&
-        (laid_.empty() || way_ - laid_.back().way > allowed_.bore / kPlacesPerBore))
-      laid_.push_back({point.X_WT.translation(), way_, allowed_.bore * place.layer / point.gap / 2});
     last_ = &point;
   }
 
-  /// Over one that is as wide as its material makes it at the gap that it was laid with.
-  bool over_laid_bead(const TracePoint& point) const {
-    const Vec3 axis = tool_axis(point.X_WT);
-    for (const Laid& bead : laid_) {
-      if (way_ - bead.way <= kOwnBead * allowed_.bore) break;
-      const Vec3 from_bead = point.X_WT.translation() - bead.tip_W;
-      const double height = from_bead.dot(axis);
-      if (std::abs(height) <= allowed_.gap_max && (from_bead - height * axis).norm() <= bead.half_width)
-        return true;
-    }
-    return false;
+  /// [m], to part or table as they truly are. The gap is less over a bead, as where an outline ends on its
+  /// beginning or passes the corner of its neighbour.
+  double over_ground(const TracePoint& point) const {
+    if (!printed_ || point.gap >= allowed_.gap_min) return point.gap;
+    const auto ground = printed_->below(point.X_WT, 0);
+    return ground ? ground->distance : kReach;
   }
 
   /// Once in a part of a place's length is enough.
@@ -267,17 +259,10 @@ class Judge {
     covering_ = tip;
   }
 
-  struct Laid {
-    Vec3 tip_W;
-    double way = 0;         // [m] of path with extrusion
-    double half_width = 0;  // [m]
-  };
-
   const IntendedPrint& intended_;
   const PrintTolerances& allowed_;
   PrintTruth truth_;
-  std::vector<Laid> laid_;  // in order
-  double way_ = 0;          // [m]
+  const sim::Workpiece* printed_;  // null: what lies below is not known but by the gap
   std::vector<bool> covered_;
   Stretch low_, high_;
   bool touched_ = false, printing_ = false, gaps_ = false;
@@ -288,7 +273,7 @@ class Judge {
 }  // namespace
 
 PrintTruth judge_print(const IntendedPrint& intended, const Record& run) {
-  Judge judge(intended);
+  Judge judge(intended, run.scene ? run.scene->printed.get() : nullptr);
   for (const TracePoint& point : run.trace) judge.look(point);
   return judge.truth(run);
 }

@@ -39,7 +39,6 @@ class IntendedPrint {
     double length = 0;       ///< [m]
     bool on_ground = false;  ///< over part or table, not over beads: the nozzle may not come too near
     bool lies = false;       ///< on part, table or a bead before it: the bead may not hang
-    double layer = 0;        ///< [m], over what it lies on
     /// [m], above which a bead hangs: gap_max, or as much over the programmed layer as that over the aim.
     double highest = 0;
   };

@@ -1,6 +1,7 @@
 #include "studies/faults/print_judge.h"
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -182,7 +183,8 @@ TEST(PrintJudge, WhatIsNotLaidIsMissed) {
   EXPECT_EQ(flaws({}), "incomplete") << "nothing was simulated";
 }
 
-/// One line of the program through these points; the trace goes along it with `gap` of what was gone.
+/// One line of the program through these points on the table; the trace goes along it with `gap` of what was
+/// gone.
 struct Path {
   std::vector<Vec3> points;
   std::function<double(double way, const Vec3& tip)> gap;
@@ -212,19 +214,32 @@ PrintTruth judged(const Path& path) {
     way += (to - from).norm();
   }
   run.print.emplace();
+  run.scene.emplace();
+  run.scene->printed = std::make_shared<sim::Workpiece>(nullptr);
   run.print->extruded_mm = run.print->printed_mm = run.print->deposited_mm =
       to_mm(kFilament) * static_cast<double>(path.points.size() - 1);
   return judge_print(IntendedPrint(program, nullptr, kAllowed), run);
 }
 
-TEST(PrintJudge, AClosedOutlineEndsOnTheBeadThatItBeganWith) {
-  // At 0.11 mm in place of 0.13 mm a bead is 0.47 mm wide.
-  const auto square = [](double low_from) {
-    return Path{{{0, 0, kGap}, {4e-3, 0, kGap}, {4e-3, 4e-3, kGap}, {0, 4e-3, kGap}, {0, -0.3e-3, kGap}},
-                [=](double way, const Vec3&) { return way > low_from ? 0 : 0.11e-3; }};
+TEST(PrintJudge, ANozzleIsNotTooLowOverABeadThatItEndsOn) {
+  // Over the last 0.5 mm the gap is that to the bead that the outline began with.
+  const auto square = [](double height) {
+    return Path{
+        {{0, 0, height}, {4e-3, 0, height}, {4e-3, 4e-3, height}, {0, 4e-3, height}, {0, -0.3e-3, height}},
+        [=](double way, const Vec3&) { return way > 15.8e-3 ? 0 : height; }};
   };
-  EXPECT_EQ(flaw_words(judged(square(15.8e-3)).flaws), "") << "0.5 mm, over the bead";
-  EXPECT_EQ(flaw_words(judged(square(15.1e-3)).flaws), "too low") << "0.66 mm before it";
+  EXPECT_EQ(flaw_words(judged(square(kGap)).flaws), "");
+}
+
+TEST(PrintJudge, ANozzleIsTooLowNearTheTableWhateverLiesThere) {
+  Record low = record(1, [](double along, TracePoint& point) {
+    if (along < 0.5 || along > 0.55) return;
+    point.X_WT.translation().z() = 0.09e-3;
+    point.gap = 0;
+  });
+  low.scene.emplace();
+  low.scene->printed = std::make_shared<sim::Workpiece>(nullptr);
+  EXPECT_EQ(flaws(low), "too low") << "0.5 mm";
 }
 
 TEST(PrintJudge, ALineThatRisesFromTheTableLiesOnNothing) {
