@@ -56,12 +56,6 @@ void look(const ProgrammedLine& laid, const ProgrammedStack& stack, const Lying&
   place.lies = gap >= lying.least && gap <= lying.most;
 }
 
-/// [m] of a stretch over what lies too low: a bead reaches so far from the ends that are held.
-double reach_of(const sim::UnsupportedStretch& stretch, const machine::Tool& tool) {
-  const int ends = (stretch.held_at_start ? 1 : 0) + (stretch.held_at_end ? 1 : 0);
-  return ends * tool.nozzle_diameter;
-}
-
 Finding hanging_finding(const sim::UnsupportedStretch& stretch, double support) {
   Finding f;
   f.kind = "adhesion";
@@ -118,16 +112,16 @@ std::vector<double> programmed_support(const ProgrammedPrint& print,
 
 std::vector<Finding> support_findings(const ProgrammedPrint& print,
                                       const std::vector<sim::UnsupportedStretch>& loose) {
+  const double reach =
+      2 * print.machine.tool.nozzle_diameter;  // by a bore from what is there before and after
   std::vector<sim::UnsupportedStretch> held;
   for (const sim::UnsupportedStretch& stretch : loose)
-    if ((sim::hangs_in_air(stretch) || sim::spans_a_groove(stretch)) &&
-        stretch.length > reach_of(stretch, print.machine.tool))
+    if ((sim::hangs_in_air(stretch) || sim::spans_a_groove(stretch)) && stretch.length > reach)
       held.push_back(stretch);
   const std::vector<double> support = programmed_support(print, held);
   std::vector<Finding> findings;
   for (std::size_t i = 0; i < held.size(); ++i)
-    if (support[i] > reach_of(held[i], print.machine.tool))
-      findings.push_back(hanging_finding(held[i], support[i]));
+    if (support[i] > reach) findings.push_back(hanging_finding(held[i], support[i]));
   return findings;
 }
 

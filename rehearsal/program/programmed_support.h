@@ -28,7 +28,8 @@ std::vector<double> programmed_support(const ProgrammedPrint& print,
                                        const std::vector<sim::UnsupportedStretch>& stretches);
 
 /// An error for each stretch that passes for a bridge or for one over a groove, because its ends are held,
-/// and that the program lays on something: over more of its path than a bore from each end that is held.
+/// and that the program lays on something: over more of its path than two bores, one from what is there
+/// before and one from what comes after.
 std::vector<Finding> support_findings(const ProgrammedPrint& print,
                                       const std::vector<sim::UnsupportedStretch>& loose);
 

@@ -52,7 +52,7 @@ TEST(NewMachine, OfAUrdfIsRehearsedAtOnceAndSaysWhatIsAssumed) {
             HasSubstr("nobody measured these figures of the machine: place (which poses can be reached")));
 }
 
-TEST(NewMachine, OfEveryReadyKindIsReadAsItIs) {
+TEST(ExtendedNewMachine, OfEveryReadyKindIsReadAsItIs) {
   const Folder folder;
   for (const char* kind : {"hexapod", "trunnion-ac", "corexy", "arm-positioner"}) {
     const Outcome made = understudy(fmt::format("new-machine --kind {} -o {}", kind, folder / kind));

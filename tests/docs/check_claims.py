@@ -108,8 +108,10 @@ def wrong_figures(arguments, command):
 
 def missing_tests(arguments, claims):
     """Claims whose test is none of CTest's, and none of a suite that is one of CTest's."""
-    listed = subprocess.run(["ctest", "--test-dir", arguments.tests, "--show-only=json-v1"], text=True, stdout=subprocess.PIPE,
-                            check=True).stdout
+    with tempfile.TemporaryDirectory() as folder:  # in the build's own folder ctest would begin the log of the running tests anew
+        with open(os.path.join(folder, "CTestTestfile.cmake"), "w") as file:
+            file.write(f'subdirs("{os.path.abspath(arguments.tests)}")\n')
+        listed = subprocess.run(["ctest", "--test-dir", folder, "--show-only=json-v1"], text=True, stdout=subprocess.PIPE, check=True).stdout
     commands = {test["name"]: test.get("command", []) for test in json.loads(listed)["tests"]}
 
     def exists(name):

@@ -274,7 +274,7 @@ TEST_P(HostilePlugin, FailsInItsTimeWithoutTheBox) {
   ::unsetenv("UNDERSTUDY_PLUGIN_BOX");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, HostilePlugin, ::testing::ValuesIn(kAll), [](const auto& plugin) {
+INSTANTIATE_TEST_SUITE_P(Extended, HostilePlugin, ::testing::ValuesIn(kAll), [](const auto& plugin) {
   const std::string file = plugin.param.file;
   return file.substr(0, file.find('.'));
 });

@@ -253,7 +253,7 @@ TEST(ScenarioList, NamesTheShippedScenarios) {
     EXPECT_THAT(outcome.out, HasSubstr(name));
 }
 
-TEST(Sweep, DoesNotDependOnTheNumberOfThreads) {
+TEST(ExtendedSweep, DoesNotDependOnTheNumberOfThreads) {
   const Folder folder;
   const std::string scenario = kSource + "/scenarios/song-bottle.yaml --samples 3 ";
   ASSERT_EQ(understudy("sweep " + scenario + "-j 1 --out " + (folder / "one")).status, 0);

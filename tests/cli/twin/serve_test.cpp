@@ -106,7 +106,7 @@ TEST(ServeCommand, CtrlCEndsWithTheReportOfWhatHasCome) {
   EXPECT_TRUE(fs::exists(folder / "served/report.html"));
 }
 
-TEST(ServeCommand, PronsolePrintsOnTheTwin) {
+TEST(ExtendedServeCommand, PronsolePrintsOnTheTwin) {
   if (std::system("command -v pronsole >/dev/null 2>&1") != 0) GTEST_SKIP() << "needs Debian's printrun";
   const Folder folder;
   const std::string pty = folder / "twin", results = folder / "served";

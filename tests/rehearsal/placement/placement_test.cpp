@@ -309,7 +309,9 @@ TEST_F(PlacementSearched, ARehearsalWithoutAPlaceIsNoGoWithTheReason) {
   EXPECT_TRUE(said);
 }
 
-TEST_F(PlacementSearched, TheSameEveryTime) {
+using ExtendedPlacementSearched = PlacementSearched;
+
+TEST_F(ExtendedPlacementSearched, TheSameEveryTime) {
   const RehearsalRequest asked = request(circle({13, -7, 40}, 10), "hexapod");
   const Placement a = find_placement(asked, {}), b = find_placement(asked, {});
   EXPECT_EQ(place_words(a.place), place_words(b.place));

@@ -54,7 +54,7 @@ TEST(ProgrammedSupport, IsThePathThatTheProgramLaysOnSomething) {
   EXPECT_EQ(support(two_lines(0, 1.0), 2), 0) << "0.87 mm over the line below";
 }
 
-TEST(ProgrammedSupport, WhatHangsThereIsAnErrorBeyondABoreFromEachHeldEnd) {
+TEST(ProgrammedSupport, WhatHangsThereIsAnErrorBeyondTwoBores) {
   EXPECT_TRUE(findings(two_lines(), hanging(0.79)).empty());
   const auto found = findings(two_lines(), hanging(1.4));
   ASSERT_EQ(found.size(), 1u);

@@ -40,7 +40,7 @@ json comparable(const CalibrationBenchmark& benchmark) {
   return value;
 }
 
-TEST(CalibrationBenchmark, IsTheSameForEveryNumberOfThreads) {
+TEST(ExtendedCalibrationBenchmark, IsTheSameForEveryNumberOfThreads) {
   CalibrationBenchmarkRequest request = small();
   request.trials = 2;
   request.disturbances = {Disturbance::none, Disturbance::outliers, Disturbance::play};
