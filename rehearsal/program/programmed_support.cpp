@@ -25,17 +25,25 @@ constexpr double kRounding = 1e-6;  // [m], of a gap: printed surfaces are known
 /// A place of a stretch and what the program means at the nearest place of its lines.
 struct Place {
   Vec3 tip_W;
+  int first_line = 0, last_line = 0;
   double distance = std::numeric_limits<double>::infinity();  // [m], of the nearest so far
   bool lies = false;                                          // there, as programmed
 };
 
+/// By their numbers.
+struct Asked {
+  std::size_t stretch = 0, place = 0;
+};
+
 /// Evenly, at most `spacing` [m] apart.
-std::vector<Place> places_of(const std::vector<Vec3>& path_W, double spacing) {
+std::vector<Place> places_of(const sim::UnsupportedStretch& stretch, double spacing) {
   std::vector<Place> places;
-  for (std::size_t i = 1; i < path_W.size(); ++i) {
-    const Vec3 way = path_W[i] - path_W[i - 1];
+  for (std::size_t i = 1; i < stretch.path_W.size(); ++i) {
+    const Vec3 way = stretch.path_W[i] - stretch.path_W[i - 1];
     const double count = std::max(1.0, std::ceil(way.norm() / spacing));
-    for (double k = 0; k < count; ++k) places.push_back({path_W[i - 1] + (k + 0.5) / count * way});
+    for (double k = 0; k < count; ++k)
+      places.push_back(
+          {stretch.path_W[i - 1] + (k + 0.5) / count * way, stretch.lines[i - 1], stretch.lines[i]});
   }
   return places;
 }
@@ -60,7 +68,7 @@ Finding hanging_finding(const sim::UnsupportedStretch& stretch, double support) 
   Finding f;
   f.kind = "adhesion";
   f.gcode_line = stretch.line;
-  f.last_line = stretch.last_line;
+  f.last_line = stretch.lines.back();
   f.time_s = stretch.time;
   f.value = to_mm(std::isfinite(stretch.worst_gap) ? stretch.worst_gap : sim::kGapReach);
   f.limit = to_mm(stretch.highest_gap);
@@ -91,19 +99,21 @@ std::vector<double> programmed_support(const ProgrammedPrint& print,
   std::vector<double> support(stretches.size(), 0);
   if (stretches.empty()) return support;
   std::vector<std::vector<Place>> places;
-  std::unordered_map<int, std::vector<std::size_t>> of_line;
+  std::unordered_map<int, std::vector<Asked>> of_line;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
-    places.push_back(places_of(stretches[i].path_W, print.machine.tool.nozzle_diameter / kPlacesPerBore));
-    for (int line = stretches[i].line; line <= stretches[i].last_line; ++line) of_line[line].push_back(i);
+    places.push_back(places_of(stretches[i], print.machine.tool.nozzle_diameter / kPlacesPerBore));
+    for (std::size_t k = 0; k < places[i].size(); ++k)
+      for (int line = places[i][k].first_line; line <= places[i][k].last_line; ++line)
+        of_line[line].push_back({i, k});
   }
   lay_program(print.program, print.machine, print.part, programmed_areas(print.program, print.machine),
               [&](const ProgrammedLine& laid, const ProgrammedStack& stack) {
                 const double layer = print.layers.layer(laid.line);
                 const auto asked = of_line.find(laid.line);
                 if (asked != of_line.end())
-                  for (const std::size_t i : asked->second)
-                    for (Place& place : places[i])
-                      look(laid, stack, {layer / 2, stretches[i].highest_gap + kRounding}, place);
+                  for (const auto& [stretch, place] : asked->second)
+                    look(laid, stack, {layer / 2, stretches[stretch].highest_gap + kRounding},
+                         places[stretch][place]);
                 return kAsStrand;
               });
   for (std::size_t i = 0; i < stretches.size(); ++i) support[i] = longest_support(places[i], stretches[i]);

@@ -23,7 +23,7 @@ struct ProgrammedPrint {
 
 /// [m], for each stretch: the longest piece of its path that the program lays on part, table or what it
 /// printed before: from half of its line's layer to the stretch's `highest_gap` above it. Each place of the
-/// stretch stands for the nearest one on the lines from `line` to `last_line`.
+/// stretch stands for the nearest one on the lines on which it was laid.
 std::vector<double> programmed_support(const ProgrammedPrint& print,
                                        const std::vector<sim::UnsupportedStretch>& stretches);
 

@@ -45,8 +45,7 @@ struct LaidBead {
 struct UnsupportedStretch {
   Adhesion adhesion = Adhesion::unsupported;
   int line = 0;                      ///< where it begins
-  int last_line = 0;                 ///< where it ends
-  double time = 0;                   ///< [s], where it begins
+  double time = 0;                   ///< [s], there
   Vec3 place_W{0, 0, 0};             ///< there
   double length = 0;                 ///< [m]
   double volume = 0;                 ///< [m^3]
@@ -61,6 +60,7 @@ struct UnsupportedStretch {
   double width = 0;             ///< [m], of its line, or of what was laid before it
   std::vector<Vec3> path_W;     ///< [m], of an unsupported one: middle of the strand as laid
   std::vector<double> laid_at;  ///< [s], one a point of path_W
+  std::vector<int> lines;       ///< of the program, likewise
 };
 
 /// Where the gap is deepest below its band, or least above its lower end.

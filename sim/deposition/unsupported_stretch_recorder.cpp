@@ -43,6 +43,7 @@ void UnsupportedStretchRecorder::begin(const Element& element, const Conditions&
         (bead.follows && last_held_) || touches_something(start, bead.height, first_bead_);
     stretch.path_W.push_back(start);
     stretch.laid_at.push_back(bead.start_time);
+    stretch.lines.push_back(bead.start_line);
   }
   stretches_.push_back(std::move(stretch));
   open_ = true;
@@ -51,7 +52,6 @@ void UnsupportedStretchRecorder::begin(const Element& element, const Conditions&
 void UnsupportedStretchRecorder::extend(const Element& element, const Conditions& conditions) {
   const LaidBead& bead = element.bead;
   UnsupportedStretch& stretch = stretches_.back();
-  stretch.last_line = bead.line;
   stretch.length += bead.length;
   stretch.volume += bead.volume;
   // Not the widest of it, nor what stuck before at any width: a drop is no beam.
@@ -67,6 +67,7 @@ void UnsupportedStretchRecorder::extend(const Element& element, const Conditions
   if (bead.adhesion != Adhesion::unsupported) return;
   stretch.path_W.push_back(middle_of_strand(element.tip_to_W, bead));
   stretch.laid_at.push_back(bead.time);
+  stretch.lines.push_back(bead.line);
 }
 
 void UnsupportedStretchRecorder::end(bool held) {

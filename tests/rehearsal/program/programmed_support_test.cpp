@@ -23,7 +23,8 @@ toolpath::Program two_lines(double begin = 0, double height = 0.26) {
 /// In truth, `length` [mm] from x = 5 mm on lay 0.21 mm over what was below; both ends are held.
 sim::UnsupportedStretch hanging(double length, int line = kAbove) {
   sim::UnsupportedStretch stretch;
-  stretch.line = stretch.last_line = line;
+  stretch.line = line;
+  stretch.lines = {line, line};
   stretch.length = from_mm(length);
   stretch.volume = stretch.length * 0.056e-6;
   stretch.width = 0.43e-3;
