@@ -227,6 +227,54 @@ CollisionFigures collision_figures(const sim::CollisionObserver& collision) {
   return figures;
 }
 
+/// What the observers of a print that has ended saw.
+void take_results(const TwinSetup& setup, const RunOptions& options, Watch& watch, TwinRun& run) {
+  run.accuracy = watch.trace.accuracy();
+  run.tip_peak = watch.trace.tip_peak();
+  run.orientation_peak = watch.trace.orientation_peak();
+  run.trace_stride = watch.trace.stride();
+  run.trace = watch.trace.take();
+  run.curves = watch.curves.take();
+  if (setup.machine.tool.prints() && !setup.cure)
+    run.curves.glass_transition = setup.material.glass_transition;
+  run.deposition = watch.deposition.summary();
+  run.loose = watch.deposition.unsupported_stretches();
+  run.flow = watch.flow.stretches();
+  run.fill = watch.fill.figures();
+  run.workpiece = watch.workpiece;
+  run.strands = watch.strands.finish();
+  if (watch.removal) {
+    run.removal = watch.removal->summary();
+    run.milled = std::make_shared<sim::MilledSurface>(watch.removal->surface());
+  }
+  if (options.watch_collisions) {
+    run.collisions = watch.collision.collisions();
+    run.near_collisions = watch.collision.near_collisions();
+    run.collision = collision_figures(watch.collision);
+  }
+}
+
+sim::TwinOptions twin_options(const TwinSetup& setup, const RunOptions& options) {
+  sim::TwinOptions twin;
+  twin.faults = setup.faults;
+  twin.camera_faults = setup.camera_faults;
+  twin.seed = setup.seed;
+  twin.nozzle_offset = setup.as_built.nozzle_offset;
+  twin.hold_at_limits = options.beyond_limits;
+  if (!setup.machine.file.empty())
+    twin.load_encoders.emplace(setup.truth, setup.as_built,
+                               machine::load_encoder_counts(setup.machine.file.string()));
+  return twin;
+}
+
+void note_inputs(const TwinSetup& setup, machine::RecordWriter& writer) {
+  writer.note(fmt::format("version {}", kVersion));
+  writer.note("program " + setup.program.file);
+  writer.note("program_sha256 " + setup.program.sha256);
+  writer.note("machine_sha256 " + setup.machine.sha256);
+  writer.note("port twin://" + setup.engine);
+}
+
 }  // namespace
 
 std::unique_ptr<sim::Plant> make_plant(const TwinSetup& setup) {
@@ -253,28 +301,15 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
     truth[shot.number] = {watch.gap(X_WT), microscope->true_dot(X_WT)};
     return microscope->expose(shot);
   };
-  sim::TwinOptions twin;
-  twin.faults = setup.faults;
-  twin.camera_faults = setup.camera_faults;
-  twin.seed = setup.seed;
-  twin.nozzle_offset = setup.as_built.nozzle_offset;
-  twin.hold_at_limits = options.beyond_limits;
-  if (!setup.machine.file.empty())
-    twin.load_encoders.emplace(setup.truth, setup.as_built,
-                               machine::load_encoder_counts(setup.machine.file.string()));
   sim::SimulatedPort port(setup.machine, *plant, microscope ? sim::Exposure(expose) : sim::Exposure(),
-                          {&watch.thread}, twin);
+                          {&watch.thread}, twin_options(setup, options));
 
   std::optional<machine::RecordWriter> writer;
   std::optional<machine::RecordingPort> recorded;
   if (!options.record.empty()) {
     writer.emplace(options.record, port.axis_count());
     recorded.emplace(port, *writer);
-    writer->note(fmt::format("version {}", kVersion));
-    writer->note("program " + setup.program.file);
-    writer->note("program_sha256 " + setup.program.sha256);
-    writer->note("machine_sha256 " + setup.machine.sha256);
-    writer->note("port twin://" + setup.engine);
+    note_inputs(setup, *writer);
   }
   machine::MachinePort& seen = recorded ? static_cast<machine::MachinePort&>(*recorded) : port;
 
@@ -303,30 +338,8 @@ TwinRun run_twin(const TwinSetup& setup, const RunOptions& options, const Progre
   if (!port.engine_failure().empty()) throw MachineError(port.engine_failure());
   watch.deposition.finish();
 
-  run.accuracy = watch.trace.accuracy();
-  run.tip_peak = watch.trace.tip_peak();
-  run.orientation_peak = watch.trace.orientation_peak();
-  run.trace_stride = watch.trace.stride();
-  run.trace = watch.trace.take();
-  run.curves = watch.curves.take();
-  if (setup.machine.tool.prints() && !setup.cure)
-    run.curves.glass_transition = setup.material.glass_transition;
+  take_results(setup, options, watch, run);
   run.frames = pair_with_truth(run.result, truth);
-  run.deposition = watch.deposition.summary();
-  run.loose = watch.deposition.unsupported_stretches();
-  run.flow = watch.flow.stretches();
-  run.fill = watch.fill.figures();
-  run.workpiece = watch.workpiece;
-  run.strands = watch.strands.finish();
-  if (watch.removal) {
-    run.removal = watch.removal->summary();
-    run.milled = std::make_shared<sim::MilledSurface>(watch.removal->surface());
-  }
-  if (options.watch_collisions) {
-    run.collisions = watch.collision.collisions();
-    run.near_collisions = watch.collision.near_collisions();
-    run.collision = collision_figures(watch.collision);
-  }
   run.altered_frames = port.altered_frames();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
   run.engine = engine_of(*plant, port);

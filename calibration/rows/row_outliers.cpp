@@ -48,15 +48,21 @@ AddedNoise at_least(AddedNoise noise, const AddedNoise& least) {
   return noise;
 }
 
+struct Fitting {
+  bool machine_too = false;
+  int max_iterations = 0;
+  AddedNoise least{};  // no noise is taken to be below it
+};
+
 /// Fits with weights that sharpen until all rows are either in or out. `at.fit` in: of all rows alike.
 void sharpen(const RowLikelihood& likelihood, const RowProblem& problem, const RowState& start,
-             const AddedNoise& least, bool machine_too, int max_iterations, AgreeingFit& at) {
+             const Fitting& how, AgreeingFit& at) {
   double scale = 0;
   int settling = 0;
   for (int round = 0; round < kWeightRounds && settling < kSettlingRounds; ++round) {
-    at.noise = at_least(median_noise(problem, at.fit.error, at.fit.fitted, at.noise), least);
-    at.fit = likelihood.fit({start.machine, at.fit.state.around}, at.noise, machine_too, max_iterations,
-                            at.weights);
+    at.noise = at_least(median_noise(problem, at.fit.error, at.fit.fitted, at.noise), how.least);
+    at.fit = likelihood.fit({start.machine, at.fit.state.around}, at.noise, how.machine_too,
+                            how.max_iterations, at.weights);
     const double most = farthest(problem, at.fit);
     scale = std::max(kSharpest, kSharper * (round == 0 ? most : std::min(scale, most)));
     at.weights = softened(problem, at.fit, scale);
@@ -86,7 +92,7 @@ AgreeingFit fit_agreeing(const RowLikelihood& likelihood, const RowProblem& prob
   AgreeingFit at;
   at.noise = noise;
   at.fit = likelihood.fit(start, noise, machine_too, max_iterations);
-  sharpen(likelihood, problem, start, AddedNoise{}, machine_too, max_iterations, at);
+  sharpen(likelihood, problem, start, {machine_too, max_iterations}, at);
   for (int round = 0; round < kReturnRounds; ++round) {
     at.fit = likelihood.fit_with_noise({start.machine, at.fit.state.around}, at.noise, machine_too,
                                        max_iterations, at.weights);
@@ -108,7 +114,7 @@ std::optional<AgreeingFit> fitted_surroundings(const RowLikelihood& likelihood, 
     if (std::isfinite(at.fit.chi_square) && (!best || at.fit.chi_square < best->fit.chi_square)) best = at;
   }
   if (best && farthest(problem, best->fit) > 1)
-    sharpen(likelihood, problem, {problem.nominal, best->fit.state.around}, noise, false, max_iterations,
+    sharpen(likelihood, problem, {problem.nominal, best->fit.state.around}, {false, max_iterations, noise},
             *best);
   return best;
 }

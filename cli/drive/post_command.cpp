@@ -71,8 +71,8 @@ int post(PostOptions options) {
   const drivers::GcodeAxes axes = drivers::gcode_axes(family, print.machine, words);
 
   std::string text = header(options, print);
-  drivers::PostPort port(print.machine, family, axes, tolerance_of(options), home_of(print.machine),
-                         !options.no_outputs, [&](const std::string& line) { text += line + "\n"; });
+  drivers::PostPort port(print.machine, {family, axes, tolerance_of(options), !options.no_outputs},
+                         home_of(print.machine), [&](const std::string& line) { text += line + "\n"; });
   port.begin();
   control::PrintOptions how;
   how.gap_control = control::GapControl::off;

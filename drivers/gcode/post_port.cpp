@@ -15,13 +15,12 @@ constexpr double kToStart = 5;  // [s], for a machine that is not quite there
 
 }  // namespace
 
-PostPort::PostPort(const machine::MachineDescription& machine, GcodeFamily family, const GcodeAxes& axes,
-                   const FitTolerance& tolerance, const machine::AxisVector& start, bool has_outputs,
-                   std::function<void(const std::string&)> line)
-    : writer_(family, axes),
+PostPort::PostPort(const machine::MachineDescription& machine, const PostController& controller,
+                   const machine::AxisVector& start, std::function<void(const std::string&)> line)
+    : writer_(controller.family, controller.axes),
       path_(machine, kCapacity, start),
-      fitter_(tolerance, axes.grid, axes.turns),
-      has_outputs_(has_outputs),
+      fitter_(controller.tolerance, controller.axes.grid, controller.axes.turns),
+      has_outputs_(controller.has_outputs),
       line_(std::move(line)) {
   fitter_.begin(path_.last());
 }

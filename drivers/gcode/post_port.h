@@ -20,13 +20,20 @@ struct PostFigures {
   std::size_t bytes_in_second = 0;
 };
 
+/// The controller that a program is written for.
+struct PostController {
+  GcodeFamily family = GcodeFamily::marlin;
+  GcodeAxes axes;
+  FitTolerance tolerance;
+  bool has_outputs = true;  ///< false: heater and fan are not its business
+};
+
 /// The machine rests at `start`. Its clock runs as fast as it is asked to. There is no camera; outputs become
 /// lines, or none where the controller has none.
 class PostPort : public machine::MachinePort {
  public:
-  PostPort(const machine::MachineDescription& machine, GcodeFamily family, const GcodeAxes& axes,
-           const FitTolerance& tolerance, const machine::AxisVector& start, bool has_outputs,
-           std::function<void(const std::string&)> line);
+  PostPort(const machine::MachineDescription& machine, const PostController& controller,
+           const machine::AxisVector& start, std::function<void(const std::string&)> line);
 
   /// Lines that put the controller in order and take it to the start; before anything else.
   void begin();

@@ -88,8 +88,7 @@ TEST_P(PostedFor, ReadsBackAsTheSamePath) {
   const GcodeAxes axes = gcode_axes(family, machine, {});
   std::vector<std::string> lines;
   const FitTolerance tolerance;
-  PostPort port(machine, family, axes, tolerance, home, true,
-                [&](const std::string& l) { lines.push_back(l); });
+  PostPort port(machine, {family, axes, tolerance}, home, [&](const std::string& l) { lines.push_back(l); });
   port.begin();
   const auto path = path_from(home, count);
   ASSERT_EQ(port.submit(path, 1e9), machine::Status::ok);
@@ -128,7 +127,7 @@ TEST(PostPort, NamesEveryAxisAtTheStartAndWritesOutputs) {
   machine::AxisVector home{};
   home.fill(0.2);
   std::vector<std::string> lines;
-  PostPort port(machine, GcodeFamily::marlin, gcode_axes(GcodeFamily::marlin, machine, {}), {}, home, true,
+  PostPort port(machine, {GcodeFamily::marlin, gcode_axes(GcodeFamily::marlin, machine, {}), {}}, home,
                 [&](const std::string& line) { lines.push_back(line); });
   port.begin();
   ASSERT_EQ(port.set_outputs({483.15, 0.5}, 1), machine::Status::ok);
