@@ -104,6 +104,12 @@ std::string about_gap(const Finding& finding, const Record& record) {
 
 std::string about_adhesion(const Finding& finding, const Record& record) {
   if (finding.about == kTooLow) return raise_nozzle(record.gap_accepted_min_mm - finding.value, record);
+  if (finding.about == kLifted && record.gap_control != "continuous")
+    return record.measures_gap ? raise_nozzle(0, record) : calibrate(record);
+  if (finding.about == kLifted)
+    return "look at the curves of gap and tip error from this line on: what lifts the nozzle there is play, "
+           "heat or lost "
+           "steps, or an offset that was carried on; begin such beads where the dot meets what is printed";
   if (finding.about == kCold)
     return "print the layer sooner, hotter (`M104 S...`) or with less fan (`M106 S...`)";
   if (finding.about == kNothingBelow && record.fixture_name.empty())

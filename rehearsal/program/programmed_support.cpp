@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "rehearsal/findings/advice.h"
 #include "rehearsal/findings/place_text.h"
 #include "rehearsal/program/programmed_areas.h"
 #include "rehearsal/program/programmed_stack.h"
@@ -73,7 +74,7 @@ Finding hanging_finding(const sim::UnsupportedStretch& stretch, double support) 
   f.value = to_mm(std::isfinite(stretch.worst_gap) ? stretch.worst_gap : sim::kGapReach);
   f.limit = to_mm(stretch.highest_gap);
   f.unit = "mm";
-  f.about = kTooHigh;
+  f.about = kLifted;
   f.message = fmt::format(
       "bead of {:.2f} mm hangs where the program lays it on something: gap up to {:.3f} mm, above {:.3f} mm, "
       "from {}",

@@ -72,6 +72,13 @@ TEST(Advice, ABeadOverNothingAsksForThePart) {
   EXPECT_THAT(advice(loose, record), Not(HasSubstr("--fixture")));
 }
 
+TEST(Advice, ABeadThatIsLiftedOffItsLayerIsMendedByMeasuringTheGapOrTheMachine) {
+  const Finding lifted{"adhesion", Severity::error, 34, 6, 0.24, 0.2, "mm", "", 0, kLifted};
+  EXPECT_THAT(advice(lifted, on_a_machine(true, "start")), HasSubstr("`--gap-control continuous`"));
+  EXPECT_THAT(advice(lifted, on_a_machine(false, "off")), HasSubstr("understudy calibrate"));
+  EXPECT_THAT(advice(lifted, on_a_machine(true, "continuous")), HasSubstr("curves of gap and tip error"));
+}
+
 // All of the print would rise with the nozzle, and its first layer off the table.
 TEST(Advice, ANozzleThatMeetsABeadIsNotMendedByThePlace) {
   Finding contact{"collision", Severity::error, 9, 1, -0.3, 0, "mm", "", 0, "nozzle and bead"};

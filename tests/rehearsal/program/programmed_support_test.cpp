@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "rehearsal/findings/advice.h"
 #include "tests/rehearsal/program/printer.h"
 #include "toolpath/gcode/gcode.h"
 
@@ -61,6 +62,7 @@ TEST(ProgrammedSupport, WhatHangsThereIsAnErrorBeyondTwoBores) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].severity, Severity::error);
   EXPECT_EQ(found[0].kind, "adhesion");
+  EXPECT_EQ(found[0].about, kLifted);
   EXPECT_EQ(found[0].gcode_line, kAbove);
   EXPECT_NEAR(found[0].value, 0.21, 1e-12);
   EXPECT_NEAR(found[0].limit, 0.2, 1e-12);
