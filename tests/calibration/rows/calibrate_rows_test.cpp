@@ -116,7 +116,7 @@ TEST_P(RowsOfAKind, HaveAnHonestCovariance) {
   EXPECT_NEAR(found.error, 1, 0.36);
   EXPECT_NEAR(found.residual, 1, 0.2);
 }
-INSTANTIATE_TEST_SUITE_P(CalibrateRows, RowsOfAKind, kKinds, kName);
+INSTANTIATE_TEST_SUITE_P(ExtendedCalibrateRows, RowsOfAKind, kKinds, kName);
 
 TEST_P(SlowRowsOfAKind, HaveAnHonestCovarianceOver200Sets) {
   const Honesty found = honesty(GetParam().machine, GetParam().draw, 200);
