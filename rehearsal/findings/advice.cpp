@@ -107,9 +107,8 @@ std::string about_adhesion(const Finding& finding, const Record& record) {
   if (finding.about == kLifted && record.gap_control != "continuous")
     return record.measures_gap ? raise_nozzle(0, record) : calibrate(record);
   if (finding.about == kLifted)
-    return "look at the curves of gap and tip error from this line on: what lifts the nozzle there is play, "
-           "heat or lost "
-           "steps, or an offset that was carried on; begin such beads where the dot meets what is printed";
+    return "look at the curves of gap and tip error from this line on: play, heat, lost steps or an offset "
+           "that was carried on lifts the nozzle; begin such beads where the dot meets what is printed";
   if (finding.about == kCold)
     return "print the layer sooner, hotter (`M104 S...`) or with less fan (`M106 S...`)";
   if (finding.about == kNothingBelow && record.fixture_name.empty())

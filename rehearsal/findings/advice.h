@@ -7,9 +7,6 @@
 
 namespace understudy::rehearsal {
 
-/// Of a bead that hangs where the program lays it on something.
-inline constexpr const char* kLifted = "lifted";
-
 /// One line; commands and options stand between backquotes and fit the run of the record. Empty where there
 /// is nothing to do.
 std::string advice(const Finding& finding, const Record& record);

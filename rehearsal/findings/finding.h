@@ -34,6 +34,7 @@ inline constexpr const char* kOtherMaterial = "another material";
 inline constexpr const char* kStopped = "the print stopped";
 inline constexpr const char* kTooLow = "too low";
 inline constexpr const char* kTooHigh = "too high";
+inline constexpr const char* kLifted = "lifted";  ///< a bead hangs where the program lays it on something
 inline constexpr const char* kNothingBelow = "nothing below";
 inline constexpr const char* kCold = "cold";
 inline constexpr const char* kUnmeasured = "unmeasured start";

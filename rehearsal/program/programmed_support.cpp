@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
-#include "rehearsal/findings/advice.h"
 #include "rehearsal/findings/place_text.h"
 #include "rehearsal/program/programmed_areas.h"
 #include "rehearsal/program/programmed_stack.h"

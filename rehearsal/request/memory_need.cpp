@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/memory.h"
+#include "core/process/memory.h"
 #include "machine/fixture_file.h"
 
 namespace understudy::rehearsal {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "core/process_age.h"
+#include "core/process/process_age.h"
 
 namespace understudy::sim {
 

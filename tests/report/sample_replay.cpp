@@ -7,6 +7,7 @@
 
 #include "core/units.h"
 #include "machine/description.h"
+#include "rehearsal/observers/thinned_series.h"
 #include "rehearsal/observers/trace_observer.h"
 #include "sim/as_built/as_built.h"
 #include "tests/report/sample_record.h"
@@ -65,12 +66,10 @@ void add_sample_replay(Record& record) {
 
 /// As a rehearsal does: beads come of all that happens, the trace keeps no more than its capacity.
 void thin_trace(Record& record) {
-  std::vector<TracePoint>& trace = record.trace;
-  while (trace.size() > rehearsal::TraceObserver::kCapacity) {
-    for (std::size_t i = 0; 2 * i < trace.size(); ++i) trace[i] = trace[2 * i];
-    trace.resize((trace.size() + 1) / 2);
-    record.trace_stride *= 2;
-  }
+  ThinnedSeries<TracePoint> kept(TraceObserver::kCapacity);
+  for (const TracePoint& point : record.trace) kept.add(point);
+  record.trace_stride = static_cast<int>(kept.stride());
+  record.trace = kept.take();
 }
 
 Record sample_large(int moves) {

@@ -44,6 +44,9 @@ TEST(Rehearse, WritesTheContractsFilesAndAnswersByExitStatus) {
   EXPECT_GE(summary["gap"]["start_mm"], 0.1);
   EXPECT_LE(summary["gap"]["start_mm"], 0.2);
   EXPECT_EQ(summary["provenance"]["machine_sha256"].get<std::string>().size(), 64u);
+  const auto timing = nlohmann::json::parse(read_file(folder.path() / "out" / "timing.json"));
+  EXPECT_GT(timing["to_first_setpoint_s"], 0);
+  EXPECT_LT(timing["to_first_setpoint_s"], 60) << "from the start of the process, not of the computer";
   EXPECT_THAT(outcome.out, HasSubstr("report.html"));
 }
 

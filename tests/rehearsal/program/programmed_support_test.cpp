@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
-#include "rehearsal/findings/advice.h"
 #include "tests/rehearsal/program/printer.h"
 #include "toolpath/gcode/gcode.h"
 

@@ -13,7 +13,7 @@
 
 #include "core/error.h"
 #include "core/file/output_file.h"
-#include "core/memory.h"
+#include "core/process/memory.h"
 #include "rehearsal/rehearse.h"
 #include "tests/temporary_folder.h"
 

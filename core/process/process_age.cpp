@@ -1,4 +1,4 @@
-#include "core/process_age.h"
+#include "core/process/process_age.h"
 
 #include <unistd.h>
 
