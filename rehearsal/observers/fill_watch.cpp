@@ -53,8 +53,8 @@ void FillWatch::look(const sim::LaidBead& bead, const Vec3& aside_W, std::size_t
   const bool by_gap = bead.adhesion == sim::Adhesion::sticks && bead.gap > 0;
   const double space = spacing * (by_gap ? bead.gap : bead.height);
   samples_.push_back({static_cast<float>(fed / space), static_cast<float>(laid / space),
-                      static_cast<float>(bead.length), static_cast<float>(bead.time), bead.line,
-                      bead.from_W});
+                      static_cast<float>(bead.length),
+                      static_cast<std::uint32_t>(workpiece_->beads().size() - 1), bead.from_W.cast<float>()});
 }
 
 double FillWatch::fed_on(int line) const {
@@ -63,12 +63,13 @@ double FillWatch::fed_on(int line) const {
 }
 
 const FillWatch::Sample& FillWatch::median(float Sample::*factor, double total) const {
-  std::vector<std::size_t> order(samples_.size());
+  std::vector<std::uint32_t> order(samples_.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return samples_[a].*factor < samples_[b].*factor; });
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return samples_[a].*factor < samples_[b].*factor;
+  });
   double passed = 0;
-  for (const std::size_t i : order) {
+  for (const std::uint32_t i : order) {
     passed += static_cast<double>(samples_[i].length);
     if (passed >= kShare * total) return samples_[i];
   }
@@ -82,12 +83,13 @@ std::optional<FillFigures> FillWatch::figures() const {
   const float factor = median(&Sample::fed, total).fed;
   const auto first =
       std::find_if(samples_.begin(), samples_.end(), [&](const Sample& s) { return s.fed <= factor; });
+  const sim::Bead bead = workpiece_->beads().bead(first->bead);
   return FillFigures{static_cast<double>(factor),
                      static_cast<double>(median(&Sample::laid, total).laid),
                      total,
-                     first->line,
-                     static_cast<double>(first->time),
-                     first->place_W};
+                     bead.line,
+                     static_cast<double>(bead.laid_at),
+                     first->place_W.cast<double>()};
 }
 
 }  // namespace understudy::rehearsal

@@ -1,6 +1,8 @@
 // How well neighbouring lines of a layer fill the space between them.
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -42,10 +44,11 @@ class FillWatch {
 
  private:
   static constexpr double kNeighbours = 1.5;
+  /// As small as millions of them need it; what the bead itself knows is asked of it.
   struct Sample {
-    float fed = 0, laid = 0, length = 0, time = 0;
-    int line = 0;
-    Vec3 place_W{0, 0, 0};
+    float fed = 0, laid = 0, length = 0;
+    std::uint32_t bead = 0;                             ///< of the workpiece
+    Eigen::Vector3f place_W = Eigen::Vector3f::Zero();  ///< [m]
   };
   void look(const sim::LaidBead& bead, const Vec3& aside_W, std::size_t before);
   double fed_on(int line) const;
@@ -55,7 +58,7 @@ class FillWatch {
   std::shared_ptr<const sim::Workpiece> workpiece_;
   std::vector<float> fed_;  // [m^2] by line
   double reach_;            // [m]
-  std::vector<Sample> samples_;
+  std::deque<Sample> samples_;
 };
 
 }  // namespace understudy::rehearsal

@@ -211,16 +211,44 @@ Json lines_value(const std::vector<TracePoint>& trace) {
   return {{"time_s", column(times, kTime)}, {"line", pack_integers(lines)}};
 }
 
-/// Beads as sections, as fine as the budget lets them be.
-Json beads_value(const sim::BeadIndex& beads, const Replay& replay, const ReplayBudget& budget) {
+/// Stretches that the page draws.
+struct DrawnBeads {
   std::vector<sim::BeadStretch> stretches;
-  double tolerance = 0;
-  for (const double t : kTolerances) {
-    tolerance = t;
-    stretches = sim::sweep_beads(beads, {HUGE_VAL, t});
-    if (sim::section_count(stretches) <= budget.sections) break;
+  double tolerance = 0;   ///< [m]
+  std::size_t every = 1;  ///< one of so many
+};
+
+/// As fine as the budget lets them be. Never holds many more sections than that: there may be millions.
+DrawnBeads drawn_beads(const sim::BeadIndex& beads, std::size_t sections_most) {
+  DrawnBeads drawn;
+  std::size_t sections = 0;
+  for (const double tolerance : kTolerances) {
+    drawn = {{}, tolerance, 1};
+    sections = 0;
+    const bool all = sim::sweep_beads(beads, {HUGE_VAL, tolerance}, [&](sim::BeadStretch stretch) {
+      sections += stretch.size();
+      drawn.stretches.push_back(std::move(stretch));
+      return sections <= sections_most;
+    });
+    if (all) return drawn;
   }
-  const std::size_t every = sim::section_count(stretches) / budget.sections + 1;
+  const sim::SweepSettings coarsest{HUGE_VAL, kTolerances.back()};
+  sections = 0;
+  sim::sweep_beads(beads, coarsest, [&](const sim::BeadStretch& stretch) {
+    sections += stretch.size();
+    return true;
+  });
+  drawn = {{}, coarsest.tolerance, sections / sections_most + 1};
+  std::size_t number = 0;
+  sim::sweep_beads(beads, coarsest, [&](sim::BeadStretch stretch) {
+    if (number++ % drawn.every == 0) drawn.stretches.push_back(std::move(stretch));
+    return true;
+  });
+  return drawn;
+}
+
+Json beads_value(const sim::BeadIndex& beads, const Replay& replay, const ReplayBudget& budget) {
+  const auto [stretches, tolerance, every] = drawn_beads(beads, budget.sections);
   std::array<std::vector<double>, 6> place;  // x y z, and the normal's
   std::vector<double> widths, heights, times;
   std::vector<std::int64_t> lines, sections, types;
@@ -234,9 +262,9 @@ Json beads_value(const sim::BeadIndex& beads, const Replay& replay, const Replay
     if (is_new) names_of_types.push_back(name);
     return entry->second;
   };
-  for (std::size_t s = 0; s < stretches.size(); s += every) {
-    sections.push_back(static_cast<std::int64_t>(stretches[s].size()));
-    for (const sim::BeadSection& section : stretches[s]) {
+  for (const sim::BeadStretch& stretch : stretches) {
+    sections.push_back(static_cast<std::int64_t>(stretch.size()));
+    for (const sim::BeadSection& section : stretch) {
       for (int i = 0; i < 3; ++i) {
         place[static_cast<std::size_t>(i)].push_back(to_mm(section.middle_W[i]));
         place[static_cast<std::size_t>(i) + 3].push_back(section.up_W[i]);

@@ -36,9 +36,12 @@ struct Sweep {
   double tolerance = 0;
 
   int sides(const sim::BeadStretch& stretch) const { return sim::sides_within(stretch, 1.3 * tolerance); }
+  std::size_t triangles(const sim::BeadStretch& stretch) const {
+    return sim::sweep_size(stretch, sides(stretch)).triangles;
+  }
   std::size_t triangles() const {
     std::size_t count = 0;
-    for (const auto& stretch : stretches) count += sim::sweep_size(stretch, sides(stretch)).triangles;
+    for (const auto& stretch : stretches) count += triangles(stretch);
     return count;
   }
 };
@@ -48,8 +51,14 @@ Sweep sweep_within(const sim::BeadIndex& beads, double by, double error, std::si
                    const std::vector<char>* chosen) {
   constexpr double kCoarsest = 300e-6;
   for (double tolerance = error / kOffMost;; tolerance *= 3) {
-    Sweep sweep{sim::sweep_beads(beads, {by, tolerance, HUGE_VAL, chosen}), tolerance};
-    if (tolerance >= kCoarsest || sweep.triangles() <= triangles_most) return sweep;
+    Sweep sweep{{}, tolerance};
+    std::size_t triangles = 0;
+    const auto take = [&](sim::BeadStretch stretch) {
+      triangles += sweep.triangles(stretch);
+      sweep.stretches.push_back(std::move(stretch));
+      return tolerance >= kCoarsest || triangles <= triangles_most;
+    };
+    if (sim::sweep_beads(beads, {by, tolerance, HUGE_VAL, chosen}, take)) return sweep;
   }
 }
 

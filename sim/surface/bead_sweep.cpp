@@ -86,12 +86,13 @@ BeadStretch simplified(const BeadStretch& sections, const SweepSettings& setting
 /// Gathers beads while each goes on where the one before ended.
 class Sweeper {
  public:
-  explicit Sweeper(const SweepSettings& settings) : settings_(settings), tolerance_(settings.tolerance) {}
+  Sweeper(const SweepSettings& settings, const std::function<bool(BeadStretch)>& take)
+      : settings_(settings), tolerance_(settings.tolerance), take_(take) {}
 
   void take(const Bead& bead) {
     if (is_blob(bead)) {
       close();
-      stretches_.push_back({end_of(bead)});
+      hand_over({end_of(bead)});
       note(bead, static_cast<double>(bead.laid_at));
       return;
     }
@@ -118,16 +119,15 @@ class Sweeper {
   /// What comes next begins anew.
   void close() {
     if (open_.size() > 2) begin_later();
-    if (!open_.empty()) stretches_.push_back(simplified(open_, settings_));
+    if (!open_.empty()) hand_over(simplified(open_, settings_));
     open_.clear();
   }
 
-  std::vector<BeadStretch> finish() {
-    close();
-    return std::move(stretches_);
-  }
+  bool is_wanted() const { return is_wanted_; }
 
  private:
+  void hand_over(BeadStretch stretch) { is_wanted_ = is_wanted_ && take_(std::move(stretch)); }
+
   /// A bead states the time of its end only: it was begun when the one before ended, or, behind a travel, as
   /// long before as it takes at the speed of what was laid last.
   double begun_at(const Bead& bead) const {
@@ -156,7 +156,8 @@ class Sweeper {
 
   SweepSettings settings_;
   double tolerance_;
-  std::vector<BeadStretch> stretches_;
+  const std::function<bool(BeadStretch)>& take_;
+  bool is_wanted_ = true;
   BeadStretch open_;
   Vec3 along_{0, 0, 0}, end_W_{HUGE_VAL, 0, 0};
   double last_at_ = 0, speed_ = 0;  // of the last bead
@@ -175,9 +176,10 @@ BeadSection section_between(const BeadSection& a, const BeadSection& b, double s
   return s;
 }
 
-std::vector<BeadStretch> sweep_beads(const BeadIndex& beads, const SweepSettings& settings) {
-  Sweeper sweeper(settings);
-  for (std::size_t i = 0; i < beads.size(); ++i) {
+bool sweep_beads(const BeadIndex& beads, const SweepSettings& settings,
+                 const std::function<bool(BeadStretch)>& take) {
+  Sweeper sweeper(settings, take);
+  for (std::size_t i = 0; i < beads.size() && sweeper.is_wanted(); ++i) {
     const Bead bead = beads.bead(i);
     if (static_cast<double>(bead.laid_at) > settings.by) break;
     if (settings.chosen && !(*settings.chosen)[i])
@@ -185,13 +187,17 @@ std::vector<BeadStretch> sweep_beads(const BeadIndex& beads, const SweepSettings
     else
       sweeper.take(bead);
   }
-  return sweeper.finish();
+  sweeper.close();
+  return sweeper.is_wanted();
 }
 
-std::size_t section_count(const std::vector<BeadStretch>& stretches) {
-  std::size_t count = 0;
-  for (const BeadStretch& stretch : stretches) count += stretch.size();
-  return count;
+std::vector<BeadStretch> sweep_beads(const BeadIndex& beads, const SweepSettings& settings) {
+  std::vector<BeadStretch> stretches;
+  sweep_beads(beads, settings, [&](BeadStretch stretch) {
+    stretches.push_back(std::move(stretch));
+    return true;
+  });
+  return stretches;
 }
 
 void append_sweep(const BeadStretch& stretch, int sides, BeadMesh& mesh) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/frames.h"
@@ -43,7 +44,9 @@ struct SweepSettings {
 /// a mitre within it, or that do not touch begin a stretch of their own.
 std::vector<BeadStretch> sweep_beads(const BeadIndex& beads, const SweepSettings& settings = {});
 
-std::size_t section_count(const std::vector<BeadStretch>& stretches);
+/// The same, one stretch at a time until `take` wants no more. Whether it took all of them.
+bool sweep_beads(const BeadIndex& beads, const SweepSettings& settings,
+                 const std::function<bool(BeadStretch)>& take);
 
 /// Appends one closed shell, wound counter-clockwise from outside. `sides` as in append_shell().
 void append_sweep(const BeadStretch& stretch, int sides, BeadMesh& mesh);

@@ -49,8 +49,8 @@ constexpr double kWatchdog = 0.05;   // [s]
       setpoints.push_back(s);
     }
     from += kPeriod;
-    if (port->state().fault != machine::Fault::none || port->submit(setpoints, 1e9) != machine::Status::ok)
-      ::_exit(3);
+    if (port->state().fault != machine::Fault::none) ::_exit(3);
+    if (port->submit(setpoints, 1e9) != machine::Status::ok) ::_exit(first ? 6 : 7);
     if (first) {
       const char ready = 'r';
       if (::write(told, &ready, 1) != 1) ::_exit(4);
@@ -89,16 +89,43 @@ Stop stop_in(const std::vector<std::vector<double>>& samples, std::size_t begin,
   return stop;
 }
 
-/// The lead, the watchdog, the brake, and what the samplers are behind: up to ten seconds.
-Stop wait_for_stop(HalRecorder& recorder, std::size_t begin, std::size_t axes,
-                   std::vector<std::vector<double>>& samples) {
+/// Until the recorder has seen the machine move, and stop if `stopped`: the lead, the watchdog, the brake,
+/// and what the samplers are behind, up to ten seconds.
+Stop wait_for(bool stopped, HalRecorder& recorder, std::size_t begin, std::size_t axes,
+              std::vector<std::vector<double>>& samples) {
   Stop stop;
-  for (int k = 0; k < 100 && !(stop.moved && stop.stopped); ++k) {
+  for (int k = 0; k < 100 && !(stop.moved && (stop.stopped || !stopped)); ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     samples = recorder.so_far();
     if (samples.size() > begin) stop = stop_in(samples, begin, axes);
   }
   return stop;
+}
+
+/// A controller in a process of its own.
+struct Victim {
+  pid_t pid = -1;
+  bool prints = false;  ///< its first setpoints were accepted
+};
+
+Victim start_victim(const HalMachine& hal, const machine::AxisVector& home) {
+  int told[2];
+  if (::pipe(told) != 0) return {};
+  std::fflush(nullptr);
+  Victim victim{::fork()};
+  if (victim.pid == 0) move_until_killed(hal, home, told[1]);
+  ::close(told[1]);
+  char ready = 0;
+  victim.prints = victim.pid > 0 && ::read(told[0], &ready, 1) == 1;
+  ::close(told[0]);
+  return victim;
+}
+
+/// Whether it was alive until then.
+bool kill_victim(const Victim& victim, int& status) {
+  ::kill(victim.pid, SIGKILL);
+  return ::waitpid(victim.pid, &status, 0) == victim.pid && WIFSIGNALED(status) &&
+         WTERMSIG(status) == SIGKILL;
 }
 
 void kill_and_see(int times, unsigned seed) {
@@ -107,46 +134,45 @@ void kill_and_see(int times, unsigned seed) {
   const HalMachine hal(options);
   const RunningHal running(hal);
   HalRecorder recorder(hal, 2);
+  const std::size_t axes = hal.settings().axes.size();
   machine::AxisVector home;
   for (std::size_t axis = 0; axis < 6; ++axis)
     home[axis] = hal.settings().axes[axis].si(hal.settings().axes[axis].home);
   std::mt19937 random(seed);
-  int worst_starved = 0, deepest = 0, kills = 0;
+  int worst_starved = 0, deepest = 0, kills = 0, ended = 0;
   std::size_t begin = 0;
   std::vector<std::vector<double>> samples;
-  for (int i = 0; i < times; ++i) {
-    int told[2];
-    ASSERT_EQ(::pipe(told), 0);
-    std::fflush(nullptr);
-    const pid_t victim = ::fork();
-    ASSERT_GE(victim, 0);
-    if (victim == 0) move_until_killed(hal, home, told[1]);
-    ::close(told[1]);
-    char ready = 0;
-    int status = 0;
-    if (::read(told[0], &ready, 1) != 1) {
-      ::waitpid(victim, &status, 0);
-      FAIL() << "kill " << i << ": the controller did not come to print, and ended with " << status / 256
-             << " (3: fault or refused setpoints), signal " << status % 128;
+  while (kills < times) {
+    const Victim victim = start_victim(hal, home);
+    ASSERT_GE(victim.pid, 0);
+    // The first setpoints may still be on their way: a machine that never began to move cannot be stopped.
+    if (victim.prints) {
+      wait_for(false, recorder, begin, axes, samples);
+      std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution(20, 600)(random)));
     }
-    ::close(told[0]);
-    std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution(20, 600)(random)));
-    ::kill(victim, SIGKILL);
-    ASSERT_EQ(::waitpid(victim, &status, 0), victim);
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) ++kills;
-    const Stop stop = wait_for_stop(recorder, begin, hal.settings().axes.size(), samples);
-    EXPECT_TRUE(stop.moved) << i;
-    EXPECT_TRUE(stop.stopped) << i;
+    int status = 0;
+    const bool was_killed = kill_victim(victim, status);
+    const Stop stop = wait_for(true, recorder, begin, axes, samples);
+    begin = samples.empty() ? 0 : samples.size() - 1;
+    if (!was_killed) {
+      // A controller that a busy computer held up for longer than its lead has stopped the machine by itself.
+      ASSERT_LE(++ended, 2 + times / 10) << "controllers ended before they were killed, the last with status "
+                                         << status / 256 << " (3: fault, 6 and 7: setpoints were refused)";
+      continue;
+    }
+    ++kills;
+    EXPECT_TRUE(stop.moved) << kills;
+    EXPECT_TRUE(stop.stopped) << kills;
     // In periods of HAL, whatever the computer does meanwhile: the watchdog's time, and one to see it.
-    EXPECT_LE(stop.starved, kWatchdog * 1e3 + 2) << i;
-    EXPECT_LE(stop.depth, kVictimLead * 1e3) << i << ": what moves on after a death is no more than the lead";
+    EXPECT_LE(stop.starved, kWatchdog * 1e3 + 2) << kills;
+    EXPECT_LE(stop.depth, kVictimLead * 1e3) << kills << ": what moves on is no more than the lead";
     worst_starved = std::max(worst_starved, stop.starved);
     deepest = std::max(deepest, stop.depth);
-    begin = samples.size() - 1;
   }
-  EXPECT_EQ(kills, times) << "the others had ended before";
-  std::printf("%d kills: off at most %d periods after the last setpoint; at most %d setpoints were queued\n",
-              kills, worst_starved, deepest);
+  std::printf(
+      "%d kills: off at most %d periods after the last setpoint; at most %d setpoints were queued; "
+      "%d controllers had ended before\n",
+      kills, worst_starved, deepest, ended);
 }
 
 TEST(HalKill, TheWatchdogStopsTheMachineEachTimeItsControllerIsKilled) {

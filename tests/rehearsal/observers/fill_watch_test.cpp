@@ -35,6 +35,7 @@ class Lines {
       bead.to_W = {static_cast<float>(laid.to_W.x()), static_cast<float>(y), static_cast<float>(kHeight / 2)};
       bead.width = static_cast<float>(laid.width);
       bead.height = static_cast<float>(kHeight);
+      bead.line = laid.line;
       workpiece_->add(bead);
       watch_.add(laid, before);
     }
