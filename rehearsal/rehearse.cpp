@@ -13,6 +13,7 @@
 #include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
+#include "core/process/memory.h"
 #include "core/units.h"
 #include "core/version.h"
 #include "machine/fixture_file.h"
@@ -180,9 +181,9 @@ void fill_beliefs(const TwinSetup& setup, control::GapControl mode, const contro
   if (record.gap) fill_belief(record.trace, record.gap_beliefs, *record.gap);
 }
 
-/// What the runs say, on top of what the limits said.
+/// What the runs say, on top of what the limits said. Their traces go into the record.
 void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before, const RunOptions& options,
-          const Runs& runs, Record& record) {
+          Runs& runs, Record& record) {
   const TwinRun* without = runs.without();
   fill_figures(runs.main, without, setup.truth, record);
   if (before) fill_comparison(*before, runs, record);
@@ -195,10 +196,10 @@ void fill(const TwinSetup& setup, const std::optional<BeforeCalibration>& before
                                                    : std::vector<Finding>{},
         accuracy_findings(runs.main.tip_peak, runs.main.orientation_peak, setup.accepted)})
     record.findings.insert(record.findings.end(), findings.begin(), findings.end());
-  record.trace = runs.main.trace;
+  record.trace = std::move(runs.main.trace);
   record.trace_stride = runs.main.trace_stride;
   record.curves = runs.main.curves;
-  if (without) record.trace_without_gap_control = without->trace;
+  if (runs.open_loop) record.trace_without_gap_control = std::move(runs.open_loop->trace);
   record.frames = runs.main.frames;
   fill_beliefs(setup, options.gap_control, runs.main.result, record);
   if (runs.main.registration)
@@ -255,14 +256,16 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress, RunList
   record.findings.insert(record.findings.begin(), mended.findings.begin(), mended.findings.end());
   record.passed_over = mended.passed_over;
   if (listener) listener->begins(record);
+  return_free_memory();
   std::shared_ptr<const sim::Workpiece> printed;
-  if (const auto runs = run_or_find(request, setup, before, options, report, record)) {
+  if (auto runs = run_or_find(request, setup, before, options, report, record)) {
     fill(setup, before, options, *runs, record);
     report(0.9, "measuring the surface");
     printed = runs->main.workpiece;
     if (!setup.workblank) study_surface(surface, *printed, record);
     study_removal(runs->main, setup.accepted, record);
   }
+  return_free_memory();
   if (record.placement && !record.placement->refused.empty())
     record.findings.push_back(no_place(*record.placement));
   tell_features(mended.features, record.findings);

@@ -218,6 +218,23 @@ std::vector<unsigned char> GlSmoothTarget::resolve() const {
   return pixels;
 }
 
+GlTriangles::GlTriangles(const GlFunctions& gl) : gl_(gl) { gl.GenBuffers(1, &buffer_); }
+
+GlTriangles::~GlTriangles() { gl_.DeleteBuffers(1, &buffer_); }
+
+void GlTriangles::fill(const std::vector<std::uint32_t>& corners) {
+  // By this name the buffer belongs to no vertex array.
+  gl_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(std::uint32_t)),
+                 corners.data(), GL_STREAM_DRAW);
+  count_ = static_cast<int>(corners.size());
+}
+
+void GlTriangles::draw() const {
+  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer_);
+  gl_.DrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+}
+
 GlVertices::GlVertices(const GlFunctions& gl, const std::vector<int>& layout) : gl_(gl) {
   gl.GenVertexArrays(1, &array_);
   gl.GenBuffers(1, &buffer_);
@@ -251,6 +268,11 @@ void GlVertices::fill(const std::vector<float>& values) {
 void GlVertices::draw(GLenum primitive) const {
   gl_.BindVertexArray(array_);
   gl_.DrawArrays(primitive, 0, count_);
+}
+
+void GlVertices::draw(const GlTriangles& triangles) const {
+  gl_.BindVertexArray(array_);
+  triangles.draw();
 }
 
 }  // namespace understudy::renderer

@@ -5,6 +5,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -19,7 +20,7 @@ namespace understudy::renderer {
   X(BindVertexArray) X(BlitFramebuffer) X(BufferData) X(CheckFramebufferStatus) X(Clear) X(ClearBufferfv) \
   X(CompileShader) X(CreateProgram) X(CreateShader) X(DeleteBuffers) X(DeleteFramebuffers) \
   X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader) X(DeleteTextures) X(DeleteVertexArrays) \
-  X(ColorMask) X(DepthFunc) X(Disable) X(DrawArrays) X(Enable) X(EnableVertexAttribArray) \
+  X(ColorMask) X(DepthFunc) X(Disable) X(DrawArrays) X(DrawElements) X(Enable) X(EnableVertexAttribArray) \
   X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) \
   X(GenTextures) X(GenVertexArrays) X(GetError) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) \
   X(GetShaderiv) X(GetString) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(PolygonOffset) \
@@ -118,6 +119,24 @@ class GlSmoothTarget {
   int width_, height_;
 };
 
+/// Which vertices make triangles, three each.
+class GlTriangles {
+ public:
+  explicit GlTriangles(const GlFunctions& gl);
+  ~GlTriangles();
+  GlTriangles(const GlTriangles&) = delete;
+  GlTriangles& operator=(const GlTriangles&) = delete;
+
+  void fill(const std::vector<std::uint32_t>& corners);
+  /// Of the vertex array that is bound.
+  void draw() const;
+
+ private:
+  const GlFunctions& gl_;
+  GLuint buffer_ = 0;
+  int count_ = 0;  // corners
+};
+
 /// Vertices of float attributes, refilled for every draw. `layout`: number of floats of each attribute.
 class GlVertices {
  public:
@@ -128,6 +147,7 @@ class GlVertices {
 
   void fill(const std::vector<float>& values);
   void draw(GLenum primitive) const;
+  void draw(const GlTriangles& triangles) const;
 
  private:
   const GlFunctions& gl_;

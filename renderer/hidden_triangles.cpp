@@ -9,7 +9,7 @@
 namespace understudy::renderer {
 namespace {
 
-constexpr std::size_t kVertex = 9, kTriangle = 3 * kVertex;  // floats
+constexpr std::size_t kVertex = 9;  // floats
 // A hundred roundings of a float next to 1: the rasteriser interpolates what is projected here.
 constexpr float kRounding = 6e-6f;
 constexpr float kPixelsMost = 4096;  // that a triangle is looked for in; a larger one is drawn without a look
@@ -19,21 +19,37 @@ struct Extent {
   float left = HUGE_VALF, right = -HUGE_VALF, bottom = HUGE_VALF, top = -HUGE_VALF, nearest = HUGE_VALF;
 };
 
+/// A vertex in the picture: column, row, depth.
+struct Projected {
+  float x = 0, y = 0, depth = 0;
+  bool is_before_eye = false;
+};
+
+std::vector<Projected> project(const std::vector<float>& vertices, const Eigen::Matrix4f& clip,
+                               const FarthestSeen& seen) {
+  std::vector<Projected> projected;
+  projected.reserve(vertices.size() / kVertex);
+  for (std::size_t i = 0; i + kVertex <= vertices.size(); i += kVertex) {
+    const float* p = &vertices[i];
+    const Eigen::Vector4f at = clip * Eigen::Vector4f(p[0], p[1], p[2], 1);
+    projected.push_back({0.5f * (at.x() / at.w() + 1) * static_cast<float>(seen.width),
+                         0.5f * (at.y() / at.w() + 1) * static_cast<float>(seen.height),
+                         0.5f * (at.z() / at.w() + 1), at.w() > 0 && at.z() >= -at.w()});
+  }
+  return projected;
+}
+
 /// Nothing where a corner is not before the eye.
-std::optional<Extent> extent_of(const float* triangle, const Eigen::Matrix4f& clip,
-                                const FarthestSeen& seen) {
+std::optional<Extent> extent_of(const std::vector<Projected>& vertices, const std::uint32_t* corners) {
   Extent extent;
   for (std::size_t k = 0; k < 3; ++k) {
-    const float* p = triangle + k * kVertex;
-    const Eigen::Vector4f at = clip * Eigen::Vector4f(p[0], p[1], p[2], 1);
-    if (!(at.w() > 0) || at.z() < -at.w()) return std::nullopt;
-    const float x = 0.5f * (at.x() / at.w() + 1) * static_cast<float>(seen.width);
-    const float y = 0.5f * (at.y() / at.w() + 1) * static_cast<float>(seen.height);
-    extent.left = std::min(extent.left, x);
-    extent.right = std::max(extent.right, x);
-    extent.bottom = std::min(extent.bottom, y);
-    extent.top = std::max(extent.top, y);
-    extent.nearest = std::min(extent.nearest, 0.5f * (at.z() / at.w() + 1));
+    const Projected& at = vertices[corners[k]];
+    if (!at.is_before_eye) return std::nullopt;
+    extent.left = std::min(extent.left, at.x);
+    extent.right = std::max(extent.right, at.x);
+    extent.bottom = std::min(extent.bottom, at.y);
+    extent.top = std::max(extent.top, at.y);
+    extent.nearest = std::min(extent.nearest, at.depth);
   }
   return extent;
 }
@@ -59,23 +75,23 @@ bool is_hidden(const Extent& extent, const FarthestSeen& seen) {
 
 }  // namespace
 
-std::vector<float> without_hidden(const std::vector<float>& vertices, const Eigen::Matrix4f& clip,
-                                  const FarthestSeen& seen) {
+std::vector<std::uint32_t> without_hidden(const PictureTriangles& triangles, const Eigen::Matrix4f& clip,
+                                          const FarthestSeen& seen) {
   const Extent picture{0, static_cast<float>(seen.width), 0, static_cast<float>(seen.height), 0};
   const auto inside = [&](const Extent& extent) {
     return Extent{std::max(extent.left, picture.left), std::min(extent.right, picture.right),
                   std::max(extent.bottom, picture.bottom), std::min(extent.top, picture.top), extent.nearest};
   };
-  std::vector<float> kept;
-  for (std::size_t i = 0; i + kTriangle <= vertices.size(); i += kTriangle) {
-    const auto extent = extent_of(&vertices[i], clip, seen);
-    if (extent) {
+  const std::vector<Projected> vertices = project(triangles.vertices, clip, seen);
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i + 3 <= triangles.corners.size(); i += 3) {
+    const std::uint32_t* corners = &triangles.corners[i];
+    if (const auto extent = extent_of(vertices, corners)) {
       const Extent in = inside(*extent);
       const float area = std::max(0.0f, in.right - in.left) * std::max(0.0f, in.top - in.bottom);
       if (area <= kPixelsMost && is_hidden(in, seen)) continue;
     }
-    const auto begin = vertices.begin() + static_cast<std::ptrdiff_t>(i);
-    kept.insert(kept.end(), begin, begin + static_cast<std::ptrdiff_t>(kTriangle));
+    kept.insert(kept.end(), corners, corners + 3);
   }
   return kept;
 }

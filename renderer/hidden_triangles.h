@@ -1,9 +1,12 @@
 // Which triangles of a picture are seen: llvmpipe shades what lies behind, too, where a pixel has samples.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "renderer/scene_geometry.h"
 
 namespace understudy::renderer {
 
@@ -13,10 +16,10 @@ struct FarthestSeen {
   std::vector<float> depth;   ///< one a pixel
 };
 
-/// The triangles, in order, that may reach a sample of a pixel. `vertices`: nine floats each, the first three
-/// the position that `clip` takes to clip coordinates. Left out are only those that lie behind all samples of
-/// every pixel about them, or beside the picture; a triangle that passes the eye stays.
-std::vector<float> without_hidden(const std::vector<float>& vertices, const Eigen::Matrix4f& clip,
-                                  const FarthestSeen& seen);
+/// Corners of the triangles, in order, that may reach a sample of a pixel, where `clip` takes positions to
+/// clip coordinates. Left out are only those that lie behind all samples of every pixel about them, or beside
+/// the picture; a triangle that passes the eye stays.
+std::vector<std::uint32_t> without_hidden(const PictureTriangles& triangles, const Eigen::Matrix4f& clip,
+                                          const FarthestSeen& seen);
 
 }  // namespace understudy::renderer

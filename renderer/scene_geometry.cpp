@@ -15,23 +15,42 @@ constexpr float kCreaseShade = 0.35f;  // of the shape's own colour
 
 using Colour = std::array<float, 3>;
 
-void put(std::vector<float>& out, const Vec3& p, const Vec3& n, const Colour& colour) {
-  for (int i = 0; i < 3; ++i) out.push_back(static_cast<float>(p[i]));
-  for (int i = 0; i < 3; ++i) out.push_back(static_cast<float>(n[i]));
-  out.insert(out.end(), colour.begin(), colour.end());
+constexpr std::size_t kVertex = 9;  // floats
+
+void put(PictureTriangles& out, const Vec3& p, const Vec3& n, const Colour& colour) {
+  for (int i = 0; i < 3; ++i) out.vertices.push_back(static_cast<float>(p[i]));
+  for (int i = 0; i < 3; ++i) out.vertices.push_back(static_cast<float>(n[i]));
+  out.vertices.insert(out.vertices.end(), colour.begin(), colour.end());
 }
 
-void put_quad(std::vector<float>& out, const std::array<Vec3, 4>& p, const std::array<Vec3, 4>& n,
+std::uint32_t vertices_in(const PictureTriangles& out) {
+  return static_cast<std::uint32_t>(out.vertices.size() / kVertex);
+}
+
+void put_quad(PictureTriangles& out, const std::array<Vec3, 4>& p, const std::array<Vec3, 4>& n,
               const Colour& colour) {
-  for (const std::size_t i : {0u, 1u, 2u, 0u, 2u, 3u}) put(out, p[i], n[i], colour);
+  const std::uint32_t first = vertices_in(out);
+  for (std::size_t i = 0; i < 4; ++i) put(out, p[i], n[i], colour);
+  for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) out.corners.push_back(first + i);
 }
 
-void put_surface(std::vector<float>& out, const Surface& s, const Colour& colour) {
+void put_surface(PictureTriangles& out, const Surface& s, const Colour& colour) {
   for (std::size_t t = 0; t < s.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
+      out.corners.push_back(vertices_in(out));
       put(out, s.vertices[static_cast<std::size_t>(s.triangles[t][k])], s.corner_normals[t][k], colour);
     }
   }
+}
+
+void put_surface(PictureTriangles& out, const SmoothSurface& s) {
+  const std::uint32_t first = vertices_in(out);
+  out.vertices.reserve(out.vertices.size() + kVertex * s.vertices.size());
+  out.corners.reserve(out.corners.size() + 3 * s.triangles.size());
+  for (std::size_t i = 0; i < s.vertices.size(); ++i)
+    put(out, s.X_WF * s.vertices[i], s.X_WF.linear() * s.normals[i], s.colour);
+  for (const auto& triangle : s.triangles)
+    for (const int corner : triangle) out.corners.push_back(first + static_cast<std::uint32_t>(corner));
 }
 
 /// Points of the line without repetitions, which have no direction.
@@ -44,7 +63,7 @@ std::vector<Vec3> distinct(const std::vector<Vec3>& points, double apart) {
 }
 
 /// A tube whose cross-section is carried along without turning about the line.
-void put_tube(std::vector<float>& out, const Polyline& line) {
+void put_tube(PictureTriangles& out, const Polyline& line) {
   const auto points = distinct(line.points, 1e-3 * line.radius);
   for (const Vec3* end :
        {points.empty() ? nullptr : &points.front(), points.size() > 1 ? &points.back() : nullptr}) {
@@ -81,7 +100,7 @@ void put_tube(std::vector<float>& out, const Polyline& line) {
 }
 
 /// A strip of constant width on the screen, lifted a little towards the eye.
-void put_crease(std::vector<float>& out, Vec3 a, Vec3 b, const Vec3& eye, double metres_per_pixel_at_1m,
+void put_crease(PictureTriangles& out, Vec3 a, Vec3 b, const Vec3& eye, double metres_per_pixel_at_1m,
                 const Colour& colour) {
   const Vec3 across_a = (b - a).cross(eye - a), across_b = (b - a).cross(eye - b);
   if (across_a.norm() < 1e-12 || across_b.norm() < 1e-12) return;
@@ -97,14 +116,14 @@ void put_crease(std::vector<float>& out, Vec3 a, Vec3 b, const Vec3& eye, double
 }
 
 void shift(std::vector<float>& vertices, const Vec3& by) {
-  for (std::size_t i = 0; i < vertices.size(); i += 9) {
+  for (std::size_t i = 0; i < vertices.size(); i += kVertex) {
     for (std::size_t k = 0; k < 3; ++k) vertices[i + k] -= static_cast<float>(by[static_cast<int>(k)]);
   }
 }
 
 Eigen::AlignedBox3d bounds(const std::vector<float>& vertices) {
   Eigen::AlignedBox3d box;
-  for (std::size_t i = 0; i < vertices.size(); i += 9) {
+  for (std::size_t i = 0; i < vertices.size(); i += kVertex) {
     box.extend(Vec3(static_cast<double>(vertices[i]), static_cast<double>(vertices[i + 1]),
                     static_cast<double>(vertices[i + 2])));
   }
@@ -123,19 +142,22 @@ void put_ground(PictureGeometry& g, double z) {
 // The sky is four dozen lights: a fine-grained scene, like a print of many beads, shades itself softly
 // whether all of its grains are counted or one in some.
 constexpr std::size_t kCastersMost = 40'000;  // triangles
-constexpr std::size_t kTriangle = 27;         // floats
 
-void thin_casters(PictureGeometry& g, const std::vector<std::size_t>& shape_ends) {
-  if (g.solids.size() <= kCastersMost * kTriangle) return;
-  const std::size_t stride = g.solids.size() / (kCastersMost * kTriangle) + 1;
+/// `ends`: of each shape in the solids' corners.
+std::vector<std::uint32_t> thinned_casters(const std::vector<std::uint32_t>& corners,
+                                           const std::vector<std::size_t>& ends) {
+  if (corners.size() <= 3 * kCastersMost) return corners;
+  const std::size_t stride = corners.size() / (3 * kCastersMost) + 1;
+  std::vector<std::uint32_t> casters;
   std::size_t begin = 0;
-  for (const std::size_t end : shape_ends) {
-    const bool fine = end - begin > kCastersMost / 4 * kTriangle;
-    for (std::size_t i = begin; i < end; i += kTriangle * (fine ? stride : 1))
-      g.casters.insert(g.casters.end(), g.solids.begin() + static_cast<std::ptrdiff_t>(i),
-                       g.solids.begin() + static_cast<std::ptrdiff_t>(i + kTriangle));
+  for (const std::size_t end : ends) {
+    const bool fine = end - begin > 3 * kCastersMost / 4;
+    for (std::size_t i = begin; i < end; i += 3 * (fine ? stride : 1))
+      casters.insert(casters.end(), corners.begin() + static_cast<std::ptrdiff_t>(i),
+                     corners.begin() + static_cast<std::ptrdiff_t>(i + 3));
     begin = end;
   }
+  return casters;
 }
 
 }  // namespace
@@ -148,25 +170,29 @@ PictureGeometry picture_geometry(const PictureScene& scene) {
     const Surface surface =
         tessellate(coloured.shape, kSegments, coloured.outlined ? Creases::found : Creases::left_out);
     put_surface(g.solids, surface, coloured.colour);
-    shape_ends.push_back(g.solids.size());
+    shape_ends.push_back(g.solids.corners.size());
     if (!coloured.outlined) continue;
     Colour dark = coloured.colour;
     for (float& channel : dark) channel *= kCreaseShade;
     for (const auto& [a, b] : surface.creases)
       put_crease(g.creases, a, b, scene.eye_W, metres_per_pixel_at_1m, dark);
   }
+  for (const SmoothSurface& surface : scene.surfaces) {
+    put_surface(g.solids, surface);
+    shape_ends.push_back(g.solids.corners.size());
+  }
   for (const Polyline& line : scene.polylines) put_tube(g.solids, line);
-  shape_ends.push_back(g.solids.size());
-  if (g.solids.empty()) {
+  shape_ends.push_back(g.solids.corners.size());
+  if (g.solids.corners.empty()) {
     g.radius = 1;
     return g;
   }
-  const Eigen::AlignedBox3d box = bounds(g.solids);
+  const Eigen::AlignedBox3d box = bounds(g.solids.vertices);
   g.centre = box.center();
   g.radius = std::max(1e-6, 0.5 * box.diagonal().norm());
-  shift(g.solids, g.centre);
-  thin_casters(g, shape_ends);
-  shift(g.creases, g.centre);
+  shift(g.solids.vertices, g.centre);
+  g.casters = thinned_casters(g.solids.corners, shape_ends);
+  shift(g.creases.vertices, g.centre);
   // Just below, so that a table that ends there does not fight with it.
   const double ground = box.min().z() - 1e-3 * g.radius;
   if (scene.eye_W.z() > ground) put_ground(g, ground - g.centre.z());

@@ -1,21 +1,28 @@
 // What a picture is drawn from: triangles with colours, and the lights' directions.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "renderer/scene_view.h"
 
 namespace understudy::renderer {
 
-/// Vertices of nine floats: position about `centre` in W's axes, normal, colour (see scene.vert).
+/// Vertices of nine floats: position about `PictureGeometry::centre` in W's axes, normal, colour (see
+/// scene.vert). A million triangles fit because those of one surface share their vertices.
+struct PictureTriangles {
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> corners;  ///< three vertices a triangle
+};
+
 struct PictureGeometry {
-  Vec3 centre{0, 0, 0};        ///< in W [m]
-  double radius = 0;           ///< [m], of a sphere that holds everything but the ground
-  double ground_fade = 0;      ///< [m]
-  std::vector<float> solids;   ///< cast shadows
-  std::vector<float> casters;  ///< what hides the sky, where that is not all of `solids`
-  std::vector<float> ground;   ///< receives them
-  std::vector<float> creases;  ///< thin, towards the eye
+  Vec3 centre{0, 0, 0};                ///< in W [m]
+  double radius = 0;                   ///< [m], of a sphere that holds everything but the ground
+  double ground_fade = 0;              ///< [m]
+  PictureTriangles solids;             ///< cast shadows
+  std::vector<std::uint32_t> casters;  ///< of those, what hides the sky
+  PictureTriangles ground;             ///< receives them
+  PictureTriangles creases;            ///< thin, towards the eye
 };
 
 PictureGeometry picture_geometry(const PictureScene& scene);

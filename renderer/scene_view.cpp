@@ -107,8 +107,21 @@ Lights make_lights(const PictureScene& scene, double radius) {
   return lights;
 }
 
-void draw_shadows(const GlFunctions& gl, const Lights& lights, const GlVertices& solids,
-                  const GlVertices& casters, const GlTarget& atlas, const GlTarget& lamp) {
+/// Vertices on the graphics side, and the triangles of them that are drawn.
+struct GlSurface {
+  explicit GlSurface(const GlFunctions& gl, const PictureTriangles& from)
+      : vertices(gl, kLayout), triangles(gl) {
+    vertices.fill(from.vertices);
+    triangles.fill(from.corners);
+  }
+  void draw() const { vertices.draw(triangles); }
+
+  GlVertices vertices;
+  GlTriangles triangles;
+};
+
+void draw_shadows(const GlFunctions& gl, const Lights& lights, const GlSurface& solids,
+                  const GlTriangles& casters, const GlTarget& atlas, const GlTarget& lamp) {
   const GlProgram program(gl, "depth", shader_source("depth.vert"), shader_source("depth.frag"));
   program.use();
   gl.Enable(GL_DEPTH_TEST);
@@ -121,12 +134,12 @@ void draw_shadows(const GlFunctions& gl, const Lights& lights, const GlVertices&
     gl.Viewport(i % kTilesX * kTile, i / kTilesX * kTile, kTile, kTile);
     gl.UniformMatrix4fv(program.uniform("clip"), 1, GL_FALSE,
                         lights.clips[static_cast<std::size_t>(i)].data());
-    casters.draw(GL_TRIANGLES);
+    solids.vertices.draw(casters);
   }
   lamp.bind();
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   gl.UniformMatrix4fv(program.uniform("clip"), 1, GL_FALSE, lights.lamp_clip.data());
-  solids.draw(GL_TRIANGLES);
+  solids.draw();
   gl.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -135,7 +148,7 @@ struct Drawing {
   const PictureScene& scene;
   const PictureGeometry& geometry;
   const Lights& lights;
-  const GlVertices &solids, &ground, &creases;
+  const GlSurface &solids, &ground, &creases;
 };
 
 /// Depth first, so that only what is seen is shaded: the sky costs most where beads lie behind beads.
@@ -144,8 +157,8 @@ void draw_depth(const GlFunctions& gl, const Mat4f& clip, const Drawing& drawing
   program.use();
   gl.UniformMatrix4fv(program.uniform("clip"), 1, GL_FALSE, clip.data());
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  drawing.solids.draw(GL_TRIANGLES);
-  drawing.ground.draw(GL_TRIANGLES);
+  drawing.solids.draw();
+  drawing.ground.draw();
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.DepthFunc(GL_LEQUAL);
 }
@@ -170,8 +183,8 @@ void draw_sky(const GlFunctions& gl, const Drawing& drawing, const GlTarget& atl
   gl.Uniform2i(program.uniform("sky_tiles"), kTilesX, kTilesY);
   gl.Uniform1f(program.uniform("sky_texel"), static_cast<float>(2 * g.radius / kTile));
   gl.Uniform1i(program.uniform("sky_atlas"), 0);
-  solids.draw(GL_TRIANGLES);
-  ground.draw(GL_TRIANGLES);
+  solids.draw();
+  ground.draw();
   gl.DepthFunc(GL_LESS);
 }
 
@@ -217,9 +230,9 @@ void draw_picture(const GlFunctions& gl, const Drawing& drawing, const GlTarget&
   gl.Uniform1f(program.uniform("lamp_texel"), static_cast<float>(2 * g.radius / kLampMap));
   gl.Uniform1i(program.uniform("sky_light"), 0);
   gl.Uniform1i(program.uniform("lamp_depth"), 1);
-  solids.draw(GL_TRIANGLES);
-  creases.draw(GL_TRIANGLES);
-  ground.draw(GL_TRIANGLES);
+  solids.draw();
+  creases.draw();
+  ground.draw();
 }
 
 float encoded(float linear) {
@@ -236,13 +249,12 @@ Picture render_picture(const PictureScene& scene) {
 
   GlContext context;
   const GlFunctions& gl = context.gl();
-  GlVertices solids(gl, kLayout), casters(gl, kLayout), ground(gl, kLayout), creases(gl, kLayout);
-  solids.fill(geometry.solids);
-  ground.fill(geometry.ground);
-  creases.fill(geometry.creases);
+  GlSurface solids(gl, geometry.solids);
+  const GlSurface ground(gl, geometry.ground), creases(gl, geometry.creases);
+  GlTriangles casters(gl);
+  casters.fill(geometry.casters);
   const GlTarget atlas(gl, GL_R8, kTilesX * kTile, kTilesY * kTile), lamp(gl, GL_R8, kLampMap, kLampMap);
-  if (!geometry.casters.empty()) casters.fill(geometry.casters);
-  draw_shadows(gl, lights, solids, geometry.casters.empty() ? solids : casters, atlas, lamp);
+  draw_shadows(gl, lights, solids, casters, atlas, lamp);
 
   const Drawing drawing{scene, geometry, lights, solids, ground, creases};
   const GlSmoothTarget target(gl, scene.width, scene.height);
@@ -251,7 +263,8 @@ Picture render_picture(const PictureScene& scene) {
   const float behind[] = {encoded(b[0]), encoded(b[1]), encoded(b[2]), 1};
   gl.ClearBufferfv(GL_COLOR, 0, behind);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  solids.fill(without_hidden(geometry.solids, eye_clip(scene, geometry), draw_farthest(gl, drawing, target)));
+  solids.triangles.fill(
+      without_hidden(geometry.solids, eye_clip(scene, geometry), draw_farthest(gl, drawing, target)));
 
   const GlTarget half_size(gl, GL_RGBA32F, (scene.width + 1) / 2, (scene.height + 1) / 2);
   draw_sky(gl, drawing, atlas, half_size);

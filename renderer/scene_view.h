@@ -18,6 +18,16 @@ struct ColouredShape {
   bool outlined = true;           ///< its sharp edges are drawn
 };
 
+/// A surface that says its normals itself, such as that of many thousands of beads: nothing is looked for in
+/// it and nothing smoothed.
+struct SmoothSurface {
+  std::vector<Vec3> vertices;                 ///< in F [m]
+  std::vector<Vec3> normals;                  ///< in F, unit, one a vertex
+  std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise outside
+  std::array<float, 3> colour{};              ///< linear RGB 0..1
+  Pose X_WF = Pose::Identity();
+};
+
 /// A line in space, drawn as a round tube: a tool path, a bead, a beam.
 struct Polyline {
   std::vector<Vec3> points;       ///< in W
@@ -27,6 +37,7 @@ struct Polyline {
 
 struct PictureScene {
   std::vector<ColouredShape> shapes;
+  std::vector<SmoothSurface> surfaces;
   std::vector<Polyline> polylines;
   Vec3 eye_W{0, 0, 0};
   Vec3 target_W{0, 0, 0};

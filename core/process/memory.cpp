@@ -1,5 +1,6 @@
 #include "core/process/memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -51,5 +52,7 @@ std::uint64_t available_memory() {
   const std::uint64_t least = std::min({system_free(), group_free(), own_free()});
   return least == kUnknown ? 0 : least;
 }
+
+void return_free_memory() { ::malloc_trim(0); }
 
 }  // namespace understudy

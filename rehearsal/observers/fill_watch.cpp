@@ -52,9 +52,10 @@ void FillWatch::look(const sim::LaidBead& bead, const Vec3& aside_W, std::size_t
   // A bead that the lag leaves thin does not reach up to the nozzle; the space does.
   const bool by_gap = bead.adhesion == sim::Adhesion::sticks && bead.gap > 0;
   const double space = spacing * (by_gap ? bead.gap : bead.height);
-  samples_.push_back({static_cast<float>(fed / space), static_cast<float>(laid / space),
-                      static_cast<float>(bead.length),
-                      static_cast<std::uint32_t>(workpiece_->beads().size() - 1), bead.from_W.cast<float>()});
+  length_ += bead.length;
+  samples_.add({static_cast<float>(fed / space), static_cast<float>(laid / space),
+                static_cast<float>(bead.length), static_cast<std::uint32_t>(workpiece_->beads().size() - 1),
+                bead.from_W.cast<float>()});
 }
 
 double FillWatch::fed_on(int line) const {
@@ -62,31 +63,31 @@ double FillWatch::fed_on(int line) const {
   return at < fed_.size() ? static_cast<double>(fed_[at]) : 0;
 }
 
-const FillWatch::Sample& FillWatch::median(float Sample::*factor, double total) const {
-  std::vector<std::uint32_t> order(samples_.size());
+const FillWatch::Sample& FillWatch::median(float Sample::*factor) const {
+  const std::vector<Sample>& samples = samples_.points();
+  double total = 0;
+  for (const Sample& sample : samples) total += static_cast<double>(sample.length);
+  std::vector<std::uint32_t> order(samples.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return samples_[a].*factor < samples_[b].*factor;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return samples[a].*factor < samples[b].*factor; });
   double passed = 0;
   for (const std::uint32_t i : order) {
-    passed += static_cast<double>(samples_[i].length);
-    if (passed >= kShare * total) return samples_[i];
+    passed += static_cast<double>(samples[i].length);
+    if (passed >= kShare * total) return samples[i];
   }
-  return samples_[order.back()];
+  return samples[order.back()];
 }
 
 std::optional<FillFigures> FillWatch::figures() const {
-  double total = 0;
-  for (const Sample& sample : samples_) total += static_cast<double>(sample.length);
-  if (total < kLeastLength) return std::nullopt;
-  const float factor = median(&Sample::fed, total).fed;
-  const auto first =
-      std::find_if(samples_.begin(), samples_.end(), [&](const Sample& s) { return s.fed <= factor; });
+  if (length_ < kLeastLength) return std::nullopt;
+  const float factor = median(&Sample::fed).fed;
+  const auto first = std::find_if(samples_.points().begin(), samples_.points().end(),
+                                  [&](const Sample& s) { return s.fed <= factor; });
   const sim::Bead bead = workpiece_->beads().bead(first->bead);
   return FillFigures{static_cast<double>(factor),
-                     static_cast<double>(median(&Sample::laid, total).laid),
-                     total,
+                     static_cast<double>(median(&Sample::laid).laid),
+                     length_,
                      bead.line,
                      static_cast<double>(bead.laid_at),
                      first->place_W.cast<double>()};

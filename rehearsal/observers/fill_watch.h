@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "machine/description.h"
+#include "rehearsal/observers/thinned_series.h"
 #include "sim/deposition/deposition.h"
 #include "sim/deposition/workpiece.h"
 
@@ -44,7 +44,8 @@ class FillWatch {
 
  private:
   static constexpr double kNeighbours = 1.5;
-  /// As small as millions of them need it; what the bead itself knows is asked of it.
+  static constexpr std::size_t kSamplesMost = 400'000;
+  /// Evenly of all that were looked at, where those are more. What the bead itself knows is asked of it.
   struct Sample {
     float fed = 0, laid = 0, length = 0;
     std::uint32_t bead = 0;                             ///< of the workpiece
@@ -53,12 +54,13 @@ class FillWatch {
   void look(const sim::LaidBead& bead, const Vec3& aside_W, std::size_t before);
   double fed_on(int line) const;
   /// Of the samples in order of that factor, the one that half of the length does not exceed.
-  const Sample& median(float Sample::*factor, double total) const;
+  const Sample& median(float Sample::*factor) const;
 
   std::shared_ptr<const sim::Workpiece> workpiece_;
   std::vector<float> fed_;  // [m^2] by line
   double reach_;            // [m]
-  std::deque<Sample> samples_;
+  double length_ = 0;       // [m]
+  ThinnedSeries<Sample> samples_{kSamplesMost};
 };
 
 }  // namespace understudy::rehearsal

@@ -13,7 +13,9 @@ namespace understudy::rehearsal {
 template <typename Point>
 class ThinnedSeries {
  public:
-  explicit ThinnedSeries(std::size_t capacity) : capacity_(std::max<std::size_t>(2, capacity)) {}
+  explicit ThinnedSeries(std::size_t capacity) : capacity_(std::max<std::size_t>(2, capacity)) {
+    points_.reserve(capacity_);
+  }
 
   void add(const Point& point) {
     if (count_++ % stride_ != 0) return;

@@ -52,7 +52,7 @@ Vec3 TraceObserver::offset_at(double time) {
 
 std::optional<AccuracyFigures> TraceObserver::accuracy() const {
   if (errors_.empty()) return std::nullopt;
-  std::vector<float> errors = errors_;
+  std::vector<float> errors(errors_.begin(), errors_.end());
   const auto n = errors.size();
   const auto p95 = errors.begin() + static_cast<std::ptrdiff_t>(std::min(
                                         n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n))));

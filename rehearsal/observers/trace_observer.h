@@ -58,7 +58,7 @@ class TraceObserver : public sim::Observer {
   std::deque<control::OffsetChange> offsets_;  ///< the one in force, and those to come
   double filament_ = 0;
   double path_ = 0;
-  std::vector<float> errors_;  // [m], of the tip while extruding
+  std::deque<float> errors_;  // [m], of the tip while extruding
   double square_sum_ = 0;
   ErrorPeak tip_peak_, orientation_peak_;
 };

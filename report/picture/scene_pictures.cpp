@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "report/picture/bead_surface.h"
 #include "report/picture/body_colours.h"
 #include "sim/surface/bead_sweep.h"
+#include "sim/surface/swept_shell.h"
 
 namespace understudy::report {
 namespace {
@@ -18,7 +20,7 @@ constexpr std::size_t kTrianglesMost = 1'500'000;
 constexpr double kOffMost = 3.3;
 
 struct Printed {
-  renderer::ColouredShape shape;
+  renderer::SmoothSurface surface;
   double within = 0;       ///< [m], by which it may be off in all
   std::size_t one_of = 1;  ///< stretch is drawn
 };
@@ -36,15 +38,21 @@ struct Sweep {
   double tolerance = 0;
 
   int sides(const sim::BeadStretch& stretch) const { return sim::sides_within(stretch, 1.3 * tolerance); }
-  std::size_t triangles(const sim::BeadStretch& stretch) const {
-    return sim::sweep_size(stretch, sides(stretch)).triangles;
-  }
-  std::size_t triangles() const {
-    std::size_t count = 0;
-    for (const auto& stretch : stretches) count += triangles(stretch);
-    return count;
+  sim::ShellSize size(const sim::BeadStretch& stretch) const {
+    return sim::sweep_size(stretch, sides(stretch));
   }
 };
+
+sim::ShellSize size_of(const std::vector<Sweep>& sweeps) {
+  sim::ShellSize all;
+  for (const Sweep& sweep : sweeps)
+    for (const auto& stretch : sweep.stretches) {
+      const sim::ShellSize one = sweep.size(stretch);
+      all.vertices += one.vertices;
+      all.triangles += one.triangles;
+    }
+  return all;
+}
 
 /// Of the beads chosen; coarser by a factor of three each time, until they are no more triangles than that.
 Sweep sweep_within(const sim::BeadIndex& beads, double by, double error, std::size_t triangles_most,
@@ -54,7 +62,7 @@ Sweep sweep_within(const sim::BeadIndex& beads, double by, double error, std::si
     Sweep sweep{{}, tolerance};
     std::size_t triangles = 0;
     const auto take = [&](sim::BeadStretch stretch) {
-      triangles += sweep.triangles(stretch);
+      triangles += sweep.size(stretch).triangles;
       sweep.stretches.push_back(std::move(stretch));
       return tolerance >= kCoarsest || triangles <= triangles_most;
     };
@@ -67,8 +75,8 @@ Vec3 end_of(const sim::Bead& bead) {
 }
 
 /// What was laid by a time, in W.
-std::optional<Printed> printed_shape(const sim::BeadIndex& beads, const Detail& detail,
-                                     double by = HUGE_VAL) {
+std::optional<Printed> printed_surface(const sim::BeadIndex& beads, const Detail& detail,
+                                       double by = HUGE_VAL) {
   std::vector<Sweep> sweeps;
   std::vector<char> close(beads.size(), 0), far(beads.size(), 1);
   if (detail.close_to_W) {
@@ -80,18 +88,17 @@ std::optional<Printed> printed_shape(const sim::BeadIndex& beads, const Detail& 
     sweeps.push_back(sweep_within(beads, by, detail.within, kTrianglesMost / 2, &close));
   }
   sweeps.push_back(sweep_within(beads, by, detail.pixel, kTrianglesMost / 2, &far));
-  std::size_t triangles = 0;
-  for (const Sweep& sweep : sweeps) triangles += sweep.triangles();
-  const std::size_t stride = triangles / kTrianglesMost + 1;
-  sim::BeadMesh shells;
+  const std::size_t stride = size_of(sweeps).triangles / kTrianglesMost + 1;
+  sim::SweptShell shells;
+  const sim::ShellSize size = size_of(sweeps);
+  shells.mesh.vertices.reserve(size.vertices);
+  shells.normals.reserve(size.vertices);
+  shells.mesh.triangles.reserve(size.triangles);
   for (const Sweep& sweep : sweeps)
     for (std::size_t i = 0; i < sweep.stretches.size(); i += stride)
-      sim::append_sweep(sweep.stretches[i], sweep.sides(sweep.stretches[i]), shells);
-  if (shells.triangles.empty()) return std::nullopt;
-  const auto mesh = std::make_shared<geometry::Mesh>(std::move(shells.vertices), std::move(shells.triangles));
-  return Printed{{{"printed", geometry::MeshShape{mesh}}, kFilament, false},
-                 kOffMost * sweeps.front().tolerance,
-                 stride};
+      sim::append_whole(sweep.stretches[i], sweep.sides(sweep.stretches[i]), shells);
+  if (shells.mesh.triangles.empty()) return std::nullopt;
+  return Printed{bead_surface(std::move(shells)), kOffMost * sweeps.front().tolerance, stride};
 }
 
 constexpr std::size_t kPathPointsMost = 3000;
@@ -100,6 +107,7 @@ constexpr std::size_t kPathPointsMost = 3000;
 void stand_level(const Pose& X_WO, renderer::PictureScene& drawn) {
   const Pose X_OW = X_WO.inverse(Eigen::Isometry);
   for (auto& shape : drawn.shapes) shape.shape.X_FS = X_OW * shape.shape.X_FS;
+  for (auto& surface : drawn.surfaces) surface.X_WF = X_OW * surface.X_WF;
   for (auto& line : drawn.polylines)
     for (Vec3& point : line.points) point = X_OW * point;
 }
@@ -122,11 +130,10 @@ renderer::PictureScene machine_and_path(const rehearsal::Scene& scene) {
 
 void add_printed(const rehearsal::Scene& scene, const Detail& detail, renderer::PictureScene& drawn) {
   if (!scene.printed) return;
-  auto printed = printed_shape(scene.printed->beads(), detail, scene.time);
+  auto printed = printed_surface(scene.printed->beads(), detail, scene.time);
   if (!printed) return;
-  if (scene.X_WO)
-    printed->shape.shape.X_FS = scene.X_WO->inverse(Eigen::Isometry) * printed->shape.shape.X_FS;
-  drawn.shapes.push_back(printed->shape);
+  if (scene.X_WO) printed->surface.X_WF = scene.X_WO->inverse(Eigen::Isometry);
+  drawn.surfaces.push_back(std::move(printed->surface));
 }
 
 struct Ball {
@@ -161,10 +168,10 @@ std::optional<Illustration> draw_printed_part(const rehearsal::Scene& scene) {
   const sim::BeadIndex& beads = scene.printed->beads();
   const Eigen::AlignedBox3d box = box_of(beads);
   const double radius = std::max(3e-3, 0.5 * box.diagonal().norm()), distance = 4.6 * radius;
-  const auto printed = printed_shape(beads, {pixel_at(distance, kCloseView), {}});
+  auto printed = printed_surface(beads, {pixel_at(distance, kCloseView), {}});
   if (!printed) return std::nullopt;
   renderer::PictureScene drawn;
-  drawn.shapes.push_back(printed->shape);
+  drawn.surfaces.push_back(std::move(printed->surface));
   if (scene.part) drawn.shapes.push_back({{"part", geometry::MeshShape{scene.part}}, kPart});
   drawn.target_W = box.center();
   drawn.field_of_view = from_deg(kCloseView);

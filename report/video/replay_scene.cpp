@@ -1,11 +1,12 @@
 #include "report/video/replay_scene.h"
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 #include <variant>
 
+#include "report/picture/bead_surface.h"
 #include "report/picture/body_colours.h"
+#include "sim/surface/swept_shell.h"
 
 namespace understudy::report {
 namespace {
@@ -51,13 +52,12 @@ std::size_t triangles_of(const std::vector<sim::BeadStretch>& stretches, double 
 }
 
 /// Coarser by a factor of three each time, until it is no more triangles than a picture can hold.
-std::shared_ptr<const geometry::Mesh> mesh_of(const std::vector<sim::BeadStretch>& stretches, double error) {
+sim::SweptShell shells_of(const std::vector<sim::BeadStretch>& stretches, double error) {
   constexpr double kCoarsest = 300e-6;
   while (error < kCoarsest && triangles_of(stretches, error) > kTrianglesMost) error *= 3;
-  sim::BeadMesh mesh;
-  for (const auto& stretch : stretches) sim::append_sweep(stretch, sim::sides_within(stretch, error), mesh);
-  if (mesh.triangles.empty()) return nullptr;
-  return std::make_shared<geometry::Mesh>(std::move(mesh.vertices), std::move(mesh.triangles));
+  sim::SweptShell shells;
+  for (const auto& stretch : stretches) sim::append_whole(stretch, sim::sides_within(stretch, error), shells);
+  return shells;
 }
 
 bool is_tip(const ReplayBody& body) {
@@ -142,11 +142,12 @@ renderer::PictureScene replay_scene(const RecordedReplay& replay, double time, d
     drawn.shapes.push_back({posed(*body, X_WT, key), colour_of_body(body->shape.name)});
   if (replay.table) drawn.shapes.push_back({*replay.table, kTable});
   if (replay.part) drawn.shapes.push_back({{"part", geometry::MeshShape{replay.part}}, kPart});
-  if (const auto mesh = mesh_of(laid_by(replay.beads, time), pixel))
-    drawn.shapes.push_back({{"printed", geometry::MeshShape{mesh}}, kFilament, false});
+  if (sim::SweptShell shells = shells_of(laid_by(replay.beads, time), pixel); !shells.mesh.triangles.empty())
+    drawn.surfaces.push_back(bead_surface(std::move(shells)));
   add_path_to_come(replay.path, time, pixel, drawn.polylines);
   const Pose X_OW = drawn_from_W(replay, time);
   for (auto& shape : drawn.shapes) shape.shape.X_FS = X_OW * shape.shape.X_FS;
+  for (auto& surface : drawn.surfaces) surface.X_WF = X_OW * surface.X_WF;
   for (auto& line : drawn.polylines)
     for (Vec3& point : line.points) point = X_OW * point;
   return drawn;

@@ -1,6 +1,8 @@
 #include "renderer/scene_view.h"
 
+#include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -114,6 +116,45 @@ TEST(SceneView, DrawsALineAsATubeOfItsRadius) {
   for (int x = 0; x < 300; ++x) wide += pixel(p, x, 100)[2] > pixel(p, x, 100)[0] + 25;
   EXPECT_NEAR(high, 20, 2);
   EXPECT_NEAR(wide, 220, 3);  // with its round ends
+}
+
+/// The ball as triangles that share vertices with normals of their own, a sphere of many facets.
+SmoothSurface smooth_ball(const Pose& X_WF) {
+  constexpr int kRings = 64, kAround = 128;
+  SmoothSurface ball;
+  ball.colour = {0.7f, 0.1f, 0.1f};
+  ball.X_WF = X_WF;
+  for (int i = 0; i <= kRings; ++i)
+    for (int k = 0; k < kAround; ++k) {
+      const double down = std::numbers::pi * i / kRings, around = 2 * std::numbers::pi * k / kAround;
+      const Vec3 out(std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), std::cos(down));
+      ball.normals.push_back(out);
+      ball.vertices.push_back(0.05 * out + X_WF.inverse(Eigen::Isometry).translation());
+    }
+  for (int i = 0; i < kRings; ++i)
+    for (int k = 0; k < kAround; ++k) {
+      const int a = i * kAround + k, b = i * kAround + (k + 1) % kAround;
+      if (i > 0) ball.triangles.push_back({a, a + kAround, b});
+      if (i + 1 < kRings) ball.triangles.push_back({b, a + kAround, b + kAround});
+    }
+  return ball;
+}
+
+TEST(SceneView, ASmoothSurfaceIsDrawnAsTheShapeThatItIs) {
+  PictureScene shape = red_ball(), surface = red_ball();
+  surface.shapes.clear();
+  surface.surfaces.push_back(
+      smooth_ball(make_pose(exp_rotation(Vec3(0.4, -0.2, 1)), Vec3(0.01, 0.02, -0.03))));
+  const Picture a = render_picture(shape), b = render_picture(surface);
+  double sum = 0;
+  int differ = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    const int off = std::abs(a.rgb[i] - b.rgb[i]);
+    sum += off;
+    differ += off > 8 ? 1 : 0;
+  }
+  EXPECT_LT(sum / static_cast<double>(a.rgb.size()), 0.5);  // of 255: facets of 48 and of 128 sides
+  EXPECT_LT(differ, static_cast<int>(a.rgb.size() / 100));
 }
 
 TEST(SceneView, EqualScenesGiveEqualBytes) {
