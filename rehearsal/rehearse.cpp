@@ -133,13 +133,19 @@ Scene scene_of(const TwinSetup& setup, const std::vector<TracePoint>& trace,
   return scene;
 }
 
+constexpr std::size_t kProgramKept = 8'000'000;  // [bytes], twice what a page shows
+
 Replay replay_of(const RehearsalRequest& request, const TwinSetup& setup,
                  const toolpath::FeatureTypes& features, const std::vector<TracePoint>& trace) {
   std::vector<Moment> moments;
   for (const TracePoint& point : trace) moments.push_back({point.time, {point.X_WT, point.axes}});
   Replay replay = make_replay(setup.machine, setup.as_built, moments);
   if (!request.program.empty()) replay.program = read_file(request.program);
-  replay.features = feature_changes(replay.program, features);
+  if (replay.program.size() > kProgramKept) {
+    replay.program_left_out = replay.program.size() - kProgramKept;
+    replay.program = replay.program.substr(0, kProgramKept);
+  }
+  replay.features = features.changes();
   return replay;
 }
 
@@ -274,6 +280,7 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress, RunList
   record.go = !any_error(record.findings);
   if (request.keep_scene) {
     record.scene = scene_of(setup, record.trace, printed);
+    setup.program.steps = {};  // which are as large as all that was laid
     record.replay = replay_of(request, setup, mended.features, record.trace);
   }
   report(1, "done");

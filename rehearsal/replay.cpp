@@ -106,17 +106,4 @@ Replay make_replay(const machine::MachineDescription& machine, const sim::AsBuil
   return replay;
 }
 
-std::vector<std::pair<int, std::string>> feature_changes(const std::string& program,
-                                                         const toolpath::FeatureTypes& types) {
-  std::vector<std::pair<int, std::string>> changes;
-  const int lines = 1 + static_cast<int>(std::count(program.begin(), program.end(), '\n'));
-  std::string_view last;
-  for (int line = 1; line <= lines; ++line) {
-    const std::string_view type = types.at(line);
-    if (type != last) changes.emplace_back(line, type);
-    last = type;
-  }
-  return changes;
-}
-
 }  // namespace understudy::rehearsal

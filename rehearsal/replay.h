@@ -1,6 +1,7 @@
 // The machine along a run: what a replay is drawn from.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,7 +11,6 @@
 #include "machine/description.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/configuration.h"
-#include "toolpath/inspection/feature_types.h"
 
 namespace understudy::rehearsal {
 
@@ -33,7 +33,8 @@ struct Replay {
   std::vector<ReplayBody> bodies;
   std::vector<Pose>
       X_WO;             ///< the machine's frame, one a key, where axes move the table; empty where W stands
-  std::string program;  ///< its file, as it was read
+  std::string program;  ///< its file, as it was read; of a long one the beginning
+  std::size_t program_left_out = 0;                   ///< [bytes] behind that
   std::vector<std::pair<int, std::string>> features;  ///< line from which on a feature type holds
 };
 
@@ -47,9 +48,5 @@ struct Moment {
 /// no bodies.
 Replay make_replay(const machine::MachineDescription& machine, const sim::AsBuilt& as_built,
                    const std::vector<Moment>& moments, std::size_t keys = 1500);
-
-/// The first line of each feature type that the program's comments state.
-std::vector<std::pair<int, std::string>> feature_changes(const std::string& program,
-                                                         const toolpath::FeatureTypes& types);
 
 }  // namespace understudy::rehearsal

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "renderer/gl_context.h"
@@ -241,10 +243,11 @@ float encoded(float linear) {
 
 }  // namespace
 
-Picture render_picture(const PictureScene& scene) {
+Picture render_picture(PictureScene scene) {
   check(scene);
   eye_axes(scene);
   const PictureGeometry geometry = picture_geometry(scene);
+  scene.surfaces = {};  // they are large, and in the geometry
   const Lights lights = make_lights(scene, geometry.radius);
 
   GlContext context;
@@ -253,8 +256,9 @@ Picture render_picture(const PictureScene& scene) {
   const GlSurface ground(gl, geometry.ground), creases(gl, geometry.creases);
   GlTriangles casters(gl);
   casters.fill(geometry.casters);
-  const GlTarget atlas(gl, GL_R8, kTilesX * kTile, kTilesY * kTile), lamp(gl, GL_R8, kLampMap, kLampMap);
-  draw_shadows(gl, lights, solids, casters, atlas, lamp);
+  std::optional<GlTarget> atlas(std::in_place, gl, GL_R8, kTilesX * kTile, kTilesY * kTile);
+  const GlTarget lamp(gl, GL_R8, kLampMap, kLampMap);
+  draw_shadows(gl, lights, solids, casters, *atlas, lamp);
 
   const Drawing drawing{scene, geometry, lights, solids, ground, creases};
   const GlSmoothTarget target(gl, scene.width, scene.height);
@@ -267,7 +271,8 @@ Picture render_picture(const PictureScene& scene) {
       without_hidden(geometry.solids, eye_clip(scene, geometry), draw_farthest(gl, drawing, target)));
 
   const GlTarget half_size(gl, GL_RGBA32F, (scene.width + 1) / 2, (scene.height + 1) / 2);
-  draw_sky(gl, drawing, atlas, half_size);
+  draw_sky(gl, drawing, *atlas, half_size);
+  atlas.reset();
   target.bind();
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_picture(gl, drawing, half_size, lamp);

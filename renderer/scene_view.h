@@ -56,6 +56,6 @@ struct Picture {
 /// Lit by the sky and one lamp, anti-aliased, with creases drawn and a soft shadow on a ground below the
 /// lowest shape. Equal scenes give equal bytes. Throws MachineError when no OSMesa context can be made,
 /// InputError for a picture without size or a camera that looks nowhere.
-Picture render_picture(const PictureScene& scene);
+Picture render_picture(PictureScene scene);
 
 }  // namespace understudy::renderer

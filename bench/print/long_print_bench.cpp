@@ -1,5 +1,6 @@
 // A whole print of many moves on the twin: memory, and whether time grows with the moves alone.
-//   long_print_bench [MOVES ...]     default 25000 50000 100000; the limit of 1.5 GB is for 1000000
+//   long_print_bench [MOVES ...]           default 25000 50000 100000; the limit of 1.5 GB is for 1000000
+//   long_print_bench --write MOVES FILE    the program alone, to rehearse it with report and pictures
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "bench/guarded.h"
+#include "core/file/output_file.h"
 #include "core/units.h"
 #include "rehearsal/run_twin.h"
 #include "sim/as_built/truth.h"
@@ -87,6 +89,10 @@ void run(std::size_t moves) {
 
 int main(int argc, char** argv) {
   return understudy::bench::guarded("long_print_bench", [&] {
+    if (argc == 4 && std::string(argv[1]) == "--write") {
+      understudy::write_file(argv[3], understudy::program_of(std::strtoul(argv[2], nullptr, 10)));
+      return 0;
+    }
     std::vector<std::size_t> sizes;
     for (int i = 1; i < argc; ++i) sizes.push_back(std::strtoul(argv[i], nullptr, 10));
     if (sizes.empty()) sizes = {25'000, 50'000, 100'000};

@@ -50,13 +50,12 @@ Vec3 TraceObserver::offset_at(double time) {
   return now.offset_W + (time - now.time) / (next.time - now.time) * (next.offset_W - now.offset_W);
 }
 
-std::optional<AccuracyFigures> TraceObserver::accuracy() const {
+std::optional<AccuracyFigures> TraceObserver::accuracy() {
   if (errors_.empty()) return std::nullopt;
-  std::vector<float> errors(errors_.begin(), errors_.end());
-  const auto n = errors.size();
-  const auto p95 = errors.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                        n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n))));
-  std::nth_element(errors.begin(), p95, errors.end());
+  const auto n = errors_.size();
+  const auto p95 = errors_.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                         n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n))));
+  std::nth_element(errors_.begin(), p95, errors_.end());
   AccuracyFigures figures;
   figures.tip_rms_um = to_um(std::sqrt(square_sum_ / static_cast<double>(n)));
   figures.tip_p95_um = to_um(static_cast<double>(*p95));

@@ -41,7 +41,7 @@ class TraceObserver : public sim::Observer {
   void on_point(std::function<void(const TracePoint&)> told) { told_ = std::move(told); }
 
   /// Nothing while nothing was extruded.
-  std::optional<AccuracyFigures> accuracy() const;
+  std::optional<AccuracyFigures> accuracy();
   ErrorPeak tip_peak() const { return tip_peak_; }
   ErrorPeak orientation_peak() const { return orientation_peak_; }
   std::vector<TracePoint> take();

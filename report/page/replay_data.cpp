@@ -295,13 +295,13 @@ Json beads_value(const sim::BeadIndex& beads, const Replay& replay, const Replay
 }
 
 /// Whole lines of the program, from its beginning.
-Json program_value(const std::string& program, const ReplayBudget& budget) {
+Json program_value(const Replay& replay, const ReplayBudget& budget) {
+  const std::string& program = replay.program;
   std::size_t size = program.size();
   Json object;
-  if (size > budget.program_bytes) {
-    size = program.rfind('\n', budget.program_bytes);
-    object["left_out_bytes"] = program.size() - size;
-  }
+  if (size > budget.program_bytes) size = program.rfind('\n', budget.program_bytes);
+  if (const std::size_t left_out = program.size() - size + replay.program_left_out; left_out > 0)
+    object["left_out_bytes"] = left_out;
   object["text"] = pack_text(std::string_view(program).substr(0, size));
   return object;
 }
@@ -334,7 +334,7 @@ Json replay_data(const Record& record, const ReplayBudget& budget) {
     if (scene.printed && scene.printed->beads().size() > 0)
       object["beads"] = beads_value(scene.printed->beads(), replay, budget);
   }
-  object["program"] = program_value(replay.program, budget);
+  object["program"] = program_value(replay, budget);
   return object;
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/process/memory.h"
 #include "core/units.h"
 #include "report/picture/bead_surface.h"
 #include "report/picture/body_colours.h"
@@ -15,7 +16,7 @@ namespace understudy::report {
 namespace {
 
 /// What a picture of beads can hold; a larger print is drawn coarser.
-constexpr std::size_t kTrianglesMost = 1'500'000;
+constexpr std::size_t kTrianglesMost = 1'000'000;
 /// Middle lines, sections, corners and chords together are off by no more than so many tolerances.
 constexpr double kOffMost = 3.3;
 
@@ -179,7 +180,7 @@ std::optional<Illustration> draw_printed_part(const rehearsal::Scene& scene) {
   std::string caption =
       fmt::format("As printed: {} beads, drawn to within {:.0f} µm", beads.size(), to_um(printed->within));
   if (printed->one_of > 1) caption += fmt::format(", one stretch of {}", printed->one_of);
-  return Illustration{renderer::render_picture(drawn), caption};
+  return Illustration{renderer::render_picture(std::move(drawn)), caption};
 }
 
 renderer::Picture from_afar(const rehearsal::Scene& scene) {
@@ -190,7 +191,7 @@ renderer::Picture from_afar(const rehearsal::Scene& scene) {
   drawn.target_W = around.centre;
   drawn.eye_W = around.centre + distance * Vec3(0.62, -0.74, 0.24).normalized();
   drawn.field_of_view = from_deg(kView);
-  return renderer::render_picture(drawn);
+  return renderer::render_picture(std::move(drawn));
 }
 
 renderer::Picture close_up(const rehearsal::Scene& scene) {
@@ -202,7 +203,7 @@ renderer::Picture close_up(const rehearsal::Scene& scene) {
   drawn.target_W = tip + Vec3(0, 0, 2e-3);
   drawn.eye_W = drawn.target_W + seen_from;
   drawn.field_of_view = from_deg(kCloseView);
-  return renderer::render_picture(drawn);
+  return renderer::render_picture(std::move(drawn));
 }
 
 }  // namespace
@@ -213,9 +214,12 @@ std::vector<Illustration> draw_scene(const rehearsal::Scene& scene) {
   std::vector<Illustration> pictures;
   pictures.push_back({from_afar(scene), scene.simulated ? "Machine and part at the middle of the print"
                                                         : "Machine at home; nothing was simulated"});
+  return_free_memory();
   pictures.push_back({close_up(scene), "The tool on the path"});
+  return_free_memory();
   if (scene.printed && scene.printed->beads().size() > 0)
     if (auto printed = draw_printed_part(scene)) pictures.push_back(std::move(*printed));
+  return_free_memory();
   return pictures;
 }
 

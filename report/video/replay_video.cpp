@@ -95,7 +95,7 @@ class Film {
     scene.field_of_view = from_deg(kView);
     scene.width = panel.cols;
     scene.height = panel.rows;
-    renderer::Picture picture = renderer::render_picture(scene);
+    renderer::Picture picture = renderer::render_picture(std::move(scene));
     const cv::Mat rgb(picture.height, picture.width, CV_8UC3, picture.rgb.data());
     cv::cvtColor(rgb, panel, cv::COLOR_RGB2BGR);
   }

@@ -111,15 +111,5 @@ TEST(Replay, KeysAreThinnedAndHoldTheLastInstant) {
   EXPECT_TRUE(make_replay(machine, as_built, {}).bodies.empty());
 }
 
-TEST(FeatureChanges, AreTheFirstLinesOfEachType) {
-  const std::string program = "G1 X0\n;TYPE:Perimeter\nG1 X1\nG1 X2\n;TYPE:Infill\nG1 X3\n";
-  const auto changes = feature_changes(program, toolpath::FeatureTypes(program));
-  ASSERT_EQ(changes.size(), 2u);
-  EXPECT_EQ(changes[0].second, "Perimeter");
-  EXPECT_LE(changes[0].first, 3);
-  EXPECT_EQ(changes[1].second, "Infill");
-  EXPECT_GT(changes[1].first, 4);
-}
-
 }  // namespace
 }  // namespace understudy::rehearsal

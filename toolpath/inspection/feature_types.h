@@ -21,6 +21,8 @@ class FeatureTypes {
 
   /// As the slicer writes it; empty where no comment says it.
   std::string_view at(int line) const;
+  /// Each type, and the first line from which on it holds; neighbours differ.
+  const std::vector<std::pair<int, std::string>>& changes() const { return from_; }
   /// The first line from which on something of the part is printed; 0: no comment says it.
   int first_of_part() const;
 

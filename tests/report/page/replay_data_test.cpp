@@ -92,6 +92,15 @@ TEST(ReplayData, BeyondTheBudgetItIsCoarserAndSaysSo) {
             record.replay->program.size());
 }
 
+TEST(ReplayData, AProgramThatWasNotKeptWholeCountsWhatIsBehind) {
+  Record record = sample();
+  EXPECT_FALSE(replay_data(record).at("program").contains("left_out_bytes"));
+  record.replay->program_left_out = 123;
+  const Json program = replay_data(record).at("program");
+  EXPECT_EQ(program.at("left_out_bytes"), 123);
+  EXPECT_EQ(unpacked(program.at("text")), record.replay->program);
+}
+
 TEST(ReplayData, AMeshBeyondTheBudgetIsItsBox) {
   Record record = sample();
   std::vector<Vec3> corners{{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 2e-3}};

@@ -18,6 +18,7 @@ TEST(FeatureTypes, AreReadAsEachSlicerWritesThem) {
       "; feature solid layer\n"                             // Simplify3D
       "; 'Perimeter Path', 0.6 [feed mm/s]\n"               // KISSlicer
       "G1 X3 E1\n");
+  EXPECT_EQ(types.changes().front(), (std::pair<int, std::string>(2, "Skirt/Brim")));
   EXPECT_EQ(types.at(0), "");
   EXPECT_EQ(types.at(1), "");
   EXPECT_EQ(types.at(2), "Skirt/Brim");
