@@ -128,7 +128,8 @@ Scene scene_of(const TwinSetup& setup, const std::vector<TracePoint>& trace,
   scene.simulated = point != nullptr;
   scene.time = point ? point->time : 0;
   scene.part = setup.workblank ? setup.workblank->part : setup.built_part;
-  scene.path = printed_path(setup.program, point ? point->line : 0);
+  constexpr std::size_t kMovesDrawn = 10'000;  // more than a picture shows
+  scene.path = printed_path(setup.program, point ? point->line : 0, kMovesDrawn);
   scene.printed = std::move(printed);
   return scene;
 }

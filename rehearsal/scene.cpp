@@ -42,16 +42,19 @@ Scene machine_scene(const machine::MachineDescription& machine, const sim::AsBui
   return scene;
 }
 
-std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program, int after_line) {
+std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program, int after_line,
+                                            std::size_t moves_most) {
   std::vector<std::vector<Vec3>> path;
   Vec3 previous = Vec3::Zero();
   bool printing = false;
+  std::size_t moves = 0;
   for (const auto& step : program.steps) {
     if (!toolpath::moves(step)) continue;
     const Vec3 tip = step.X_WT.translation();
     if (step.kind == toolpath::StepKind::print && step.line > after_line) {
       if (!printing) path.push_back({previous});
       path.back().push_back(tip);
+      if (++moves >= moves_most) break;
     }
     printing = step.kind == toolpath::StepKind::print && step.line > after_line;
     previous = tip;

@@ -1,6 +1,7 @@
 // What stood where at one instant of a run: what pictures of it are drawn from.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -32,7 +33,8 @@ Scene machine_scene(const machine::MachineDescription& machine, const sim::AsBui
                     const sim::Configuration& configuration);
 
 /// Where the tip goes while it prints, one polyline [m] for each stretch between two travels; of the moves
-/// behind a line of the program only.
-std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program, int after_line = 0);
+/// behind a line of the program only, and of the first so many of them.
+std::vector<std::vector<Vec3>> printed_path(const toolpath::Program& program, int after_line = 0,
+                                            std::size_t moves_most = static_cast<std::size_t>(-1));
 
 }  // namespace understudy::rehearsal

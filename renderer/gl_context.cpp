@@ -2,6 +2,7 @@
 
 #include <GL/osmesa.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <mutex>
@@ -231,8 +232,17 @@ void GlTriangles::fill(const std::vector<std::uint32_t>& corners) {
 }
 
 void GlTriangles::draw() const {
+  // llvmpipe sorts triangles into tiles, half a kilobyte each, before it draws any: by parts it needs less
+  // memory.
+  constexpr int kPart = 3 * 65'536;  // corners
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer_);
-  gl_.DrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+  for (int first = 0; first < count_; first += kPart) {
+    if (first > 0) gl_.Finish();
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes an offset there
+    const auto* offset =
+        reinterpret_cast<const void*>(static_cast<std::size_t>(first) * sizeof(std::uint32_t));
+    gl_.DrawElements(GL_TRIANGLES, std::min(kPart, count_ - first), GL_UNSIGNED_INT, offset);
+  }
 }
 
 GlVertices::GlVertices(const GlFunctions& gl, const std::vector<int>& layout) : gl_(gl) {

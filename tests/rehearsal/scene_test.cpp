@@ -27,6 +27,9 @@ TEST(PrintedPath, IsOnePolylineBetweenTwoTravels) {
   EXPECT_EQ(path[0].back().x(), 3);
   ASSERT_EQ(path[1].size(), 2u);
   EXPECT_EQ(path[1].front().x(), 5);
+  const auto begun = printed_path(program, 0, 2);
+  ASSERT_EQ(begun.size(), 1u);
+  EXPECT_EQ(begun[0], path[0]);
 }
 
 TEST(MachineScene, HoldsToolStrutsAndTheJointsTheyHangFrom) {
