@@ -9,7 +9,6 @@
 namespace understudy::renderer {
 namespace {
 
-constexpr std::size_t kVertex = 9;  // floats
 // A hundred roundings of a float next to 1: the rasteriser interpolates what is projected here.
 constexpr float kRounding = 6e-6f;
 constexpr float kPixelsMost = 4096;  // that a triangle is looked for in; a larger one is drawn without a look
@@ -28,8 +27,8 @@ struct Projected {
 std::vector<Projected> project(const std::vector<float>& vertices, const Eigen::Matrix4f& clip,
                                const FarthestSeen& seen) {
   std::vector<Projected> projected;
-  projected.reserve(vertices.size() / kVertex);
-  for (std::size_t i = 0; i + kVertex <= vertices.size(); i += kVertex) {
+  projected.reserve(vertices.size() / kVertexFloats);
+  for (std::size_t i = 0; i + kVertexFloats <= vertices.size(); i += kVertexFloats) {
     const float* p = &vertices[i];
     const Eigen::Vector4f at = clip * Eigen::Vector4f(p[0], p[1], p[2], 1);
     projected.push_back({0.5f * (at.x() / at.w() + 1) * static_cast<float>(seen.width),

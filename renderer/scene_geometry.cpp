@@ -15,8 +15,6 @@ constexpr float kCreaseShade = 0.35f;  // of the shape's own colour
 
 using Colour = std::array<float, 3>;
 
-constexpr std::size_t kVertex = 9;  // floats
-
 void put(PictureTriangles& out, const Vec3& p, const Vec3& n, const Colour& colour) {
   for (int i = 0; i < 3; ++i) out.vertices.push_back(static_cast<float>(p[i]));
   for (int i = 0; i < 3; ++i) out.vertices.push_back(static_cast<float>(n[i]));
@@ -24,7 +22,7 @@ void put(PictureTriangles& out, const Vec3& p, const Vec3& n, const Colour& colo
 }
 
 std::uint32_t vertices_in(const PictureTriangles& out) {
-  return static_cast<std::uint32_t>(out.vertices.size() / kVertex);
+  return static_cast<std::uint32_t>(out.vertices.size() / kVertexFloats);
 }
 
 void put_quad(PictureTriangles& out, const std::array<Vec3, 4>& p, const std::array<Vec3, 4>& n,
@@ -45,7 +43,7 @@ void put_surface(PictureTriangles& out, const Surface& s, const Colour& colour) 
 
 void put_surface(PictureTriangles& out, const SmoothSurface& s) {
   const std::uint32_t first = vertices_in(out);
-  out.vertices.reserve(out.vertices.size() + kVertex * s.vertices.size());
+  out.vertices.reserve(out.vertices.size() + kVertexFloats * s.vertices.size());
   out.corners.reserve(out.corners.size() + 3 * s.triangles.size());
   for (std::size_t i = 0; i < s.vertices.size(); ++i)
     put(out, s.X_WF * s.vertices[i], s.X_WF.linear() * s.normals[i], s.colour);
@@ -116,14 +114,14 @@ void put_crease(PictureTriangles& out, Vec3 a, Vec3 b, const Vec3& eye, double m
 }
 
 void shift(std::vector<float>& vertices, const Vec3& by) {
-  for (std::size_t i = 0; i < vertices.size(); i += kVertex) {
+  for (std::size_t i = 0; i < vertices.size(); i += kVertexFloats) {
     for (std::size_t k = 0; k < 3; ++k) vertices[i + k] -= static_cast<float>(by[static_cast<int>(k)]);
   }
 }
 
 Eigen::AlignedBox3d bounds(const std::vector<float>& vertices) {
   Eigen::AlignedBox3d box;
-  for (std::size_t i = 0; i < vertices.size(); i += kVertex) {
+  for (std::size_t i = 0; i < vertices.size(); i += kVertexFloats) {
     box.extend(Vec3(static_cast<double>(vertices[i]), static_cast<double>(vertices[i + 1]),
                     static_cast<double>(vertices[i + 2])));
   }

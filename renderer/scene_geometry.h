@@ -1,12 +1,15 @@
 // What a picture is drawn from: triangles with colours, and the lights' directions.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "renderer/scene_view.h"
 
 namespace understudy::renderer {
+
+constexpr std::size_t kVertexFloats = 9;
 
 /// Vertices of nine floats: position about `PictureGeometry::centre` in W's axes, normal, colour (see
 /// scene.vert). A million triangles fit because those of one surface share their vertices.
