@@ -48,14 +48,14 @@ std::string journal_of(const SweepRequest& r) {
   return journal;
 }
 
-/// `scratch`: where the program of a plan lies until all machines have printed it.
-rehearsal::RehearsalRequest print_of(const SweepRequest& r, const ScratchFolder& scratch) {
+/// `scratch`: where the program of a plan lies until all machines have printed it; made for a plan only.
+rehearsal::RehearsalRequest print_of(const SweepRequest& r, std::optional<ScratchFolder>& scratch) {
   regression::Scenario scenario = regression::load_scenario(r.scenario);
   if (!scenario.command.empty())
     throw InputError(scenario.file.string() +
                      ": has a command, which is not printed: name a scenario with a program");
   if (!scenario.plan.empty()) {
-    scenario.program = scratch.path() / regression::kPlannedProgram;
+    scenario.program = scratch.emplace("plan").path() / regression::kPlannedProgram;
     write_planned(scenario, scenario.program);
   }
   auto print = regression::request_of(scenario);
@@ -70,7 +70,7 @@ int run_budget(const SweepRequest& r) {
   request.first_seed = r.first_seed;
   request.threads = r.threads;
   check_jobs(r.threads);
-  const ScratchFolder scratch("plan");
+  std::optional<ScratchFolder> scratch;
   request.print = print_of(r, scratch);
   const studies::BudgetPlan plan = studies::plan_budget(request);
   if (!r.told.quiet) fmt::print(stderr, "{}\n", report::budget_cost(plan, request.samples));
@@ -100,7 +100,7 @@ int run_sweep(const SweepRequest& r) {
   if (samples < 1 || samples > 1000000)
     throw InputError(fmt::format("--samples {} is outside 1..1000000", samples));
   check_jobs(r.threads);
-  const ScratchFolder scratch("plan");
+  std::optional<ScratchFolder> scratch;
   const auto request = print_of(r, scratch);
   const auto machine = machine::load_machine(request.machine);
   OutputFolder out(r.folder);

@@ -17,7 +17,7 @@ double thousandths(double metres) { return std::round(1e3 * to_mm(metres)) / 1e3
 std::array<double, 3> place_on_table(const toolpath::Extent& printed, const toolpath::Extent& part,
                                      const machine::MachineDescription& machine, double layer, bool lowered) {
   std::array<double, 3> place{0, 0, 0};
-  const auto& [lower, upper] = printed;
+  const Vec3 &lower = printed.lower, &upper = printed.upper;
   if (lower.z() < -kMostOffTable || (lowered && lower.z() > kFarAbove))
     place[2] = thousandths(layer - lower.z());
   const auto* table = std::get_if<geometry::Box>(&machine.table.form);

@@ -9,7 +9,10 @@ namespace understudy::rehearsal {
 
 TraceObserver::TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity,
                              std::shared_ptr<const toolpath::RewrittenPath> asked)
-    : deposition_(deposition), asked_(std::move(asked)), trace_(capacity) {}
+    : deposition_(deposition),
+      asked_(std::move(asked)),
+      trace_(capacity),
+      errors_(kErrorsAPoint * capacity) {}
 
 void TraceObserver::observe(const sim::Snapshot& s) {
   TracePoint point;
@@ -26,7 +29,7 @@ void TraceObserver::observe(const sim::Snapshot& s) {
   point.axes = s.axes;
   if (point.extruding) {
     path_ += (s.X_WT.translation() - newest_.X_WT.translation()).norm();
-    errors_.push_back(static_cast<float>(point.tip_error));
+    errors_.add(static_cast<float>(point.tip_error));
     square_sum_ += point.tip_error * point.tip_error;
     if (point.tip_error > tip_peak_.error) tip_peak_ = {point.tip_error, point.line, point.time};
     if (point.orientation_error > orientation_peak_.error)
@@ -51,13 +54,15 @@ Vec3 TraceObserver::offset_at(double time) {
 }
 
 std::optional<AccuracyFigures> TraceObserver::accuracy() {
-  if (errors_.empty()) return std::nullopt;
-  const auto n = errors_.size();
-  const auto p95 = errors_.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                         n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n))));
-  std::nth_element(errors_.begin(), p95, errors_.end());
+  if (errors_.count() == 0) return std::nullopt;
+  const auto all = static_cast<double>(errors_.count());
+  std::vector<float> errors = errors_.take();
+  const auto n = errors.size();
+  const auto p95 = errors.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                        n - 1, static_cast<std::size_t>(0.95 * static_cast<double>(n))));
+  std::nth_element(errors.begin(), p95, errors.end());
   AccuracyFigures figures;
-  figures.tip_rms_um = to_um(std::sqrt(square_sum_ / static_cast<double>(n)));
+  figures.tip_rms_um = to_um(std::sqrt(square_sum_ / all));
   figures.tip_p95_um = to_um(static_cast<double>(*p95));
   figures.tip_max_um = to_um(tip_peak_.error);
   figures.orientation_max_mrad = 1e3 * orientation_peak_.error;

@@ -24,10 +24,11 @@ struct ErrorPeak {
 
 class TraceObserver : public sim::Observer {
  public:
-  static constexpr std::size_t kCapacity = 100'000;
+  static constexpr std::size_t kCapacity = 100'000, kErrorsAPoint = 20;
   /// Reads the gap from `deposition`, which must have seen each snapshot before. Of the snapshots, a trace of
   /// at most `capacity` is kept: when it is full, every other one of it goes and from then on twice as few
-  /// are added. The figures are those of all snapshots.
+  /// are added. The figures are those of all snapshots, but for the 95th percentile: that is of no more than
+  /// kErrorsAPoint `capacity` of them, evenly one of several.
   /// `asked`: where another program asked for the tool, which the one that runs was compensated from; null:
   /// the one that runs asks itself.
   explicit TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity = kCapacity,
@@ -40,7 +41,7 @@ class TraceObserver : public sim::Observer {
   /// Each point as it comes, before any is thinned out; on the thread that observes.
   void on_point(std::function<void(const TracePoint&)> told) { told_ = std::move(told); }
 
-  /// Nothing while nothing was extruded.
+  /// Nothing while nothing was extruded. To be asked once.
   std::optional<AccuracyFigures> accuracy();
   ErrorPeak tip_peak() const { return tip_peak_; }
   ErrorPeak orientation_peak() const { return orientation_peak_; }
@@ -58,7 +59,7 @@ class TraceObserver : public sim::Observer {
   std::deque<control::OffsetChange> offsets_;  ///< the one in force, and those to come
   double filament_ = 0;
   double path_ = 0;
-  std::deque<float> errors_;  // [m], of the tip while extruding
+  ThinnedSeries<float> errors_;  // [m], of the tip while extruding
   double square_sum_ = 0;
   ErrorPeak tip_peak_, orientation_peak_;
 };

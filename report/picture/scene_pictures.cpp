@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -33,41 +34,34 @@ struct Detail {
   double closer_than = 12e-3, within = 6e-6;  ///< [m]
 };
 
-/// Stretches, and the tolerance that they and their sides keep.
+/// Beads that are swept alike. Their stretches are made anew each time: all at once they are larger than the
+/// triangles.
 struct Sweep {
-  std::vector<sim::BeadStretch> stretches;
-  double tolerance = 0;
+  double by = HUGE_VAL;                       ///< [s]
+  const std::vector<char>* chosen = nullptr;  ///< null: all
+  double tolerance = 0;                       ///< [m], of the stretches and of their sides
 
-  int sides(const sim::BeadStretch& stretch) const { return sim::sides_within(stretch, 1.3 * tolerance); }
-  sim::ShellSize size(const sim::BeadStretch& stretch) const {
-    return sim::sweep_size(stretch, sides(stretch));
+  /// Whether `take` wanted all of them.
+  bool each(const sim::BeadIndex& beads,
+            const std::function<bool(const sim::BeadStretch&, int)>& take) const {
+    return sim::sweep_beads(beads, {by, tolerance, HUGE_VAL, chosen}, [&](const sim::BeadStretch& stretch) {
+      return take(stretch, sim::sides_within(stretch, 1.3 * tolerance));
+    });
   }
 };
 
-sim::ShellSize size_of(const std::vector<Sweep>& sweeps) {
-  sim::ShellSize all;
-  for (const Sweep& sweep : sweeps)
-    for (const auto& stretch : sweep.stretches) {
-      const sim::ShellSize one = sweep.size(stretch);
-      all.vertices += one.vertices;
-      all.triangles += one.triangles;
-    }
-  return all;
-}
-
-/// Of the beads chosen; coarser by a factor of three each time, until they are no more triangles than that.
-Sweep sweep_within(const sim::BeadIndex& beads, double by, double error, std::size_t triangles_most,
-                   const std::vector<char>* chosen) {
+/// Makes it coarser by a factor of three each time, until it is no more triangles than that. Its size.
+sim::ShellSize coarsen(const sim::BeadIndex& beads, std::size_t triangles_most, Sweep& sweep) {
   constexpr double kCoarsest = 300e-6;
-  for (double tolerance = error / kOffMost;; tolerance *= 3) {
-    Sweep sweep{{}, tolerance};
-    std::size_t triangles = 0;
-    const auto take = [&](sim::BeadStretch stretch) {
-      triangles += sweep.size(stretch).triangles;
-      sweep.stretches.push_back(std::move(stretch));
-      return tolerance >= kCoarsest || triangles <= triangles_most;
+  for (;; sweep.tolerance *= 3) {
+    sim::ShellSize size;
+    const auto count = [&](const sim::BeadStretch& stretch, int sides) {
+      const sim::ShellSize one = sim::sweep_size(stretch, sides);
+      size.vertices += one.vertices;
+      size.triangles += one.triangles;
+      return sweep.tolerance >= kCoarsest || size.triangles <= triangles_most;
     };
-    if (sim::sweep_beads(beads, {by, tolerance, HUGE_VAL, chosen}, take)) return sweep;
+    if (sweep.each(beads, count)) return size;
   }
 }
 
@@ -86,18 +80,27 @@ std::optional<Printed> printed_surface(const sim::BeadIndex& beads, const Detail
       close[i] = is_close ? 1 : 0;
       far[i] = is_close ? 0 : 1;
     }
-    sweeps.push_back(sweep_within(beads, by, detail.within, kTrianglesMost / 2, &close));
+    sweeps.push_back({by, &close, detail.within / kOffMost});
   }
-  sweeps.push_back(sweep_within(beads, by, detail.pixel, kTrianglesMost / 2, &far));
-  const std::size_t stride = size_of(sweeps).triangles / kTrianglesMost + 1;
+  sweeps.push_back({by, &far, detail.pixel / kOffMost});
+  sim::ShellSize size;
+  for (Sweep& sweep : sweeps) {
+    const sim::ShellSize one = coarsen(beads, kTrianglesMost / 2, sweep);
+    size.vertices += one.vertices;
+    size.triangles += one.triangles;
+  }
+  const std::size_t stride = size.triangles / kTrianglesMost + 1;
   sim::SweptShell shells;
-  const sim::ShellSize size = size_of(sweeps);
-  shells.mesh.vertices.reserve(size.vertices);
-  shells.normals.reserve(size.vertices);
-  shells.mesh.triangles.reserve(size.triangles);
-  for (const Sweep& sweep : sweeps)
-    for (std::size_t i = 0; i < sweep.stretches.size(); i += stride)
-      sim::append_whole(sweep.stretches[i], sweep.sides(sweep.stretches[i]), shells);
+  shells.mesh.vertices.reserve(size.vertices / stride);
+  shells.normals.reserve(size.vertices / stride);
+  shells.mesh.triangles.reserve(size.triangles / stride);
+  for (const Sweep& sweep : sweeps) {
+    std::size_t stretches = 0;
+    sweep.each(beads, [&](const sim::BeadStretch& stretch, int sides) {
+      if (stretches++ % stride == 0) sim::append_whole(stretch, sides, shells);
+      return true;
+    });
+  }
   if (shells.mesh.triangles.empty()) return std::nullopt;
   return Printed{bead_surface(std::move(shells)), kOffMost * sweeps.front().tolerance, stride};
 }

@@ -68,17 +68,31 @@ bool stands_for(const BeadStretch& sections, std::size_t first, std::size_t last
   return true;
 }
 
+/// The farthest section that a straight piece from `at` reaches. It is looked for in steps that double and
+/// then halve: a piece as long as its neighbours takes a few looks at it, not one for each of its sections.
+std::size_t reach(const BeadStretch& sections, std::size_t at, const SweepSettings& settings) {
+  const std::size_t most = std::min(sections.size() - 1, at + kLookAhead);
+  const auto reaches = [&](std::size_t i) {
+    return (sections[i].middle_W - sections[at].middle_W).norm() <= settings.longest &&
+           stands_for(sections, at, i, settings.tolerance);
+  };
+  std::size_t good = at + 1, bad = most + 1;
+  for (std::size_t step = 1; good < most && bad > most; step *= 2) {
+    const std::size_t next = std::min(good + step, most);
+    (reaches(next) ? good : bad) = next;
+  }
+  while (bad - good > 1) {
+    const std::size_t middle = good + (bad - good) / 2;
+    (reaches(middle) ? good : bad) = middle;
+  }
+  return good;
+}
+
 BeadStretch simplified(const BeadStretch& sections, const SweepSettings& settings) {
   BeadStretch kept{sections.front()};
   for (std::size_t at = 0; at + 1 < sections.size();) {
-    std::size_t next = at + 1;
-    const std::size_t most = std::min(sections.size() - 1, at + kLookAhead);
-    const auto within = [&](std::size_t i) {
-      return (sections[i].middle_W - sections[at].middle_W).norm() <= settings.longest;
-    };
-    while (next < most && within(next + 1) && stands_for(sections, at, next + 1, settings.tolerance)) ++next;
-    kept.push_back(sections[next]);
-    at = next;
+    at = reach(sections, at, settings);
+    kept.push_back(sections[at]);
   }
   return kept;
 }

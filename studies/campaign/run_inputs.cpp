@@ -141,7 +141,8 @@ fs::path RunInputs::planned(const regression::Scenario& scenario) {
   const auto known = planned_.find(made_from);
   if (known != planned_.end()) return known->second;
   // The same name in every process: it is told in records.
-  const fs::path made = scratch_.path() / std::to_string(planned_.size()) / regression::kPlannedProgram;
+  if (!scratch_) scratch_.emplace("campaign");
+  const fs::path made = scratch_->path() / std::to_string(planned_.size()) / regression::kPlannedProgram;
   fs::create_directories(made.parent_path());
   tools_.plan(scenario, made);
   return planned_[made_from] = made;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,7 @@ class RunInputs {
   const Campaign& campaign_;
   CampaignTools tools_;
   std::vector<std::string> names_;
-  ScratchFolder scratch_{"campaign"};
+  std::optional<ScratchFolder> scratch_;                  // from the first plan on
   std::map<std::string, std::filesystem::path> planned_;  // by what it is made from
   bool open_loop_ = false;                                // a figure without gap control is asked for
 };

@@ -50,8 +50,10 @@ void run_papers(const std::vector<std::string>& names) {
   EXPECT_THAT(outcome.out, HasSubstr(std::to_string(names.size()) + " passed, 0 failed"));
 }
 
-TEST(PaperScenarios, HansPartsHoldWhatIsExpectedOfThem) {
-  run_papers({"han-cylinder", "han-rectangle", "han-s"});
+TEST(PaperScenarios, HansCylinderHoldsWhatIsExpectedOfIt) { run_papers({"han-cylinder"}); }
+
+TEST(ExtendedPaperScenarios, HansOtherPartsHoldWhatIsExpectedOfThem) {
+  run_papers({"han-rectangle", "han-s"});
 }
 
 TEST(ExtendedPaperScenarios, PartsWithTwoBendsHoldWhatIsExpectedOfThem) {
@@ -256,7 +258,9 @@ TEST(ScenarioList, NamesTheShippedScenarios) {
 TEST(ExtendedSweep, DoesNotDependOnTheNumberOfThreads) {
   const Folder folder;
   const std::string scenario = kSource + "/scenarios/song-bottle.yaml --samples 3 ";
-  ASSERT_EQ(understudy("sweep " + scenario + "-j 1 --out " + (folder / "one")).status, 0);
+  // What is planned needs a folder for temporary files, which a kill would leave behind; a program does not.
+  const std::string no_folder = "TMPDIR=" + (folder / "none");
+  ASSERT_EQ(understudy_after(no_folder, "sweep " + scenario + "-j 1 --out " + (folder / "one")).status, 0);
   ASSERT_EQ(understudy("sweep " + scenario + "-j 3 --out " + (folder / "three")).status, 0);
   EXPECT_EQ(read_file(folder / "one/sweep.csv"), read_file(folder / "three/sweep.csv"));
 }

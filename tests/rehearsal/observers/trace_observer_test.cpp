@@ -59,13 +59,22 @@ TEST(TraceObserver, ALongRunIsThinnedEvenlyAndEndsAtItsEnd) {
 }
 
 // Of a ramp to 1 mm: RMS 1/sqrt(3), the 95th percentile 0.95, the largest 1.
-TEST(TraceObserver, FiguresAreThoseOfAllSnapshots) {
-  Traced run(100);
+void expect_figures_of_the_ramp(Traced& run, double p95_within_um) {
   const auto accuracy = run.trace.accuracy();
   ASSERT_TRUE(accuracy.has_value());
   EXPECT_NEAR(accuracy->tip_rms_um, 1000 / std::sqrt(3), 0.2);
-  EXPECT_NEAR(accuracy->tip_p95_um, 950, 0.2);
+  EXPECT_NEAR(accuracy->tip_p95_um, 950, p95_within_um);
   EXPECT_NEAR(accuracy->tip_max_um, 1000, 1e-6);
+}
+
+TEST(TraceObserver, FiguresAreThoseOfAllSnapshots) {
+  Traced run(kSnapshots / TraceObserver::kErrorsAPoint);
+  expect_figures_of_the_ramp(run, 0.2);  // two steps of the ramp
+}
+
+TEST(TraceObserver, ThePercentileOfALongRunIsThatOfOneSnapshotOfEight) {
+  Traced run(100);
+  expect_figures_of_the_ramp(run, 0.8);  // the steps of what is left
 }
 
 }  // namespace
