@@ -40,9 +40,11 @@ CameraFaultEvent draw_camera_fault(CameraFaultKind kind, double time, Random& ra
       event.offset_px = random.uniform(-20, 4);
       event.direction = random.uniform(0, 2 * std::numbers::pi);
       break;
-    case CameraFaultKind::displaced:
-      event.offset_px = std::copysign(std::round(random.uniform(2, 20)), random.uniform(-1, 1));
+    case CameraFaultKind::displaced: {
+      const double side = random.uniform(-1, 1);  // drawn first, whatever the compiler
+      event.offset_px = std::copysign(std::round(random.uniform(2, 20)), side);
       break;
+    }
     default:
       break;
   }

@@ -138,7 +138,8 @@ TEST(QuasistaticPlant, SameCommandsGiveTheSameBytes) {
     std::vector<double> trace;
     for (int k = 0; k < 500; ++k) {
       plant->step(circle_command(built.hexapod, circle, k * plant->timestep()));
-      trace.insert(trace.end(), plant->tool_pose().matrix().data(), plant->tool_pose().matrix().data() + 16);
+      const Pose X_WT = plant->tool_pose();
+      trace.insert(trace.end(), X_WT.data(), X_WT.data() + X_WT.matrix().size());
       trace.push_back(plant->drive_force()[3]);
     }
     return trace;

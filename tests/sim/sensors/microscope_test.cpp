@@ -72,7 +72,8 @@ std::shared_ptr<const geometry::Mesh> part_of(Ground ground) {
 
 /// The tip at a gap over a random place of the surface.
 Pose over(Ground ground, double gap, Random& random) {
-  const Vec3 place(random.uniform(-4e-3, 4e-3), random.uniform(-4e-3, 4e-3), gap);
+  const double y = random.uniform(-4e-3, 4e-3), x = random.uniform(-4e-3, 4e-3);
+  const Vec3 place(x, y, gap);
   if (ground == Ground::table) return make_pose(exp_rotation(Vec3(0, 0, random.uniform(-0.5, 0.5))), place);
   if (ground == Ground::tilted) {  // 30 degrees in any azimuth
     const double azimuth = random.uniform(0, 2 * std::numbers::pi);
