@@ -23,9 +23,10 @@ constexpr const char* kTraceFile = "trace.csv";
 constexpr const char* kAsBuiltFile = "as-built.yaml";
 
 int count_at(const Json& object, const char* key) {
-  const auto count = object.at(key).get<std::int64_t>();
-  if (!object.at(key).is_number_integer() || count < 0 || count > std::numeric_limits<int>::max())
-    throw std::runtime_error(fmt::format("{} is {}", key, object.at(key).dump()));
+  const Json& value = object.at(key);
+  const std::int64_t count = value.is_number_integer() ? value.get<std::int64_t>() : -1;
+  if (count < 0 || count > std::numeric_limits<int>::max())
+    throw std::runtime_error(fmt::format("{} is {}", key, value.dump()));
   return static_cast<int>(count);
 }
 
