@@ -93,8 +93,9 @@ std::vector<Vec3> cover(const geometry::Mesh& mesh, double spacing) {
     std::uint64_t cell = 0;
     for (int i = 0; i < 3; ++i) {
       constexpr std::uint64_t kPerAxis = std::uint64_t{1} << 21;
-      cell = cell * kPerAxis +
-             static_cast<std::uint64_t>(std::floor((p[i] - mesh.lower()[i]) / spacing)) % kPerAxis;
+      // Rounding can put a point just below the least one.
+      const auto step = static_cast<std::int64_t>(std::floor((p[i] - mesh.lower()[i]) / spacing));
+      cell = cell * kPerAxis + static_cast<std::uint64_t>(step) % kPerAxis;
     }
     if (taken.insert(cell).second) points.push_back(p);
   };
