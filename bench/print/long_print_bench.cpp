@@ -1,7 +1,6 @@
 // A whole print of many moves on the twin: memory, and whether time grows with the moves alone.
-//   long_print_bench [MOVES ...]           default 25000 50000 100000; 1000000 of them shall need no more
-//   than 0.6 GB long_print_bench --write MOVES FILE    the program alone, to rehearse it with report and
-//   pictures
+//   long_print_bench [MOVES ...]           default 25000 50000 100000; the limit of 0.6 GB is for 1000000
+//   long_print_bench --write MOVES FILE    the program alone, to rehearse it with report and pictures
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

@@ -12,7 +12,7 @@ TraceObserver::TraceObserver(const sim::DepositionObserver& deposition, std::siz
     : deposition_(deposition),
       asked_(std::move(asked)),
       trace_(capacity),
-      errors_(kErrorsAPoint * capacity) {}
+      errors_(kErrorsPerPoint * capacity) {}
 
 void TraceObserver::observe(const sim::Snapshot& s) {
   TracePoint point;

@@ -24,11 +24,11 @@ struct ErrorPeak {
 
 class TraceObserver : public sim::Observer {
  public:
-  static constexpr std::size_t kCapacity = 100'000, kErrorsAPoint = 20;
+  static constexpr std::size_t kCapacity = 100'000, kErrorsPerPoint = 20;
   /// Reads the gap from `deposition`, which must have seen each snapshot before. Of the snapshots, a trace of
   /// at most `capacity` is kept: when it is full, every other one of it goes and from then on twice as few
-  /// are added. The figures are those of all snapshots, but for the 95th percentile: that is of no more than
-  /// kErrorsAPoint `capacity` of them, evenly one of several.
+  /// are added. The figures are those of all snapshots, but for the 95th percentile: that is taken of
+  /// at most kErrorsPerPoint * `capacity` of them, evenly spaced.
   /// `asked`: where another program asked for the tool, which the one that runs was compensated from; null:
   /// the one that runs asks itself.
   explicit TraceObserver(const sim::DepositionObserver& deposition, std::size_t capacity = kCapacity,

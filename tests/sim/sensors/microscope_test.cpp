@@ -72,6 +72,7 @@ std::shared_ptr<const geometry::Mesh> part_of(Ground ground) {
 
 /// The tip at a gap over a random place of the surface.
 Pose over(Ground ground, double gap, Random& random) {
+  // One draw after the other: in one call their order would be the compiler's.
   const double y = random.uniform(-4e-3, 4e-3), x = random.uniform(-4e-3, 4e-3);
   const Vec3 place(x, y, gap);
   if (ground == Ground::table) return make_pose(exp_rotation(Vec3(0, 0, random.uniform(-0.5, 0.5))), place);
