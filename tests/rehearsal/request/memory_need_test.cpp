@@ -20,8 +20,6 @@
 namespace understudy::rehearsal {
 namespace {
 
-using ::testing::HasSubstr;
-
 class MemoryNeed : public testing::Test {
  protected:
   RehearsalRequest lines(int count, const std::string& name) const {

@@ -17,9 +17,9 @@ inline machine::MachineDescription machine_g4() {
   m.X_BT_home = make_pose(Quat::Identity(), Vec3(0, 0, -from_mm(206)));
   for (int i = 0; i < kinematics::kStruts; ++i) {
     const auto s = static_cast<std::size_t>(i);
+    const int pair = i / 2;
     const double side = i % 2 == 0 ? -1 : 1;
-    const double base = from_deg(120.0 * (i / 2) + side * 43),
-                 platform = from_deg(120.0 * (i / 2) + side * 17);
+    const double base = from_deg(120.0 * pair + side * 43), platform = from_deg(120.0 * pair + side * 17);
     m.hexapod().geometry.base_joint[s] = from_mm(80) * Vec3(std::cos(base), std::sin(base), 0);
     m.hexapod().geometry.platform_joint[s] = from_mm(29) * Vec3(std::cos(platform), std::sin(platform), 0);
     m.hexapod().geometry.platform_joint[s].z() = from_mm(25);
