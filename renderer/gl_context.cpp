@@ -234,7 +234,7 @@ void GlTriangles::fill(const std::vector<std::uint32_t>& corners) {
 void GlTriangles::draw() const {
   // llvmpipe sorts triangles into tiles, half a kilobyte each, before it draws any: by parts it needs less
   // memory.
-  constexpr int kPart = 3 * 65'536;  // corners
+  constexpr int kPart = 3 * 16'384;  // corners
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer_);
   for (int first = 0; first < count_; first += kPart) {
     if (first > 0) gl_.Finish();

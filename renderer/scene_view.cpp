@@ -246,7 +246,7 @@ float encoded(float linear) {
 Picture render_picture(PictureScene scene) {
   check(scene);
   eye_axes(scene);
-  const PictureGeometry geometry = picture_geometry(scene);
+  PictureGeometry geometry = picture_geometry(scene);
   scene.surfaces = {};  // they are large, and in the geometry
   const Lights lights = make_lights(scene, geometry.radius);
 
@@ -254,11 +254,13 @@ Picture render_picture(PictureScene scene) {
   const GlFunctions& gl = context.gl();
   GlSurface solids(gl, geometry.solids);
   const GlSurface ground(gl, geometry.ground), creases(gl, geometry.creases);
-  GlTriangles casters(gl);
-  casters.fill(geometry.casters);
   std::optional<GlTarget> atlas(std::in_place, gl, GL_R8, kTilesX * kTile, kTilesY * kTile);
   const GlTarget lamp(gl, GL_R8, kLampMap, kLampMap);
-  draw_shadows(gl, lights, solids, casters, *atlas, lamp);
+  {
+    GlTriangles casters(gl);
+    casters.fill(std::exchange(geometry.casters, {}));
+    draw_shadows(gl, lights, solids, casters, *atlas, lamp);
+  }
 
   const Drawing drawing{scene, geometry, lights, solids, ground, creases};
   const GlSmoothTarget target(gl, scene.width, scene.height);
@@ -269,6 +271,7 @@ Picture render_picture(PictureScene scene) {
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   solids.triangles.fill(
       without_hidden(geometry.solids, eye_clip(scene, geometry), draw_farthest(gl, drawing, target)));
+  geometry.solids = {};
 
   const GlTarget half_size(gl, GL_RGBA32F, (scene.width + 1) / 2, (scene.height + 1) / 2);
   draw_sky(gl, drawing, *atlas, half_size);

@@ -17,7 +17,7 @@ namespace understudy::report {
 namespace {
 
 /// What a picture of beads can hold; a larger print is drawn coarser.
-constexpr std::size_t kTrianglesMost = 1'000'000;
+constexpr std::size_t kTrianglesMost = 600'000;
 /// Middle lines, sections, corners and chords together are off by no more than so many tolerances.
 constexpr double kOffMost = 3.3;
 

@@ -116,13 +116,20 @@ BeadTree::Bounds bounds_of(const Core& core, const Pose& X_WS) {
   return bounds;
 }
 
+// A pose as its parts, which are asked for at every box and bead.
+struct Placed {
+  explicit Placed(const Pose& X_WS) : R(X_WS.linear()), p(X_WS.translation()) {}
+  Mat3 R;
+  Vec3 p;
+};
+
 // How far apart a plane between a core and a box holds them, at most their distance; below 0 where none does.
 // First the plane across the shortest line to the box's centre, then, unless that is `enough`, the one across
 // the shortest line to the box's point nearest to where the first line began.
 template <typename Core>
-double bound_of_box(const Core& core, const Pose& X_WS, const BeadTree::Box& box, double enough) {
-  const Mat3& R = X_WS.linear();
-  const Vec3 c = R.transpose() * (box.centre - X_WS.translation());
+double bound_of_box(const Core& core, const Placed& at, const BeadTree::Box& box, double enough) {
+  const Mat3& R = at.R;
+  const Vec3 c = R.transpose() * (box.centre - at.p);
   Vec3 on_core = core.nearest(c);
   double bound = -kInfinity;
   for (Vec3 p = c;;) {
@@ -137,14 +144,21 @@ double bound_of_box(const Core& core, const Pose& X_WS, const BeadTree::Box& box
   }
 }
 
-// The same for a bead, more loosely about its section; inside the core, by how deep a ball about the whole
-// bead can be.
+// The same of planes across the world's axes, with a box about the core. It is loose where they lie askew,
+// but tells at once that no bead under a nozzle reaches far into it.
+double bound_along_axes(const BeadTree::Bounds& core, const BeadTree::Box& box) {
+  const Vec3 middle = 0.5 * (core.lower + core.upper), half = 0.5 * (core.upper - core.lower);
+  return ((box.centre - middle).cwiseAbs() - half - box.half).maxCoeff();
+}
+
+// As bound_of_box() for a bead, more loosely about its section; inside the core, by how deep a ball about the
+// whole bead can be.
 template <typename Core>
-double bound_of_bead(const Core& core, const Pose& X_WS, const Bead& bead) {
-  const Mat3& R = X_WS.linear();
+double bound_of_bead(const Core& core, const Placed& at, const Bead& bead) {
+  const Mat3& R = at.R;
   const Vec3 from(bead.from_W[0], bead.from_W[1], bead.from_W[2]),
       to(bead.to_W[0], bead.to_W[1], bead.to_W[2]);
-  const Vec3 c = R.transpose() * (0.5 * (from + to) - X_WS.translation());
+  const Vec3 c = R.transpose() * (0.5 * (from + to) - at.p);
   const Vec3 d = c - core.nearest(c);
   const double length = d.norm(), around = 0.5 * static_cast<double>(bead.width);
   if (length < kDirected) return -core.depth(c) - 0.5 * (to - from).norm() - around;
@@ -182,18 +196,21 @@ template <typename Core>
 std::optional<BeadIndex::Near> BeadIndex::State::nearest(const Core& core, double radius, const Pose& X_WS,
                                                          double cutoff, std::size_t before,
                                                          std::size_t likely) const {
+  const Placed at(X_WS);
   Closest closest(cutoff);
+  const BeadTree::Bounds here = bounds_of(core, X_WS);
   const auto bound = [&](const BeadTree::Box& box) {
-    return bound_of_box(core, X_WS, box, closest.limit() + radius) - radius;
+    const double along_axes = bound_along_axes(here, box) - radius;
+    if (along_axes > closest.limit()) return along_axes;
+    return std::max(along_axes, bound_of_box(core, at, box, closest.limit() + radius) - radius);
   };
   const auto visit = [&](std::size_t index, const Bead& bead) {
     if (index >= before) return;
-    if (bound_of_bead(core, X_WS, bead) - radius > closest.limit()) return;
+    if (bound_of_bead(core, at, bead) - radius > closest.limit()) return;
     const Separation s = separation(core, radius, X_WS, core_of(bead), closest.limit() + kTie);
     closest.offer(s.distance, index);
   };
   if (likely < tree.size()) visit(likely, tree.bead(likely));
-  const BeadTree::Bounds here = bounds_of(core, X_WS);
   const auto region = [&] {
     const Vec3 reach = Vec3::Constant(std::max(0.0, radius + closest.limit()));
     return BeadTree::Bounds{here.lower - reach, here.upper + reach};

@@ -8,6 +8,7 @@
 #include "machine/machine_notes.h"
 #include "sim/beads/hull_beads.h"
 #include "sim/collision/machine_bodies.h"
+#include "sim/distance/face_distance.h"
 #include "sim/distance/penetration.h"
 
 namespace understudy::sim {
@@ -170,6 +171,12 @@ Pose BodySet::place(Body& body, const Pose& X_WT) {
 Separation BodySet::surfaces(const Body& body, const Pose& X_W1, const Body& obstacle,
                              const Pose& X_W2) const {
   if (part_ && &obstacle == &bodies_[part_body_] && body.solid) return part_->distance(*body.solid, X_W1);
+  if (const auto* box = std::get_if<geometry::Box>(&obstacle.shape.form); box && (body.solid || body.hull)) {
+    const Pose X_BS = X_W2.inverse(Eigen::Isometry) * X_W1;
+    const auto over = body.solid ? distance_over_face(*body.solid, X_BS, 0.5 * box->size)
+                                 : distance_over_face(*body.hull, X_BS, 0.5 * box->size);
+    if (over) return {over->distance, X_W2 * over->place_W};
+  }
   return world_.distance(body.fcl, X_W1, obstacle.fcl, X_W2);
 }
 
@@ -190,12 +197,12 @@ Separation BodySet::separation(const BodyPair& pair, const Configuration& config
 }
 
 std::optional<BeadIndex::Near> BodySet::nearest_bead(const BodyPair& pair, const Configuration& configuration,
-                                                     std::size_t before, std::size_t likely) {
+                                                     double reach, std::size_t before, std::size_t likely) {
   Body& body = bodies_[pair.body];
   if (body.owner == Owner::link) links_.pose(configuration.axes);
   const Pose X_WS = place(body, configuration.X_WT);
-  if (body.hull) return sim::nearest_bead(*beads_, *body.hull, X_WS, kBeadReach, before);
-  return beads_->nearest(*body.solid, X_WS, kBeadReach, before, likely);
+  if (body.hull) return sim::nearest_bead(*beads_, *body.hull, X_WS, reach, before);
+  return beads_->nearest(*body.solid, X_WS, reach, before, likely);
 }
 
 double BodySet::bead_clearance(const BodyPair& pair, const Configuration& configuration, const Bead& bead) {

@@ -18,9 +18,6 @@
 
 namespace understudy::sim {
 
-/// [m]: beads farther away than this are not looked for.
-constexpr double kBeadReach = 5e-3;
-
 struct BodyPair {
   std::size_t body = 0, obstacle = 0;
   bool nozzle_at_work = false;  ///< nozzle against part or table: nearness is its work
@@ -55,10 +52,11 @@ class BodySet {
   /// also finds a body that lies wholly inside a closed part, which no surface shows.
   Separation separation(const BodyPair& pair, const Configuration& configuration, bool check_inside);
 
-  /// The nearest of the first `before` beads; nothing within kBeadReach. `likely`: one that may be it, see
-  /// BeadIndex.
+  /// The nearest of the first `before` beads; nothing where none is within `reach` [m]. `likely`: one that
+  /// may be it, see BeadIndex.
   std::optional<BeadIndex::Near> nearest_bead(const BodyPair& pair, const Configuration& configuration,
-                                              std::size_t before, std::size_t likely = BeadIndex::kAll);
+                                              double reach, std::size_t before,
+                                              std::size_t likely = BeadIndex::kAll);
   /// [m], at least, between the pair's body and one bead.
   double bead_clearance(const BodyPair& pair, const Configuration& configuration, const Bead& bead);
 

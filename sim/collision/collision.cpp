@@ -18,6 +18,10 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastAccuracy = 0.05e-3;  // [m], of min_clearance()
 constexpr double kNozzleFineness = 4;  // the nozzle works a few margins from the part: looked at more often
+constexpr double kBeadReach = 5e-3;    // [m]: beads farther away from a body than this are not minded
+// Looks at beads as near as the nozzle's own layer that ask for contacts alone: what is under the nozzle is
+// then passed over, and its distance is not measured.
+constexpr int kContactLooks = 10;
 
 Configuration configuration_between(const Snapshot& from, const Snapshot& to, double t) {
   Configuration configuration{interpolate(from.X_WT, to.X_WT, t), from.axes_reached};
@@ -43,6 +47,7 @@ struct CollisionObserver::State {
     double budget = 0;             // [m], motion left until the next
     std::size_t beads = 0;         // that it counted with, of a printed pair
     std::size_t nearest_bead = BeadIndex::kAll;
+    int for_contacts = 0;  // looks to come that ask for contacts alone
   };
 
   BodySet bodies;
@@ -82,18 +87,28 @@ struct CollisionObserver::State {
   void look_at_beads(std::size_t index, const Configuration& configuration, double time, int line) {
     const BodyPair& pair = bodies.pairs()[index];
     Look& at = looks[index];
-    at.clearance = kBeadReach;
+    const double reach = bead_reach(index, line);
     ++checks;
-    if (const auto found = bodies.nearest_bead(pair, configuration, beads_for(pair), at.nearest_bead)) {
-      at.nearest_bead = found->bead;
-      at.clearance = found->separation.distance;
-      if (at.clearance <= near_level(pair) || at.clearance < closest.clearance) {
-        const int laid_on = options.beads->bead(found->bead).line;
-        record(index, {bodies.name(pair.body), "bead of line " + std::to_string(laid_on), at.clearance,
-                       found->separation.place_W, time, line, laid_on});
-      }
+    const auto found = bodies.nearest_bead(pair, configuration, reach, beads_for(pair), at.nearest_bead);
+    at.clearance = found ? found->separation.distance : kInfinity;
+    if (found) at.nearest_bead = found->bead;
+    if (at.clearance <= near_level(pair) || at.clearance < std::min(closest.clearance, kBeadReach)) {
+      const int laid_on = options.beads->bead(found->bead).line;
+      record(index, {bodies.name(pair.body), "bead of line " + std::to_string(laid_on), at.clearance,
+                     found->separation.place_W, time, line, laid_on});
     }
-    at.budget = allowed_motion(at.clearance, limits(index, line));
+    at.budget = allowed_motion(std::min(at.clearance, reach), limits(index, line));
+    if (at.for_contacts > 0)
+      --at.for_contacts;
+    else if (pair.nozzle_at_work && at.clearance < options.bead_press)
+      at.for_contacts = kContactLooks;
+  }
+
+  // [m]: how far beads are looked for, so far beyond the clearance that would be recorded that the next look
+  // is some motion away.
+  double bead_reach(std::size_t index, int line) const {
+    if (looks[index].for_contacts > 0) return contact_level(bodies.pairs()[index]);
+    return std::max(kBeadReach, limits(index, line).least + kBeadReach / 2);
   }
 
   // How many beads are there for this pair.
@@ -141,8 +156,9 @@ struct CollisionObserver::State {
     level.resolution = pair.nozzle_gap ? options.margin / kNozzleFineness : options.margin;
     level.depth_accuracy = options.margin;
     level.accuracy = pair.nozzle_gap ? level.resolution / 2 : kLeastAccuracy;
+    if (pair.printed) level.least = std::min(level.least, kBeadReach);
     if (pair.printed && pair.nozzle_at_work) {
-      level.least = kInfinity;
+      level.least = -kInfinity;
       level.resolution = level.depth_accuracy = options.bead_press;
     }
     return level;

@@ -56,7 +56,8 @@ struct CollisionOptions {
 /// much motion, its depth within bead_press; that pair counts in min_nozzle_clearance() only there.
 /// A body named "nozzle..." is the nozzle; struts are not checked against the tool body that carries their
 /// ball joint ("platform", or any within a strut's radius of the joint). Distances to the part are exact to
-/// 2 nm, all others to 0.5 um or 0.01 % of a round body's radius (FCL). Depths need a closed part; without
+/// 2 nm, as are those over a face of a box, such as the table; all others to 0.5 um or 0.01 % of a round
+/// body's radius, and of meshes to 0.002 % of the distance (FCL). Depths need a closed part; without
 /// one a contact has clearance 0.
 class CollisionObserver : public Observer {
  public:

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "sim/collision/collision.h"
 #include "tests/sim/collision/bodies_for_tests.h"
@@ -114,6 +115,64 @@ TEST(GrowingObstacle, ABeadLaidBesideARestingBodyIsMindedAtTheNextMotion) {
   stage.beads.add(bead({2e-3, -5e-3, 0.061}, {2e-3, 5e-3, 0.061}, 3));
   stage.observer->observe(at(2, {1.5e-3, 0, 0.06}, 4));
   EXPECT_EQ(stage.observer->collisions().size(), 1u);
+}
+
+// Lines across x, 0.5 mm apart and level with the tip at 50 mm, but for one that stands out.
+struct Layer : Stage {
+  explicit Layer(double out) {
+    observer->observe(at(0, {-10e-3, 0, 0.06}, 1));
+    for (int k = -20; k <= 20; ++k) {
+      const double z = 0.05 - 0.1e-3 + (k == 10 ? out : 0);
+      beads.add(bead({0.5e-3 * k, -5e-3, z}, {0.5e-3 * k, 5e-3, z}, 2));
+    }
+    for (int k = 0; k <= 200; ++k) observer->observe(at(1 + 0.01 * k, {-10e-3 + 0.1e-3 * k, 0, 0.05}, 5));
+  }
+};
+
+// Deeper than a tenth of a millimetre is a contact, and its depth is known as well.
+TEST(GrowingObstacle, ABeadThatStandsOutOfTheLayerUnderTheNozzleIsFound) {
+  for (const double out : {0.0, 0.09e-3, 0.12e-3, 0.25e-3, 0.6e-3}) {
+    Layer layer(out);
+    const auto hits = layer.observer->collisions();
+    ASSERT_EQ(hits.size(), out > 0.1e-3 ? 1u : 0u) << out;
+    if (hits.empty()) continue;
+    EXPECT_EQ(hits[0].body, "nozzle");
+    EXPECT_GE(hits[0].clearance, -out - 1e-6);
+    EXPECT_LE(hits[0].clearance, -std::max(0.1e-3, out - 0.1e-3));
+  }
+}
+
+TEST(GrowingObstacle, AboveTheLayerTheNozzleIsLookedAtSeldom) {
+  Layer layer(0);
+  Stage bare;
+  const auto fly = [](CollisionObserver& observer) {
+    observer.observe(at(4, {10e-3, 0, 0.055}, 6));
+    const auto before = observer.checks();
+    for (int k = 0; k <= 200; ++k) observer.observe(at(5 + 0.01 * k, {10e-3 - 0.1e-3 * k, 0, 0.055}, 6));
+    return observer.checks() - before;
+  };
+  bare.observer->observe(at(0, {-10e-3, 0, 0.06}, 1));
+  // 20 mm of motion 5 mm above the beads: a look every few millimetres, of the nozzle and of the heater
+  // block.
+  EXPECT_LE(fly(*layer.observer), fly(*bare.observer) + 20);
+}
+
+// Nothing comes nearer to another body than the cooling duct to the table, which is too far to mind.
+TEST(GrowingObstacle, BeadsFarFromTheHeadCostFewChecks) {
+  const auto machine = machine::load_machine("five-axis");
+  BeadIndex beads;
+  beads.add(bead({-30e-3, 0, 0.1e-3}, {30e-3, 0, 0.1e-3}, 1));
+  const auto fly = [&](const BeadIndex* printed) {
+    CollisionOptions options;
+    options.beads = printed;
+    CollisionObserver observer(machine, make_as_built(machine, "nominal", 1), nullptr, options);
+    for (int k = 0; k <= 1000; ++k) observer.observe(at(0.01 * k, {-20e-3 + 40e-6 * k, 0, 2e-3}, 2));
+    EXPECT_GT(observer.min_clearance(), 5e-3);
+    return observer.checks();
+  };
+  // 40 mm of motion: every other millimetre or so for each of the nozzle, the heater block, the duct and the
+  // carriage.
+  EXPECT_LE(fly(&beads), fly(nullptr) + 100);
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ TEST(LinkHulls, AMeshIsAsFarAwayAsTheBoxThatItIs) {
       const double expected = box.bodies.separation(*other, at, true).distance;
       const double found = hull.bodies.separation(*one, at, true).distance;
       if (expected > 0) {
-        EXPECT_NEAR(found, expected, 2e-6);
+        // Over a face the box's is exact; FCL's of a hull is off by up to 3 um a quarter of a metre away.
+        EXPECT_NEAR(found, expected, 4e-6);
         ++apart;
       } else {
         EXPECT_LE(found, 0);
@@ -80,7 +81,7 @@ TEST(LinkHulls, AMeshIsCheckedAgainstWhatIsPrinted) {
   beads.add(bead);
   for (const BodyPair& pair : bodies.pairs()) {
     if (!pair.printed || bodies.name(pair.body) != "fore 2") continue;
-    const auto near = bodies.nearest_bead(pair, at, 1);
+    const auto near = bodies.nearest_bead(pair, at, 5e-3, 1);
     ASSERT_TRUE(near);
     EXPECT_NEAR(near->separation.distance, 1e-3, 1e-6);
     EXPECT_LE(bodies.bead_clearance(pair, at, bead), near->separation.distance + 1e-9);
