@@ -21,6 +21,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
+constexpr double kLargestNoise = 1;      // [m] or [rad]
 constexpr double kUnitTolerance = 1e-4;  // of a quaternion, as in G-code
 
 /// Words of the first line that is neither empty nor a comment.
@@ -75,6 +76,10 @@ Mat6 covariance_of(const Row& row, NoiseColumns kind, const Mat6& assumed) {
     for (Eigen::Index i = 0; i < 6; ++i)
       for (Eigen::Index j = i; j < 6; ++j, ++next)
         covariance(i, j) = covariance(j, i) = row.at(columns[next]) * noise_unit(columns[next]);
+    if (!(covariance.cwiseAbs().maxCoeff() <= kLargestNoise * kLargestNoise))
+      throw InputError(row.place(),
+                       fmt::format("the covariance c11..c66 holds {:g}, at most {:g} m^2 or rad^2",
+                                   covariance.cwiseAbs().maxCoeff(), kLargestNoise * kLargestNoise));
     if (covariance.llt().info() != Eigen::Success)
       throw InputError(row.place(), "the covariance c11..c66 is not positive definite");
     return covariance;
@@ -82,8 +87,9 @@ Mat6 covariance_of(const Row& row, NoiseColumns kind, const Mat6& assumed) {
   for (Eigen::Index i = 0; i < 6; ++i) {
     const std::string& column = columns[static_cast<std::size_t>(kind == NoiseColumns::axes ? i : i / 3)];
     const double sigma = row.at(column) * noise_unit(column);
-    if (!(sigma > 0))
-      throw InputError(row.place(), fmt::format("{} is {:g}, not above 0", column, row.at(column)));
+    if (!(sigma > 0 && sigma <= kLargestNoise))
+      throw InputError(row.place(), fmt::format("{} is {:g}, not above 0 and at most {:g}", column,
+                                                row.at(column), kLargestNoise / noise_unit(column)));
     covariance(i, i) = sigma * sigma;
   }
   return covariance;

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 // A thousand times what readers take, even under sanitizers: only what grows faster than the file meets it.
 constexpr double kSecondsAlways = 1;
 constexpr double kSecondsPerByte = 100e-6;
+constexpr double kSecondsPerStep = 1e-3;
 
 class Folder {
  public:
@@ -81,7 +82,10 @@ const fs::path& InputFile::fill(std::string_view content) const {
   return path_;
 }
 
-double time_limit(std::size_t bytes) { return kSecondsAlways + kSecondsPerByte * static_cast<double>(bytes); }
+double time_limit(std::size_t bytes, std::size_t made) {
+  return kSecondsAlways + kSecondsPerByte * static_cast<double>(bytes) +
+         kSecondsPerStep * static_cast<double>(made);
+}
 
 double processor_time() {
   std::timespec now{};
@@ -97,8 +101,8 @@ void check_refusal(const InputError& error, const std::string& file) {
   require(what.size() > file.size() + 2, "the refusal has no reason: " + what);
 }
 
-void check_time(double seconds, std::size_t bytes) {
-  require(seconds <= time_limit(bytes), fmt::format("{} bytes took {:.2f} s to read", bytes, seconds));
+void check_time(double seconds, std::size_t bytes, std::size_t made) {
+  require(seconds <= time_limit(bytes, made), fmt::format("{} bytes took {:.2f} s to read", bytes, seconds));
 }
 
 }  // namespace understudy::fuzz

@@ -46,20 +46,21 @@ class InputFile {
   std::filesystem::path path_;
 };
 
-/// Processor time that reading may take: [s] of the calling thread.
-double time_limit(std::size_t bytes);
+/// Processor time that reading may take: [s] of the calling thread. `made`: steps that the input asks for,
+/// such as the chords of an arc.
+double time_limit(std::size_t bytes, std::size_t made = 0);
 /// [s], of the calling thread.
 double processor_time();
 
 /// Throws Finding where a refusal does not name `file`, or names it with an empty reason.
 void check_refusal(const InputError& error, const std::string& file);
 /// Throws Finding where `seconds` is more than time_limit().
-void check_time(double seconds, std::size_t bytes);
+void check_time(double seconds, std::size_t bytes, std::size_t made = 0);
 
 /// Calls `read` for an input of `bytes`, called `file`; false: it was refused. What else `read` throws goes
-/// on.
-template <typename Read>
-bool accepts(std::size_t bytes, const std::string& file, const Read& read) {
+/// on. `made` is asked afterwards, see time_limit().
+template <typename Read, typename Made>
+bool accepts(std::size_t bytes, const std::string& file, const Read& read, const Made& made) {
   const double begin = processor_time();
   bool accepted = true;
   try {
@@ -68,8 +69,13 @@ bool accepts(std::size_t bytes, const std::string& file, const Read& read) {
     accepted = false;
     check_refusal(error, file);
   }
-  check_time(processor_time() - begin, bytes);
+  check_time(processor_time() - begin, bytes, made());
   return accepted;
+}
+
+template <typename Read>
+bool accepts(std::size_t bytes, const std::string& file, const Read& read) {
+  return accepts(bytes, file, read, [] { return std::size_t{0}; });
 }
 
 }  // namespace understudy::fuzz

@@ -26,6 +26,8 @@ TEST(FuzzReader, RefusalsWithoutFileAndOtherExceptionsAreFindings) {
 TEST(FuzzReader, TimeBeyondWhatTheBytesAllowIsAFinding) {
   EXPECT_THROW(check_time(2 * time_limit(1000), 1000), Finding);
   EXPECT_NO_THROW(check_time(0.5 * time_limit(1000), 1000));
+  EXPECT_THROW(check_time(2 * time_limit(1000, 5000), 1000, 5000), Finding);
+  EXPECT_NO_THROW(check_time(0.5 * time_limit(1000, 5000), 1000, 5000));
 }
 
 TEST(FuzzReader, NumbersThatAreNotFiniteAreFindings) {

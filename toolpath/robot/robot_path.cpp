@@ -11,12 +11,13 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr double kArcTolerance = 2e-6;    // [m], as of G-code
-constexpr double kLongestWait = 86400;    // [s]
-constexpr double kFastest = 100;          // [m/s]
-constexpr double kSlowest = 1e-9;         // [m/s]
-constexpr double kMostValue = 1e9;        // of an output
-constexpr std::size_t kMostOutputs = 64;  // a program that sets more feeds nothing by them
+constexpr double kArcTolerance = 2e-6;        // [m], as of G-code
+constexpr std::size_t kMostChords = 100'000;  // of an arc: a hundred turns with a radius of 0.4 m
+constexpr double kLongestWait = 86400;        // [s]
+constexpr double kFastest = 100;              // [m/s]
+constexpr double kSlowest = 1e-9;             // [m/s]
+constexpr double kMostValue = 1e9;            // of an output
+constexpr std::size_t kMostOutputs = 64;      // a program that sets more feeds nothing by them
 constexpr std::size_t kMostBases = 10'000;
 
 }  // namespace
@@ -111,6 +112,9 @@ void RobotPath::arc(const Vec3& via_U, const Pose& X_UN, std::optional<double> a
   const Pose from = *X_UN_;
   const auto ends = arc_through({from.translation(), via_U, X_UN.translation()}, angle, kArcTolerance);
   if (!ends) fail("no arc: its three points lie on a line or agree");
+  if (ends->size() > kMostChords)
+    fail(fmt::format("the arc has {} chords that keep to it within {:g} um, at most {}", ends->size(),
+                     to_um(kArcTolerance), kMostChords));
   const auto count = static_cast<double>(ends->size());
   for (std::size_t i = 0; i < ends->size(); ++i) {
     Pose X = interpolate(from, X_UN, static_cast<double>(i + 1) / count);

@@ -12,7 +12,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const fuzz::InputFile input("pattern.csv");
   const std::string file = input.fill(fuzz::text_of(data, size)).string();
   std::vector<control::ProbingPlace> places;
-  if (!fuzz::accepts(size, file, [&] { places = control::read_pattern(file, *part, check); })) return 0;
+  // For each place it is looked for a way to it.
+  const auto searches = [&] { return 10 * size; };
+  if (!fuzz::accepts(
+          size, file, [&] { places = control::read_pattern(file, *part, check); }, searches))
+    return 0;
   fuzz::require(std::ssize(places) >= control::kPlacesMin, "too few places");
   for (const control::ProbingPlace& place : places) {
     fuzz::require_finite(place.p_W, "place");

@@ -195,6 +195,9 @@ TEST(KrlReader, WhatItCannotKnowIsAnErrorWithItsLine) {
   EXPECT_THAT(rejection("$VEL.CP=1\nLIN {X 1,,Z 5}\n"), HasSubstr("the name of a component is expected"));
   EXPECT_THAT(rejection("$VEL.CP=1\nLIN {X 1.2.3}\n"), HasSubstr("the end of a number is expected"));
   EXPECT_THAT(rejection("$VEL.CP=0\nLIN {X 1,Y 0,Z 5,A 0,B 0,C 180}\n"), HasSubstr("before any speed"));
+  EXPECT_THAT(rejection("$VEL.CP=1\nPTP {X 0,Y 0,Z 5,A 0,B 0,C 180}\n"
+                        "CIRC {X 90000,Y 90000,Z 5},{X 1,Y 90000,Z 5,A 0,B 0,C 180}, CA 36000\n"),
+              HasSubstr("part.src:5: the arc has "));
   EXPECT_THAT(rejection("WAIT SEC -1\n"), HasSubstr("outside 0..86400 s"));
   EXPECT_THAT(rejection("part( )\n"), HasSubstr("PART calls itself"));
   EXPECT_THAT(rejection("FOR I=1 TO 3\n"), HasSubstr("FOR has no ENDFOR"));
