@@ -238,9 +238,9 @@ void GlTriangles::draw() const {
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer_);
   for (int first = 0; first < count_; first += kPart) {
     if (first > 0) gl_.Finish();
+    const std::size_t bytes = static_cast<std::size_t>(first) * sizeof(std::uint32_t);
     // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes an offset there
-    const auto* offset =
-        reinterpret_cast<const void*>(static_cast<std::size_t>(first) * sizeof(std::uint32_t));
+    const auto* offset = reinterpret_cast<const void*>(bytes);
     gl_.DrawElements(GL_TRIANGLES, std::min(kPart, count_ - first), GL_UNSIGNED_INT, offset);
   }
 }

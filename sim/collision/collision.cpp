@@ -90,8 +90,11 @@ struct CollisionObserver::State {
     const double reach = bead_reach(index, line);
     ++checks;
     const auto found = bodies.nearest_bead(pair, configuration, reach, beads_for(pair), at.nearest_bead);
-    at.clearance = found ? found->separation.distance : kInfinity;
-    if (found) at.nearest_bead = found->bead;
+    at.clearance = kInfinity;
+    if (found) {
+      at.nearest_bead = found->bead;
+      at.clearance = found->separation.distance;
+    }
     if (at.clearance <= near_level(pair) || at.clearance < std::min(closest.clearance, kBeadReach)) {
       const int laid_on = options.beads->bead(found->bead).line;
       record(index, {bodies.name(pair.body), "bead of line " + std::to_string(laid_on), at.clearance,

@@ -77,7 +77,8 @@ BruteForce look_at_all(const std::vector<Bead>& beads, std::size_t before, const
 /// The answer is the least of `distances` where that is within `cutoff`, of the first bead that ties.
 void same(const std::vector<double>& distances, double cutoff, bool found, double distance,
           std::size_t bead) {
-  const double least = distances.empty() ? kInfinity : *std::min_element(distances.begin(), distances.end());
+  double least = kInfinity;
+  for (const double distance_to_one : distances) least = std::min(least, distance_to_one);
   RC_LOG() << "least " << least << ", cutoff " << cutoff << "\n";
   RC_PRE(!(std::abs(least - cutoff) <= kTie));
   RC_ASSERT(found == (least <= cutoff && std::isfinite(least)));
