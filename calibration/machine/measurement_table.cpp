@@ -21,8 +21,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr double kLargestNoise = 1;      // [m] or [rad]
-constexpr double kUnitTolerance = 1e-4;  // of a quaternion, as in G-code
+constexpr double kLeastNoise = 1e-12, kLargestNoise = 1;  // [m] or [rad]
+constexpr double kUnitTolerance = 1e-4;                   // of a quaternion, as in G-code
 
 /// Words of the first line that is neither empty nor a comment.
 struct Header {
@@ -87,9 +87,10 @@ Mat6 covariance_of(const Row& row, NoiseColumns kind, const Mat6& assumed) {
   for (Eigen::Index i = 0; i < 6; ++i) {
     const std::string& column = columns[static_cast<std::size_t>(kind == NoiseColumns::axes ? i : i / 3)];
     const double sigma = row.at(column) * noise_unit(column);
-    if (!(sigma > 0 && sigma <= kLargestNoise))
-      throw InputError(row.place(), fmt::format("{} is {:g}, not above 0 and at most {:g}", column,
-                                                row.at(column), kLargestNoise / noise_unit(column)));
+    if (!(sigma >= kLeastNoise && sigma <= kLargestNoise))
+      throw InputError(row.place(),
+                       fmt::format("{} is {:g}, not in {:g}..{:g}", column, row.at(column),
+                                   kLeastNoise / noise_unit(column), kLargestNoise / noise_unit(column)));
     covariance(i, i) = sigma * sigma;
   }
   return covariance;

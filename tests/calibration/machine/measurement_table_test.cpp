@@ -152,9 +152,9 @@ TEST_F(MeasurementTable, RefusesNumbersThatAreNone) {
   EXPECT_THAT(refusal(with_cell(csv(), 8, "")), HasSubstr("l2_mm is ''"));
   EXPECT_THAT(refusal(with_cell(csv(), 3, "0.9")),
               AllOf(HasSubstr(".csv:3"), HasSubstr("quaternion's length")));
-  EXPECT_THAT(refusal(with_cell(csv(), 13, "0")), HasSubstr("sx_um is 0, not above 0 and at most 1e+06"));
-  EXPECT_THAT(refusal(with_cell(csv(), 13, "1e180")),
-              HasSubstr("sx_um is 1e+180, not above 0 and at most 1e+06"));
+  EXPECT_THAT(refusal(with_cell(csv(), 13, "0")), HasSubstr("sx_um is 0, not in 1e-06..1e+06"));
+  EXPECT_THAT(refusal(with_cell(csv(), 13, "1e-170")), HasSubstr("sx_um is 1e-170, not in"));
+  EXPECT_THAT(refusal(with_cell(csv(), 13, "1e180")), HasSubstr("sx_um is 1e+180, not in 1e-06..1e+06"));
   EXPECT_THAT(refusal(csv() + "1,2,3\n"), HasSubstr("3 cells, not 19"));
 }
 
