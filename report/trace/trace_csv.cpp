@@ -10,7 +10,9 @@ namespace understudy::report {
 
 std::string trace_csv(const rehearsal::Record& record) {
   const std::vector<std::string> columns = trace_columns(record);
+  // Held once: while a text grows, it is there twice. A cell takes nine characters or so.
   std::string text;
+  text.reserve((record.trace.size() + 1) * columns.size() * 12);
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "{}\n", fmt::join(columns, ","));
   std::vector<int> decimals;
@@ -25,8 +27,6 @@ std::string trace_csv(const rehearsal::Record& record) {
       if (std::isfinite(row[i])) fmt::format_to(out, "{:.{}f}", rounds_to_zero ? 0.0 : row[i], decimals[i]);
     }
     text.push_back('\n');
-    // Rows are about as long as the first: a long trace is held once, not while it is copied to more space.
-    if (&point == &record.trace.front()) text.reserve(text.size() * (record.trace.size() + 1) * 5 / 4);
   }
   return text;
 }

@@ -1,11 +1,18 @@
 #include "tests/fuzz/robot_programs.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "tests/fuzz/gcode_dialects.h"
 #include "tests/fuzz/reader.h"
 
 namespace understudy::fuzz {
+namespace {
+
+// An arc becomes many chords, also before a line behind it is refused.
+constexpr std::size_t kStepsBeforeRefusal = 20'000;
 
 std::vector<toolpath::RobotOptions> robot_readings(std::vector<toolpath::UnknownWordCount>& unknown,
                                                    toolpath::RobotFacts& facts) {
@@ -33,6 +40,21 @@ void check_robot_program(const toolpath::Program& program, const toolpath::Robot
   toolpath::GcodeOptions gcode;
   gcode.X_WT_home = options.X_WT_home;
   check_program(program, gcode);
+}
+
+}  // namespace
+
+void check_robot_reader(std::size_t bytes, const std::string& file,
+                        const std::function<toolpath::Program(const toolpath::RobotOptions&)>& read) {
+  std::vector<toolpath::UnknownWordCount> unknown;
+  toolpath::RobotFacts facts;
+  for (const toolpath::RobotOptions& options : robot_readings(unknown, facts)) {
+    toolpath::Program program;
+    const auto made = [&] { return std::max(kStepsBeforeRefusal, program.steps.size()); };
+    if (accepts(
+            bytes, file, [&] { program = read(options); }, made))
+      check_robot_program(program, options);
+  }
 }
 
 }  // namespace understudy::fuzz

@@ -8,6 +8,7 @@
 #include "core/random_vector.h"
 #include "core/units.h"
 #include "sim/collision/fcl_world.h"
+#include "tests/sim/collision/bodies_for_tests.h"
 
 namespace understudy::sim {
 namespace {
@@ -39,6 +40,18 @@ TEST(FaceDistance, BesideTheFaceOrInTheBoxThereIsNoAnswer) {
   ASSERT_TRUE(distance_over_face(ball, at(0.16, 0), kTable)) << "beside a side";
   EXPECT_NEAR(distance_over_face(ball, at(0.16, 0), kTable)->distance, 8e-3, 1e-15);
   EXPECT_FALSE(distance_over_face(ball, at(0.151, 5e-3), kTable)) << "1 mm from an edge";
+}
+
+TEST(FaceDistance, AHullIsAsFarAwayAsTheBoxThatItIs) {
+  const Vec3 size(4e-3, 6e-3, 8e-3);
+  const HullCore hull{test::box_mesh(Vec3::Zero(), size)};
+  const auto box = *convex_solid({"", geometry::Box{size}, Pose::Identity()});
+  for (double tilt_deg = 0; tilt_deg <= 90; tilt_deg += 7) {
+    const Pose X = make_pose(exp_rotation(Vec3(0.6, 0.8, 0) * from_deg(tilt_deg)), Vec3(0.03, -0.02, 20e-3));
+    const auto one = distance_over_face(hull, X, kTable), other = distance_over_face(box, X, kTable);
+    ASSERT_TRUE(one && other) << tilt_deg;
+    EXPECT_NEAR(one->distance, other->distance, 1e-12) << tilt_deg;
+  }
 }
 
 // FCL's round bodies are polytopes, off by at most 0.25 um or 0.01 % of the radius.
