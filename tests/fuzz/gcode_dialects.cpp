@@ -51,11 +51,13 @@ std::vector<Dialect> make_dialects() {
   GcodeOptions crossing = rotary_table(Coordinates::crossing);
   crossing.b_sign = crossing.c_sign = -1;
   crossing.offset_W = {0, 0, -0.04};
-  return {{"printer", printer},
-          {"filament on A", filament_on_a},
-          {"tip", rotary_table(Coordinates::tip)},
-          {"slides", rotary_table(Coordinates::machine)},
-          {"crossing axes", crossing}};
+  std::vector<Dialect> all{{"printer", printer},
+                           {"filament on A", filament_on_a},
+                           {"tip", rotary_table(Coordinates::tip)},
+                           {"slides", rotary_table(Coordinates::machine)},
+                           {"crossing axes", crossing}};
+  for (Dialect& dialect : all) dialect.options.chords_max = kChords;
+  return all;
 }
 
 // What is written has 1e-6 mm, 1e-9 of a quaternion, 1e-6 mm/min or 1e-12 per minute: half of the last digit.

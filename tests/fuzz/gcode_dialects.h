@@ -13,6 +13,9 @@ struct Dialect {
   toolpath::GcodeOptions options;
 };
 
+/// Of all arcs of a program: a few words may ask for as many as may be, and what is made of them is checked.
+constexpr std::size_t kChords = 20'000;
+
 /// Of printers; with filament on A; of rotary tables: the tip, the slides, and slides of axes that cross.
 const std::vector<Dialect>& dialects();
 

@@ -12,13 +12,14 @@ namespace understudy::fuzz {
 namespace {
 
 // An arc becomes many chords, also before a line behind it is refused.
-constexpr std::size_t kStepsBeforeRefusal = 20'000;
+constexpr std::size_t kStepsBeforeRefusal = kChords;
 
 std::vector<toolpath::RobotOptions> robot_readings(std::vector<toolpath::UnknownWordCount>& unknown,
                                                    toolpath::RobotFacts& facts) {
   toolpath::RobotOptions bead;
   bead.X_WT_home = make_pose(Quat::Identity(), Vec3(0, 0, 60e-3));
   bead.extruder.bead_area = 0.1e-6;
+  bead.chords_max = kChords;
   toolpath::RobotOptions flow = bead;
   flow.extruder.bead_area.reset();
   flow.extruder.flow_per_unit = 4e-9;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/units.h"
+#include "toolpath/arc_chords.h"
 #include "toolpath/gcode/gcode_extrusion.h"
 #include "toolpath/gcode/gcode_refused.h"
 #include "toolpath/gcode/macros/gcode_macros.h"
@@ -77,6 +78,7 @@ struct GcodeOptions {
   /// [m/s], by which the tip's velocity may change between two chords of an arc before the controller brakes
   /// there: its chords are short enough for that, but for a floor of 0.05 mm.
   double corner_velocity_change = std::numeric_limits<double>::infinity();
+  std::size_t chords_max = kMostChords;  ///< of all arcs and splines; a program with more is refused
   // Of the dialect.
   char extruder_letter = 'E';       ///< of filament: E, or a rotary letter that turns nothing
   bool relative_extrusion = false;  ///< E counts on from the start, as after M83

@@ -1,6 +1,7 @@
 // Arcs and splines: their words, and the chords that they are read as.
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -36,7 +37,10 @@ std::vector<Vec3> GcodePosition::move_along_arc(Block& block, double unit, bool 
   }
   read_centre(block, unit, arc);
   X_WT_ = make_pose(Mat3(X_WT_.linear()), programmed_);
-  return arc_points(arc, {kArcTolerance, turn_max, kShortestChord});
+  Chords chords = arc_chords(arc, {kArcTolerance, turn_max, kShortestChord});
+  if (chords.too_many())
+    block.fail(fmt::format("an arc of {:.6g} chords, at most {}", chords.count, kMostArcChords));
+  return std::move(chords.ends);
 }
 
 void GcodePosition::refuse_turns_on_curve(const Block& block) const {
@@ -104,6 +108,13 @@ void GcodePosition::read_centre(Block& block, double unit, Arc& arc) const {
   }
 }
 
+void GcodeState::count_chords(const Block& block, std::size_t more) {
+  chords_ += more;
+  if (chords_ > chords_max_)
+    block.fail(
+        fmt::format("the program's arcs and splines have more than {} chords up to here", chords_max_));
+}
+
 /// Of an arc or spline, with the filament and time of the whole.
 Step GcodeState::chord(Block& block) {
   Step chord = step(StepKind::move, block.line());
@@ -118,6 +129,7 @@ Step GcodeState::chord(Block& block) {
 void GcodeState::move_along_spline(Block& block, std::vector<Step>& steps) {
   Vec3 at_W = position_.X_WT().translation();
   const std::vector<Vec3> ends = position_.move_along_spline(block, unit_, relative_);
+  count_chords(block, ends.size());
   const Step whole = chord(block);
   double length = 0;
   for (Vec3 from_W = at_W; const Vec3& end_W : ends) {
@@ -140,6 +152,7 @@ void GcodeState::move_along_arc(Block& block, std::vector<Step>& steps) {
       feed_ && !inverse_time_ ? corner_velocity_change_ / (speed_ * *feed_) : corner_velocity_change_;
   const std::vector<Vec3> ends = position_.move_along_arc(block, unit_, relative_, plane_normal_,
                                                           motion_ == Motion::clockwise_arc, turn_max);
+  count_chords(block, ends.size());
   Step chord = this->chord(block);
   const auto count = static_cast<double>(ends.size());
   chord.filament /= count;

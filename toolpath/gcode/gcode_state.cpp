@@ -26,7 +26,8 @@ bool tip_moves(const Pose& from, const Pose& to) { return from.translation() != 
 GcodeState::GcodeState(const GcodeOptions& options)
     : position_(options),
       extruder_(options.relative_extrusion),
-      corner_velocity_change_(options.corner_velocity_change) {}
+      corner_velocity_change_(options.corner_velocity_change),
+      chords_max_(options.chords_max) {}
 
 void GcodeState::run(Block& block, std::vector<Step>& steps) {
   if (block.empty()) return;

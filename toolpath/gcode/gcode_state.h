@@ -80,6 +80,7 @@ class GcodeState {
   void move(Block& block, std::vector<Step>& steps);
   void move_along_arc(Block& block, std::vector<Step>& steps);
   void move_along_spline(Block& block, std::vector<Step>& steps);
+  void count_chords(const Block& block, std::size_t more);
   Step chord(Block& block);
   bool is_arc() const { return motion_ == Motion::clockwise_arc || motion_ == Motion::counterclockwise_arc; }
   bool is_curve() const { return is_arc() || motion_ == Motion::spline; }
@@ -102,6 +103,7 @@ class GcodeState {
   GcodePosition position_;
   GcodeExtruder extruder_;
   double corner_velocity_change_;            // [m/s]
+  std::size_t chords_ = 0, chords_max_;      // of all curves so far
   double speed_ = 1;                         // of feeds, for what is programmed (M220)
   double acceleration_ = kUnlimited;         // [m/s^2], of moves that feed filament (M204)
   double travel_acceleration_ = kUnlimited;  // of the others

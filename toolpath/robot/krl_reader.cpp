@@ -63,7 +63,7 @@ std::string routine_name(std::string_view rest) {
 }  // namespace
 
 KrlReader::KrlReader(std::string_view text, const std::string& file, const RobotOptions& options)
-    : file_(file), options_(options), lines_(statements_of(text, file)), path_(file) {
+    : file_(file), options_(options), lines_(statements_of(text, file)), path_(file, options.chords_max) {
   path_.facts.language = RobotLanguage::krl;
   for (const char* name : {"$NULLFRAME", "$WORLD"}) variables_.set(name, krl_frame(Pose::Identity()));
   find_routines();

@@ -32,7 +32,11 @@ std::pair<std::string, bool> routine_head(std::string_view text) {
 }  // namespace
 
 RapidReader::RapidReader(const std::string& text, const std::string& file, const RobotOptions& options)
-    : file_(file), text_(text), options_(options), statements_(rapid_statements(text_, file)), path_(file) {
+    : file_(file),
+      text_(text),
+      options_(options),
+      statements_(rapid_statements(text_, file)),
+      path_(file, options.chords_max) {
   path_.facts.language = RobotLanguage::rapid;
   variables_.present = [this] { return rapid_target(path_.X_UN().value_or(Pose::Identity())); };
   const RapidValue frame = rapid_target(Pose::Identity());

@@ -8,9 +8,8 @@ namespace understudy::toolpath {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kLongestChord = kTurn / 16;  // [rad]
-constexpr double kShortestSide = 1e-6;        // [m], of the triangle of the three points
-constexpr double kFlattest = 1e-6;            // of that triangle: sine of the angle between two sides
+constexpr double kShortestSide = 1e-6;  // [m], of the triangle of the three points
+constexpr double kFlattest = 1e-6;      // of that triangle: sine of the angle between two sides
 
 /// Above 0 and at most a turn, about `axis`.
 double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
@@ -33,8 +32,8 @@ Vec3 abc_of(const Mat3& R) {
   return {std::atan2(R(1, 0), R(0, 0)), b, std::atan2(R(2, 1), R(2, 2))};
 }
 
-std::optional<std::vector<Vec3>> arc_through(const std::array<Vec3, 3>& start_via_end,
-                                             std::optional<double> angle, double tolerance) {
+std::optional<Chords> arc_through(const std::array<Vec3, 3>& start_via_end, std::optional<double> angle,
+                                  double tolerance) {
   const auto& [start, via, end] = start_via_end;
   const Vec3 u = via - start, v = end - start;
   const Vec3 cross = u.cross(v);
@@ -45,17 +44,15 @@ std::optional<std::vector<Vec3>> arc_through(const std::array<Vec3, 3>& start_vi
   const Vec3 to_centre =
       (u.squaredNorm() * v.cross(cross) + v.squaredNorm() * cross.cross(u)) / (2 * cross.squaredNorm());
   const Vec3 centre = start + to_centre, axis = cross.normalized(), first = -to_centre;
-  const double radius = first.norm();
   const double sweep = angle ? *angle : turn_about(axis, first, end - centre);
-  const double chord =
-      radius > tolerance ? std::min(kLongestChord, 2 * std::acos(1 - tolerance / radius)) : kLongestChord;
-  const int count = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / chord - 1e-9)));
-  std::vector<Vec3> points;
-  points.reserve(static_cast<std::size_t>(count));
+  Chords chords{chord_count(sweep, chord_angle(first.norm(), tolerance)), {}};
+  if (chords.too_many()) return chords;
+  const int count = static_cast<int>(chords.count);
+  chords.ends.reserve(static_cast<std::size_t>(count));
   for (int i = 1; i <= count; ++i)
-    points.push_back(centre + Eigen::AngleAxisd(sweep * i / count, axis) * first);
-  if (!angle) points.back() = end;
-  return points;
+    chords.ends.push_back(centre + Eigen::AngleAxisd(sweep * i / count, axis) * first);
+  if (!angle) chords.ends.back() = end;
+  return chords;
 }
 
 }  // namespace understudy::toolpath

@@ -3,9 +3,9 @@
 
 #include <array>
 #include <optional>
-#include <vector>
 
 #include "core/frames.h"
+#include "toolpath/arc_chords.h"
 
 namespace understudy::toolpath {
 
@@ -17,7 +17,7 @@ Vec3 abc_of(const Mat3& R);
 /// The ends of chords no farther than `tolerance` [m] from the circle through three points, with equal shares
 /// of the turn; the last is `end` unless `angle` [rad] says how far it goes from `start` towards `via` (any
 /// number of turns; below 0: the other way round). Nothing where the points lie on a line or agree.
-std::optional<std::vector<Vec3>> arc_through(const std::array<Vec3, 3>& start_via_end,
-                                             std::optional<double> angle, double tolerance);
+std::optional<Chords> arc_through(const std::array<Vec3, 3>& start_via_end, std::optional<double> angle,
+                                  double tolerance);
 
 }  // namespace understudy::toolpath

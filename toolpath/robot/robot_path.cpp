@@ -11,13 +11,12 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr double kArcTolerance = 2e-6;        // [m], as of G-code
-constexpr std::size_t kMostChords = 100'000;  // of an arc: a hundred turns with a radius of 0.4 m
-constexpr double kLongestWait = 86400;        // [s]
-constexpr double kFastest = 100;              // [m/s]
-constexpr double kSlowest = 1e-9;             // [m/s]
-constexpr double kMostValue = 1e9;            // of an output
-constexpr std::size_t kMostOutputs = 64;      // a program that sets more feeds nothing by them
+constexpr double kArcTolerance = 2e-6;    // [m], as of G-code
+constexpr double kLongestWait = 86400;    // [s]
+constexpr double kFastest = 100;          // [m/s]
+constexpr double kSlowest = 1e-9;         // [m/s]
+constexpr double kMostValue = 1e9;        // of an output
+constexpr std::size_t kMostOutputs = 64;  // a program that sets more feeds nothing by them
 constexpr std::size_t kMostBases = 10'000;
 
 }  // namespace
@@ -110,16 +109,17 @@ void RobotPath::arc(const Vec3& via_U, const Pose& X_UN, std::optional<double> a
   require_place(make_pose(Quat::Identity(), via_U));
   if (!X_UN_) fail("an arc whose start the program does not say: move to it first");
   const Pose from = *X_UN_;
-  const auto ends = arc_through({from.translation(), via_U, X_UN.translation()}, angle, kArcTolerance);
-  if (!ends) fail("no arc: its three points lie on a line or agree");
-  if (ends->size() > kMostChords)
-    fail(fmt::format("the arc has {} chords that keep to it within {:g} um, at most {}", ends->size(),
-                     to_um(kArcTolerance), kMostChords));
-  const auto count = static_cast<double>(ends->size());
-  for (std::size_t i = 0; i < ends->size(); ++i) {
-    Pose X = interpolate(from, X_UN, static_cast<double>(i + 1) / count);
-    X.translation() = (*ends)[i];
-    line(X, feed, duration / count);
+  const auto chords = arc_through({from.translation(), via_U, X_UN.translation()}, angle, kArcTolerance);
+  if (!chords) fail("no arc: its three points lie on a line or agree");
+  if (chords->too_many())
+    fail(fmt::format("an arc of {:.6g} chords, at most {}", chords->count, kMostArcChords));
+  chords_ += chords->ends.size();
+  if (chords_ > chords_max_)
+    fail(fmt::format("the program's arcs have more than {} chords up to here", chords_max_));
+  for (std::size_t i = 0; i < chords->ends.size(); ++i) {
+    Pose X = interpolate(from, X_UN, static_cast<double>(i + 1) / chords->count);
+    X.translation() = chords->ends[i];
+    line(X, feed, duration / chords->count);
   }
   count_move(duration > 0 ? 0 : feed);
   finish_move();

@@ -39,7 +39,9 @@ struct RobotMove {
 
 class RobotPath {
  public:
-  explicit RobotPath(std::string file) : file_(std::move(file)) {}
+  /// `chords_max`: of all arcs together.
+  explicit RobotPath(std::string file, std::size_t chords_max = kMostChords)
+      : file_(std::move(file)), chords_max_(chords_max) {}
 
   /// Of what comes next.
   void set_line(int line) { line_ = line; }
@@ -80,6 +82,7 @@ class RobotPath {
   int output_index(const std::string& name, bool analogue);
 
   std::string file_, tool_;
+  std::size_t chords_ = 0, chords_max_;
   int line_ = 0;
   int base_ = -1;
   std::optional<Pose> X_UN_;

@@ -67,6 +67,7 @@ struct RobotOptions {
   /// Axis of N that points out of the nozzle, one of x -x y -y z -z; empty: the one that points down, on
   /// average over what is printed.
   std::string tool_points;
+  std::size_t chords_max = kMostChords;  ///< of all arcs; a program with more is refused
   /// Statements to pass over, upper case: "WAIT_FOR", "IF" (to its end), "$FLAG".
   std::vector<std::string> ignored;
   /// Where unknown statements are counted, which are then passed over; null: they are errors. With it, an

@@ -105,7 +105,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!fuzz::accepts(size, file, [&] { machine = machine::load_machine(file, parameters); })) return 0;
   fuzz::check_numbers(machine);
   fuzz::check_home(machine);
-  if (machine.is_chain()) fuzz::check_urdf_of(machine.chain().kinematics.chain, {}, {});
+  // Rods that carry the tool close loops, which no URDF holds.
+  if (machine.is_chain() && machine.chain().kinematics.chain.rods.empty())
+    fuzz::check_urdf_of(machine.chain().kinematics.chain, {}, {});
   fuzz::check_calibration(machine, parameters, text);
   machine::load_built_tolerances(file);
   machine::load_accepted_errors(file);

@@ -197,7 +197,13 @@ TEST(KrlReader, WhatItCannotKnowIsAnErrorWithItsLine) {
   EXPECT_THAT(rejection("$VEL.CP=0\nLIN {X 1,Y 0,Z 5,A 0,B 0,C 180}\n"), HasSubstr("before any speed"));
   EXPECT_THAT(rejection("$VEL.CP=1\nPTP {X 0,Y 0,Z 5,A 0,B 0,C 180}\n"
                         "CIRC {X 90000,Y 90000,Z 5},{X 1,Y 90000,Z 5,A 0,B 0,C 180}, CA 36000\n"),
-              HasSubstr("part.src:5: the arc has "));
+              HasSubstr("part.src:5: an arc of 1.2530"));
+  const std::string arcs =
+      "$VEL.CP=1\nPTP {X 0,Y 0,Z 5,A 0,B 0,C 180}\n"
+      "CIRC {X 5,Y 5},{X 10,Y 0}\nCIRC {X 5,Y 5},{X 0,Y 0}\n";
+  auto few = options();
+  few.chords_max = steps_of(arcs, "", few).size() - 2;
+  EXPECT_THAT(rejection(arcs, few), HasSubstr("part.src:6: the program's arcs have more than"));
   EXPECT_THAT(rejection("WAIT SEC -1\n"), HasSubstr("outside 0..86400 s"));
   EXPECT_THAT(rejection("part( )\n"), HasSubstr("PART calls itself"));
   EXPECT_THAT(rejection("FOR I=1 TO 3\n"), HasSubstr("FOR has no ENDFOR"));

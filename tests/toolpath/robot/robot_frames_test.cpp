@@ -53,23 +53,33 @@ TEST(RobotFrames, AnArcThroughThreePointsIsAsLongAsItIs) {
   const auto quarter = arc_through({at(0), at(kPi / 4), at(kPi / 2)}, std::nullopt, 2e-6);
   ASSERT_TRUE(quarter);
   // Chords 2 um inside are shorter by a third of 0.04 %.
-  EXPECT_NEAR(length_of(at(0), *quarter), 5e-3 * kPi, 5e-3 * kPi * 2e-4);
-  EXPECT_TRUE(quarter->back().isApprox(at(kPi / 2), 1e-12));
-  for (const Vec3& p : *quarter) EXPECT_NEAR((p - centre).norm(), 10e-3, 1e-12);
+  EXPECT_NEAR(length_of(at(0), quarter->ends), 5e-3 * kPi, 5e-3 * kPi * 2e-4);
+  EXPECT_TRUE(quarter->ends.back().isApprox(at(kPi / 2), 1e-12));
+  for (const Vec3& p : quarter->ends) EXPECT_NEAR((p - centre).norm(), 10e-3, 1e-12);
   const auto three_quarters = arc_through({at(0), at(kPi), at(1.5 * kPi)}, std::nullopt, 2e-6);
   ASSERT_TRUE(three_quarters);
-  EXPECT_NEAR(length_of(at(0), *three_quarters), 15e-3 * kPi, 15e-3 * kPi * 2e-4);
+  EXPECT_NEAR(length_of(at(0), three_quarters->ends), 15e-3 * kPi, 15e-3 * kPi * 2e-4);
 }
 
 TEST(RobotFrames, AnAngleTellsHowFarAnArcGoes) {
   const std::array<Vec3, 3> points{Vec3(10e-3, 0, 0), Vec3(0, 10e-3, 0), Vec3(-10e-3, 0, 0)};
   const auto whole = arc_through(points, 2 * kPi, 2e-6);
   ASSERT_TRUE(whole);
-  EXPECT_NEAR(length_of(points[0], *whole), 20e-3 * kPi, 20e-3 * kPi * 2e-4);
-  EXPECT_TRUE(whole->back().isApprox(points[0], 1e-9));
+  EXPECT_NEAR(length_of(points[0], whole->ends), 20e-3 * kPi, 20e-3 * kPi * 2e-4);
+  EXPECT_TRUE(whole->ends.back().isApprox(points[0], 1e-9));
   const auto back = arc_through(points, -kPi / 2, 2e-6);
   ASSERT_TRUE(back);
-  EXPECT_NEAR(back->back().y(), -10e-3, 1e-12) << "away from the point on the way";
+  EXPECT_NEAR(back->ends.back().y(), -10e-3, 1e-12) << "away from the point on the way";
+}
+
+// A hundred turns of a circle of 1e6 m, through points that nearly lie on a line, would take hundreds of
+// millions of points.
+TEST(RobotFrames, EndlessChordsAreCountedAndNotMade) {
+  const auto endless = arc_through({Vec3(0, 0, 0), Vec3(50, 1e-3, 0), Vec3(100, 0, 0)}, 200 * kPi, 2e-6);
+  ASSERT_TRUE(endless);
+  EXPECT_TRUE(endless->too_many());
+  EXPECT_GT(endless->count, 1e8);
+  EXPECT_TRUE(endless->ends.empty());
 }
 
 TEST(RobotFrames, PointsOnALineMakeNoArc) {

@@ -8,7 +8,6 @@ namespace understudy::toolpath {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kLongestChord = kTurn / 16;  // [rad]
 // Files have three digits of a millimetre; arcs that were fitted to chords are off by some more.
 constexpr double kRounded = 0.02e-3, kRoundedShare = 2e-3;  // [m]; of the radius
 
@@ -61,30 +60,28 @@ std::optional<double> arc_mismatch(const Arc& arc) {
   return difference;
 }
 
-std::vector<Vec3> arc_points(const Arc& arc, const ChordLimits& limits) {
+Chords arc_chords(const Arc& arc, const ChordLimits& limits) {
   const Plane plane = plane_of(arc.normal);
   const Vec2 centre = in_plane(arc.centre, plane);
   const Vec2 from = in_plane(arc.from, plane) - centre, to = in_plane(arc.to, plane) - centre;
   const double r0 = from.norm(), r1 = to.norm(), sweep = sweep_of(arc, from, to);
   const double largest = std::max(r0, r1);
-  double chord = kLongestChord;
-  if (largest > limits.tolerance) {
-    chord = std::min(chord, 2 * std::acos(1 - limits.tolerance / largest));
-    chord = std::min(chord, std::max(limits.turn, limits.shortest / largest));
-  }
-  const int count = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / chord - 1e-9)));
-  std::vector<Vec3> points;
-  points.reserve(static_cast<std::size_t>(count));
+  double chord = chord_angle(largest, limits.tolerance);
+  if (largest > limits.tolerance) chord = std::min(chord, std::max(limits.turn, limits.shortest / largest));
+  Chords chords{chord_count(sweep, chord), {}};
+  if (chords.too_many()) return chords;
+  const int count = static_cast<int>(chords.count);
+  chords.ends.reserve(static_cast<std::size_t>(count));
   for (int i = 1; i < count; ++i) {
     const double share = static_cast<double>(i) / count, angle = angle_of(from) + share * sweep;
     const double radius = r0 + share * (r1 - r0);
     Vec3 p = arc.from + share * (arc.to - arc.from);
     p[plane.u] = centre.x() + radius * std::cos(angle);
     p[plane.v] = centre.y() + radius * std::sin(angle);
-    points.push_back(p);
+    chords.ends.push_back(p);
   }
-  points.push_back(arc.to);
-  return points;
+  chords.ends.push_back(arc.to);
+  return chords;
 }
 
 }  // namespace understudy::toolpath

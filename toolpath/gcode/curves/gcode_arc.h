@@ -4,9 +4,9 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/frames.h"
+#include "toolpath/arc_chords.h"
 
 namespace understudy::toolpath {
 
@@ -35,6 +35,6 @@ struct ChordLimits {
 
 /// The ends of chords; the last is `to`. The radius runs linearly from that of `from` to that of `to`, as
 /// does the way along the normal. Ends that agree in the plane make a whole turn.
-std::vector<Vec3> arc_points(const Arc& arc, const ChordLimits& limits);
+Chords arc_chords(const Arc& arc, const ChordLimits& limits);
 
 }  // namespace understudy::toolpath

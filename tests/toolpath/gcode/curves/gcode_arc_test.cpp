@@ -19,9 +19,9 @@ constexpr double kPi = std::numbers::pi;
 
 std::vector<Step> steps_of(const std::string& text) { return parse_gcode(text, "p.gcode", {}).steps; }
 
-std::string rejection(const std::string& text) {
+std::string rejection(const std::string& text, const GcodeOptions& options = {}) {
   try {
-    steps_of(text);
+    parse_gcode(text, "p.gcode", options);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -116,6 +116,21 @@ TEST(GcodeArc, WhatIsNoArcIsRefused) {
   EXPECT_THAT(rejection(start + "G3 X0 Y10 I-10"), HasSubstr("an arc without a feed"));
   EXPECT_THAT(rejection(start + "G1 X0 R10 F600"), HasSubstr("'R10' belongs to no command"));
   EXPECT_EQ(rejection(start + "G3 X0 Y10.01 I-10 F600"), "accepted") << "a file's rounding";
+}
+
+// A hundred turns of a circle of a kilometre would be 160 million chords: more than memory holds.
+TEST(GcodeArc, EndlessChordsAreRefused) {
+  const std::string start = "G0 X10 Y0 Z5\n", circle = "G3 I-10 F600\n";
+  EXPECT_THAT(rejection(start + "G3 I1e9 P100 F600"),
+              HasSubstr("p.gcode:2:1: an arc of 1.5708e+08 chords, at most 100000"));
+  GcodeOptions options;
+  options.chords_max = 2 * (steps_of(start + circle).size() - 1);
+  EXPECT_EQ(rejection(start + circle + circle, options), "accepted");
+  EXPECT_THAT(rejection(start + circle + circle + circle, options),
+              HasSubstr("p.gcode:4:1: the program's arcs and splines have more than"));
+  const std::string spline = "G5 X20 Y20 I5 J5 P-5 Q-5 F600\n";
+  options.chords_max = steps_of(start + spline).size() - 2;
+  EXPECT_THAT(rejection(start + spline, options), HasSubstr("p.gcode:2:1: the program's arcs and splines"));
 }
 
 }  // namespace
