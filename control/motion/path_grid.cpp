@@ -82,10 +82,6 @@ ChannelArray corner_jump(const PathSegment& before, const PathSegment& after, in
 
 void append_pieces(const PathSegment& segment, const SegmentPlace& place, const PathKinematics& kinematics,
                    const PlannerLimits& limits, kinematics::AxisVector& position, std::deque<Piece>& pieces) {
-  const MotionLimits& motion = limits.motion;
-  ChannelLimits channels = limits.channels;
-  double& tip_acceleration = channels.acceleration[channels.count - 1];
-  tip_acceleration = std::min(tip_acceleration, segment.acceleration);
   Piece piece;
   piece.tip_acceleration = segment.acceleration;
   piece.segment = place.number;
@@ -98,6 +94,10 @@ void append_pieces(const PathSegment& segment, const SegmentPlace& place, const 
     pieces.push_back(piece);
     return;
   }
+  const MotionLimits& motion = limits.motion;
+  ChannelLimits channels = limits.channels;
+  double& tip_acceleration = channels.acceleration[channels.count - 1];
+  tip_acceleration = std::min(tip_acceleration, segment.acceleration);
   const double piece_max =
       segment.self_motion ? kTurnRadius * kPieceTurnMax
                           : segment.length / (segment.fineness * parts_of(segment, kPieceMax, kPieceTurnMax));
