@@ -181,6 +181,7 @@ void fill_beliefs(const TwinSetup& setup, control::GapControl mode, const contro
                   Record& record) {
   const GapKnowledge knowledge{setup.machine, setup.calibrated, mode, result};
   std::vector<CommandedInstant> instants;
+  instants.reserve(record.trace.size());
   for (const TracePoint& point : record.trace)
     instants.push_back({point.time, point.extruding, point.X_WT_programmed});
   record.gap_beliefs = gap_beliefs(knowledge, instants);
@@ -266,6 +267,7 @@ Record rehearse(const RehearsalRequest& asked, const Progress& progress, RunList
   return_free_memory();
   std::shared_ptr<const sim::Workpiece> printed;
   if (auto runs = run_or_find(request, setup, before, options, report, record)) {
+    return_free_memory();  // of the observers, before the program is laid once more to see what it lies on
     fill(setup, before, options, *runs, record);
     report(0.9, "measuring the surface");
     printed = runs->main.workpiece;

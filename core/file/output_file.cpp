@@ -6,8 +6,6 @@
 #include <cerrno>
 #include <system_error>
 
-#include "core/file/staged_file.h"
-
 namespace understudy {
 namespace fs = std::filesystem;
 
@@ -24,5 +22,7 @@ void check_writable(const fs::path& path) {
 }
 
 void write_file(const fs::path& path, const std::string& content) { StagedFile(path, content).commit(); }
+
+void write_file(const fs::path& path, const MadeContent& make) { StagedFile(path, make).commit(); }
 
 }  // namespace understudy

@@ -29,7 +29,7 @@ std::string message_of(const fs::path& path, int error) {
   return "cannot write " + path.string() + ": " + std::generic_category().message(error);
 }
 
-bool write_all(int file, const std::string& content) {
+bool write_all(int file, std::string_view content) {
   std::size_t written = 0;
   while (written < content.size()) {
     const ssize_t n = ::write(file, content.data() + written, content.size() - written);
@@ -110,12 +110,15 @@ fs::path behind_links(const fs::path& path) {
 }
 
 StagedFile::StagedFile(const fs::path& path, const std::string& content)
+    : StagedFile(path, [&](const AppendPiece& append) { append(content); }) {}
+
+StagedFile::StagedFile(const fs::path& path, const MadeContent& make)
     : path_(path), target_(behind_links(path)) {
   std::error_code ignored;
   const fs::file_status is = fs::status(target_, ignored);
   if (fs::is_directory(is)) failed_to_write(path_, EISDIR);
   if (fs::exists(is) && !fs::is_regular_file(is)) {
-    as_it_is_ = content;
+    make([&](std::string_view piece) { as_it_is_ += piece; });
     return;
   }
   remove_leftovers(target_);
@@ -123,7 +126,9 @@ StagedFile::StagedFile(const fs::path& path, const std::string& content)
   if (file_.get() < 0) failed_to_write(path_, errno);
   partial_.emplace(part_);
   (void)::flock(file_.get(), LOCK_EX | LOCK_NB);  // where the file system has locks
-  if (!write_all(file_.get(), content)) failed_to_write(path_, errno);
+  make([&](std::string_view piece) {
+    if (!write_all(file_.get(), piece)) failed_to_write(path_, errno);
+  });
   // Closing a copy tells of errors that a file system keeps back until then, and leaves the lock.
   const int copy = ::fcntl(file_.get(), F_DUPFD_CLOEXEC, 0);
   if (copy >= 0 && ::close(copy) != 0) failed_to_write(path_, errno);

@@ -2,13 +2,20 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/file/descriptor.h"
 #include "core/partial_results.h"
 
 namespace understudy {
+
+/// Takes the next piece of a file.
+using AppendPiece = std::function<void(std::string_view)>;
+/// Hands the pieces of a file over, one after the other.
+using MadeContent = std::function<void(const AppendPiece&)>;
 
 /// The constructor writes `content` beside `path`, commit() gives it that name in one step; without commit
 /// nothing stays. Two of them can so be written before the first appears. A link stays a link, its target
@@ -18,6 +25,7 @@ namespace understudy {
 class StagedFile {
  public:
   StagedFile(const std::filesystem::path& path, const std::string& content);
+  StagedFile(const std::filesystem::path& path, const MadeContent& make);
   void commit();
 
  private:

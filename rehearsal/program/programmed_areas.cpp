@@ -15,7 +15,9 @@ std::vector<float> programmed_areas(const toolpath::Program& program,
   const double d = machine.tool.filament_diameter, filament_area = std::numbers::pi / 4 * d * d;
   Vec3 tip = (machine.X_WB * machine.X_BT_home).translation();
   double fed = 0, most = 0;
-  std::vector<float> areas;
+  int last_line = 0;
+  for (const toolpath::Step& step : program.steps) last_line = std::max(last_line, step.line);
+  std::vector<float> areas(static_cast<std::size_t>(last_line) + 1, 0);
   for (const toolpath::Step& step : program.steps) {
     fed += step.filament;
     const double fresh = std::max(0.0, fed - most);
@@ -24,7 +26,6 @@ std::vector<float> programmed_areas(const toolpath::Program& program,
     const double path = toolpath::moves(step) ? (end - tip).norm() : 0;
     if (toolpath::moves(step)) tip = end;
     const auto line = static_cast<std::size_t>(std::max(0, step.line));
-    if (line >= areas.size()) areas.resize(line + line / 2 + 64, 0);
     if (path > kShortestPath) areas[line] = static_cast<float>(fresh * filament_area / path);
   }
   return areas;

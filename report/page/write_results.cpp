@@ -61,7 +61,9 @@ void write_results(const rehearsal::Record& record, const std::vector<Illustrati
   if (record.timing) write_file(folder / kTimingFile, timing_json(record));
   write_file(folder / "report.html", report_html(record, pictures));
   if (!record.as_built.empty()) write_file(folder / "as-built.yaml", record.as_built);
-  if (!record.trace.empty()) write_file(folder / "trace.csv", trace_csv(record));
+  if (!record.trace.empty()) {
+    write_file(folder / "trace.csv", [&](const AppendPiece& append) { make_trace_csv(record, append); });
+  }
   if (record.milled) {
     const auto& [samples, before, after] = *record.milled;
     write_file(folder / "surface-before.ply", sim::surface_ply(samples, before, "surface of the stock"));

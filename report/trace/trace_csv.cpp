@@ -7,14 +7,16 @@
 #include "report/trace/trace_values.h"
 
 namespace understudy::report {
+namespace {
 
-std::string trace_csv(const rehearsal::Record& record) {
+constexpr std::size_t kPiece = 100'000;  // bytes
+
+}  // namespace
+
+void make_trace_csv(const rehearsal::Record& record, const AppendPiece& append) {
   const std::vector<std::string> columns = trace_columns(record);
-  // Held once: while a text grows, it is there twice. A cell takes nine characters or so.
-  std::string text;
-  text.reserve((record.trace.size() + 1) * columns.size() * 12);
+  std::string text = fmt::format("{}\n", fmt::join(columns, ","));
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}\n", fmt::join(columns, ","));
   std::vector<int> decimals;
   for (const std::string& column : columns) decimals.push_back(column_decimals(column));
 
@@ -27,7 +29,16 @@ std::string trace_csv(const rehearsal::Record& record) {
       if (std::isfinite(row[i])) fmt::format_to(out, "{:.{}f}", rounds_to_zero ? 0.0 : row[i], decimals[i]);
     }
     text.push_back('\n');
+    if (text.size() < kPiece) continue;
+    append(text);
+    text.clear();
   }
+  append(text);
+}
+
+std::string trace_csv(const rehearsal::Record& record) {
+  std::string text;
+  make_trace_csv(record, [&](std::string_view piece) { text += piece; });
   return text;
 }
 

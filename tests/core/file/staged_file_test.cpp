@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -50,6 +51,20 @@ TEST_F(StagedFileTest, HasItsNameOnlyAfterCommit) {
   StagedFile(root_ / "a", "new").commit();
   EXPECT_EQ(text_in("a"), "new");
   EXPECT_EQ(root_.entries(), 1);
+}
+
+TEST_F(StagedFileTest, PiecesComeOneAfterTheOther) {
+  StagedFile(root_ / "a", [](const AppendPiece& append) {
+    for (const char* piece : {"ne", "", "w"}) append(piece);
+  }).commit();
+  EXPECT_EQ(text_in("a"), "new");
+  const auto fails = [](const AppendPiece& append) {
+    append("newer");
+    throw std::runtime_error("half way");
+  };
+  EXPECT_THROW(StagedFile(root_ / "a", fails), std::runtime_error);
+  EXPECT_EQ(text_in("a"), "new");
+  EXPECT_EQ(root_.entries(), 1) << "nothing half-written stays";
 }
 
 TEST_F(StagedFileTest, AKilledProcessLeavesTheOldFileAndTheNextWriteRemovesItsRest) {

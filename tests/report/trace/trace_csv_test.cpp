@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -57,6 +58,22 @@ TEST(TraceCsv, NamesItsColumnsWithUnitsAndConvertsToThem) {
             "1.250000,7,1,1.000000,-2.000000,30.000000,0.866025404,0.500000000,0.000000000,0.000000000,"
             "1.100000,-2.000000,30.000000,1.000000000,0.000000000,0.000000000,0.000000000,100.000,1047.1976,"
             "0.130000,12.000000,200.000000,-45.0000000");
+}
+
+TEST(TraceCsv, PiecesMakeTheWhole) {
+  Record record = one_point();
+  record.trace.resize(2000, record.trace[0]);
+  std::size_t pieces = 0, largest = 0;
+  std::string text;
+  make_trace_csv(record, [&](std::string_view piece) {
+    ++pieces;
+    largest = std::max(largest, piece.size());
+    text += piece;
+  });
+  EXPECT_EQ(text, trace_csv(record));
+  EXPECT_EQ(split(text, '\n').size(), 2001u);
+  EXPECT_GT(pieces, 3u);
+  EXPECT_LT(largest, 101'000u);
 }
 
 TEST(TraceCsv, NothingBelowTheTipIsAnEmptyCell) {
