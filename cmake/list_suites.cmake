@@ -1,10 +1,16 @@
 # After a test program is linked: writes what CTest reads of it. A suite is one CTest test, since the start of a
 # process costs more than most tests; each test of a suite whose name starts with Slow or Extended is one, with the label slow or extended.
-# PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [EACH=ON: every test is one, so that one can be left out]
+# PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [LEFT_OUT: a file, patterns of tests that their suites leave out, # and comments]
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY TIMEOUT 60)
 string(REGEX REPLACE "[[;]|]" "" listed "${listed}")
 string(REPLACE "\n" ";" listed "${listed}")
 set(text "")
+set(but "")
+if(LEFT_OUT)
+  file(STRINGS ${LEFT_OUT} patterns REGEX "^[^#]")
+  list(JOIN patterns ":" patterns)
+  set(but "-${patterns}")
+endif()
 
 # add(NAME FILTER SECONDS [property value ...])
 macro(add name filter seconds)
@@ -14,7 +20,7 @@ endmacro()
 macro(end_suite)
   if(count GREATER 0)  # the time of one test, and a minute for each further one
     math(EXPR limit "${TIMEOUT} + 60 * (${count} - 1)")
-    add("${suite}" "${suite}.*" ${limit})
+    add("${suite}" "${suite}.*${but}" ${limit})
   endif()
   set(count 0)
 endmacro()
@@ -33,8 +39,6 @@ foreach(line IN LISTS listed)
       add("${suite}.${test}" "${suite}.${test}" 3600 LABELS slow)
     elseif(suite MATCHES "^Extended")
       add("${suite}.${test}" "${suite}.${test}" ${TIMEOUT} LABELS extended)
-    elseif(EACH)
-      add("${suite}.${test}" "${suite}.${test}" ${TIMEOUT})
     else()
       math(EXPR count "${count} + 1")
     endif()

@@ -55,26 +55,27 @@ function(understudy_test name)
   understudy_list_suites(${name} "${TEST_TIMEOUT}" "${TEST_LOCK}")
 endfunction()
 
-# understudy_list_suites(NAME TIMEOUT LOCK): CTest's tests of NAME_test, one for each suite; under a sanitizer one for
-# each test.
+# understudy_list_suites(NAME TIMEOUT LOCK): CTest's tests of NAME_test, one for each suite.
 function(understudy_list_suites name timeout lock)
   if(NOT timeout)
     set(timeout 120)
   endif()
-  set(each OFF)
+  set(read ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake)
+  set(left_out "")
   if(UNDERSTUDY_SANITIZE)
     math(EXPR timeout "4 * ${timeout}")
-    set(each ON)
+    set(left_out ${PROJECT_SOURCE_DIR}/cmake/sanitize_left_out.txt)
+    list(APPEND read ${left_out})
   endif()
   set(properties "ENVIRONMENT LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0")
   if(lock)
     string(APPEND properties " RESOURCE_LOCK ${lock}")
   endif()
-  set_property(TARGET ${name}_test APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake)
+  set_property(TARGET ${name}_test APPEND PROPERTY LINK_DEPENDS ${read})
   set(tests ${CMAKE_CURRENT_BINARY_DIR}/${name}_tests.cmake)
   add_custom_command(TARGET ${name}_test POST_BUILD VERBATIM
     COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${name}_test> -DPREFIX=${name} -DTIMEOUT=${timeout}
-      "-DPROPERTIES=${properties}" -DEACH=${each} -DOUT=${tests} -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake)
+      "-DPROPERTIES=${properties}" -DLEFT_OUT=${left_out} -DOUT=${tests} -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake)
   file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/${name}_include.cmake
     "if(EXISTS \"${tests}\")\n  include(\"${tests}\")\nelse()\n  add_test(${name}_test_NOT_BUILT ${name}_test_NOT_BUILT)\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}_include.cmake)
@@ -90,7 +91,11 @@ function(understudy_join_sources target count)
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "^${PROJECT_BINARY_DIR}/")
-  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/join_sources.py ${count} ${sources}
+  set(alone)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    set(alone --decompositions-alone)
+  endif()
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/join_sources.py ${alone} ${count} ${sources}
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE lines OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   string(REPLACE "\n" ";" lines "${lines}")
   foreach(line IN LISTS lines)

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Which sources are compiled as one: "GROUP>SOURCE" lines.   join_sources.py COUNT SOURCE...
+"""Which sources are compiled as one: "GROUP>SOURCE" lines.   join_sources.py [--decompositions-alone] COUNT SOURCE...
 
 Sources of a target instantiate the same templates, so some of them together take less time than each on its own. Two
 sources in one group must not both declare a name outside of classes and functions: each may have its own kTolerance in
-its anonymous namespace. Declarations are found by how the code is formatted: they begin in the first column. A source
-that decomposes matrices stands alone: GCC's time for Eigen's many types grows with the square of their count.
+its anonymous namespace. Declarations are found by how the code is formatted: they begin in the first column.
+--decompositions-alone: so stands a source that decomposes matrices, since GCC's time for Eigen's many types grows with the
+square of their count.
 """
 import functools
 import pathlib
@@ -106,11 +107,15 @@ class Group:
 
 
 def main():
-    count, sources = int(sys.argv[1]), sys.argv[2:]
+    words = sys.argv[1:]
+    apart = words[0] == "--decompositions-alone"
+    if apart:
+        words.pop(0)
+    count, sources = int(words[0]), words[1:]
     groups = []
     for source in sources:
         names = declared(source)
-        alone = stands_alone(source)
+        alone = apart and stands_alone(source)
         group = None if alone else next((g for g in groups if g.takes(*names)), None)
         if group is None:
             group = Group(1 if alone else count)

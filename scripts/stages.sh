@@ -7,12 +7,6 @@ thread_tests='^(core\.InParallel|machine\.LoopbackPort|strand\.|deposition\.|twi
 
 # Tests of what the real machine runs. The command line and the reports on top of it are left to the other stages.
 sanitize_rooms="core geometry kinematics machine toolpath control vision calibration fuzz"
-# Thousands of draws through code that other tests reach too; more than a minute each.
-sanitize_left_out='ErrorsAreWhatTheCovarianceSays|WithoutSpoiledPosesItLosesLessThanFivePercentOfEfficiency|RandomFramesKeepEveryRule|FarRowsAreSolvedWhereHomeAloneIsNoSeed'
-# Measured: under AddressSanitizer a manifest of 16 times the lines takes 51 to 55 times as long, where the test allows 40. In the
-# release it stays within them, and all other readers do in both.
-sanitize_left_out+='|ReadingTime.*Manifest'
-sanitize_left_out+='|HexapodLimits.(ReachableFractionOfTheCubeIsThatOfTheReference|HomeTiltsInEveryAzimuth)'
 
 # How many sources clang-tidy looks at without --all, some 16 s each.
 tidy_limit=40
@@ -76,8 +70,8 @@ stage_controller() {
 
 stage_sanitize() {
   build asan-controller $(printf '%s_test ' $sanitize_rooms)
-  say "sanitize: leaves out $sanitize_left_out"
-  run_tests asan-controller -R "^(${sanitize_rooms// /|})\." -E "$sanitize_left_out"
+  say "sanitize: leaves out" $(grep -v '^#' cmake/sanitize_left_out.txt)
+  run_tests asan-controller -R "^(${sanitize_rooms// /|})\."
 }
 
 stage_threads() {

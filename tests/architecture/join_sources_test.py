@@ -13,18 +13,18 @@ def anonymous(text):
 
 
 class JoinSources(unittest.TestCase):
-    def groups(self, *texts, count=16):
+    def groups(self, *texts, count=16, options=()):
         """The group of each text, as if it were a source."""
         with tempfile.TemporaryDirectory() as folder:
             names = [f"{number}.cpp" for number in range(len(texts))]
             for name, text in zip(names, texts):
                 (Path(folder) / name).write_text(text)
-            done = subprocess.run([sys.executable, SCRIPT, str(count), *names], cwd=folder, capture_output=True, text=True, check=True)
+            done = subprocess.run([sys.executable, SCRIPT, *options, str(count), *names], cwd=folder, capture_output=True, text=True, check=True)
             group = {name: int(number) for number, name in (line.split(">") for line in done.stdout.splitlines())}
             return [group[name] for name in names]
 
-    def apart(self, a, b):
-        first, second = self.groups(a, b)
+    def apart(self, a, b, options=()):
+        first, second = self.groups(a, b, options=options)
         return first != second
 
     def test_no_more_than_the_count(self):
@@ -51,11 +51,13 @@ class JoinSources(unittest.TestCase):
     def test_a_macro(self):
         self.assertTrue(self.apart("#define SIZE 2\n", anonymous("constexpr int SIZE = 3;")))
 
-    def test_decompositions_stand_alone(self):
+    def test_decompositions_stand_alone_where_asked(self):
+        options = ["--decompositions-alone"]
         for header in ("<Eigen/SVD>", "<Eigen/Cholesky>", '"core/decompositions.h"'):
-            self.assertTrue(self.apart(f"#include {header}\n", "int a();\n"), header)
-        self.assertTrue(self.apart("int a();\n", "#include <Eigen/Eigenvalues>\n"))
-        self.assertFalse(self.apart("int a();\n", "#include <Eigen/Core>\n"))
+            self.assertTrue(self.apart(f"#include {header}\n", "int a();\n", options), header)
+            self.assertFalse(self.apart(f"#include {header}\n", "int a();\n"), header)
+        self.assertTrue(self.apart("int a();\n", "#include <Eigen/Eigenvalues>\n", options))
+        self.assertFalse(self.apart("int a();\n", "#include <Eigen/Core>\n", options))
 
 
 if __name__ == "__main__":
