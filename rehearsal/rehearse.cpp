@@ -139,12 +139,13 @@ constexpr std::size_t kProgramKept = 8'000'000;  // [bytes], twice what a page s
 Replay replay_of(const RehearsalRequest& request, const TwinSetup& setup,
                  const toolpath::FeatureTypes& features, const std::vector<TracePoint>& trace) {
   std::vector<Moment> moments;
+  moments.reserve(trace.size());
   for (const TracePoint& point : trace) moments.push_back({point.time, {point.X_WT, point.axes}});
   Replay replay = make_replay(setup.machine, setup.as_built, moments);
-  if (!request.program.empty()) replay.program = read_file(request.program);
-  if (replay.program.size() > kProgramKept) {
-    replay.program_left_out = replay.program.size() - kProgramKept;
-    replay.program = replay.program.substr(0, kProgramKept);
+  if (!request.program.empty()) {
+    FileBeginning beginning = read_beginning(request.program, kProgramKept);
+    replay.program = std::move(beginning.content);
+    replay.program_left_out = beginning.left_out;
   }
   replay.features = features.changes();
   return replay;

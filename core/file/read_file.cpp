@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <system_error>
@@ -42,31 +43,58 @@ void wait_for(const Descriptor& file) {
   while (::poll(&watched, 1, kTick) <= 0);
 }
 
-}  // namespace
-
-std::string read_file(const std::filesystem::path& path, std::size_t limit) {
-  const Descriptor file = open_to_read(path);
+/// What the file is; neither a folder nor a device.
+struct stat checked(const Descriptor& file, const std::filesystem::path& path) {
   struct stat is {};
   if (::fstat(file.get(), &is) != 0) cannot_read(path);
   if (S_ISDIR(is.st_mode)) cannot_read(path, "it is a folder");
   if (!S_ISREG(is.st_mode) && !S_ISFIFO(is.st_mode) && !S_ISSOCK(is.st_mode))
     cannot_read(path, "it is a device, not a file");
+  return is;
+}
+
+/// Appends up to `most` bytes; false at the end.
+bool append_next(const Descriptor& file, const std::filesystem::path& path, std::size_t most,
+                 std::string& content) {
+  std::array<char, kChunk> buffer;
+  while (true) {
+    wait_for(file);
+    const ssize_t n = ::read(file.get(), buffer.data(), std::min(most, buffer.size()));
+    if (n == 0) return false;
+    if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (n < 0) cannot_read(path);
+    content.append(buffer.data(), static_cast<std::size_t>(n));
+    return true;
+  }
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& path, std::size_t limit) {
+  const Descriptor file = open_to_read(path);
+  const struct stat is = checked(file, path);
   const auto too_large = [&] {
     cannot_read(path, fmt::format("it is larger than {} MB (docs/limits.md)", limit / 1'000'000));
   };
   if (S_ISREG(is.st_mode) && static_cast<std::size_t>(is.st_size) > limit) too_large();
   std::string content;
   if (S_ISREG(is.st_mode)) content.reserve(static_cast<std::size_t>(is.st_size));
-  std::array<char, kChunk> buffer;
-  while (true) {
-    wait_for(file);
-    const ssize_t n = ::read(file.get(), buffer.data(), buffer.size());
-    if (n == 0) return content;
-    if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (n < 0) cannot_read(path);
-    content.append(buffer.data(), static_cast<std::size_t>(n));
+  while (append_next(file, path, kChunk, content))
     if (content.size() > limit) too_large();
+  return content;
+}
+
+FileBeginning read_beginning(const std::filesystem::path& path, std::size_t most) {
+  const Descriptor file = open_to_read(path);
+  const struct stat is = checked(file, path);
+  const std::size_t size = S_ISREG(is.st_mode) ? static_cast<std::size_t>(is.st_size) : 0;
+  FileBeginning beginning;
+  beginning.content.reserve(std::min(size, most));
+  while (beginning.content.size() < most &&
+         append_next(file, path, most - beginning.content.size(), beginning.content)) {
   }
+  beginning.left_out = size - std::min(size, beginning.content.size());
+  return beginning;
 }
 
 }  // namespace understudy

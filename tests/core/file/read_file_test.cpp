@@ -47,6 +47,21 @@ TEST_F(ReadFile, AFileLargerThanTheLimitIsNotRead) {
   EXPECT_THAT(refusal(root_ / "sparse"), HasSubstr("larger than 1000 MB"));
 }
 
+TEST_F(ReadFile, ABeginningTellsHowMuchIsBehindIt) {
+  write_file(root_ / "a", "12345678");
+  for (const std::size_t most : {0u, 5u, 8u, 9u}) {
+    const FileBeginning beginning = read_beginning(root_ / "a", most);
+    EXPECT_EQ(beginning.content, std::string("12345678").substr(0, most));
+    EXPECT_EQ(beginning.left_out, most < 8 ? 8 - most : 0);
+  }
+  std::ofstream(root_ / "sparse").close();
+  fs::resize_file(root_ / "sparse", 214'000'000'000);
+  const FileBeginning beginning = read_beginning(root_ / "sparse", 100'000);
+  EXPECT_EQ(beginning.content.size(), 100'000u) << "more than one piece";
+  EXPECT_EQ(beginning.left_out, 213'999'900'000u);
+  EXPECT_THROW(read_beginning(root_.path(), 1), InputError);
+}
+
 TEST_F(ReadFile, APipeIsReadAndAnInterruptEndsTheWait) {
   const fs::path pipe = root_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
