@@ -108,9 +108,13 @@ std::vector<Finding> findings_of(const std::vector<toolpath::PassedOver>& lines)
 
 std::optional<Finding> misread_words(const RehearsalRequest& request, const toolpath::Program& program,
                                      const machine::MachineDescription& machine) {
+  // What stands before the first move, such as heat, has no turns.
+  const toolpath::RotaryTurns start = program.steps.empty()
+                                          ? toolpath::RotaryTurns{}
+                                          : program.steps.front().rotary.value_or(toolpath::RotaryTurns{});
   const auto turned = [&](const toolpath::Step& s) {
     return s.kind == toolpath::StepKind::print && s.rotary &&
-           (s.rotary->b != program.steps.front().rotary->b || s.rotary->c != program.steps.front().rotary->c);
+           (s.rotary->b != start.b || s.rotary->c != start.c);
   };
   if (std::ranges::none_of(program.steps, turned)) return std::nullopt;
   toolpath::GcodeOptions options = gcode_options(request.dialect, machine);

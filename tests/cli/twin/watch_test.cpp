@@ -19,6 +19,8 @@
 #include <httplib.h>
 #include <nlohmann/json.hpp>
 
+#undef _res  // a macro of <resolv.h>, which httplib includes; Eigen has parameters of that name
+
 #include "core/file/descriptor.h"
 #include "core/file/read_file.h"
 #include "machine/record/record_reader.h"
