@@ -22,7 +22,6 @@
 namespace understudy {
 namespace {
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 class StagedFileTest : public ::testing::Test {
  protected:
