@@ -1,15 +1,15 @@
 # After a test program is linked: writes what CTest reads of it. A suite is one CTest test, since the start of a
 # process costs more than most tests; each test of a suite whose name starts with Slow or Extended is one, with the label slow or extended.
-# PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [LEFT_OUT: a file, patterns of tests that their suites leave out, # and comments]
+# PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [LEFT_OUT: a file, a pattern of tests that their suites leave out on each line, comments after #]
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY TIMEOUT 60)
 string(REGEX REPLACE "[[;]|]" "" listed "${listed}")
 string(REPLACE "\n" ";" listed "${listed}")
 set(text "")
-set(but "")
+set(excluded "")
 if(LEFT_OUT)
   file(STRINGS ${LEFT_OUT} patterns REGEX "^[^#]")
   list(JOIN patterns ":" patterns)
-  set(but "-${patterns}")
+  set(excluded "-${patterns}")
 endif()
 
 # add(NAME FILTER SECONDS [property value ...])
@@ -20,7 +20,7 @@ endmacro()
 macro(end_suite)
   if(count GREATER 0)  # the time of one test, and a minute for each further one
     math(EXPR limit "${TIMEOUT} + 60 * (${count} - 1)")
-    add("${suite}" "${suite}.*${but}" ${limit})
+    add("${suite}" "${suite}.*${excluded}" ${limit})
   endif()
   set(count 0)
 endmacro()

@@ -108,16 +108,16 @@ std::vector<Finding> findings_of(const std::vector<toolpath::PassedOver>& lines)
 
 std::optional<Finding> misread_words(const RehearsalRequest& request, const toolpath::Program& program,
                                      const machine::MachineDescription& machine) {
-  // What stands before the first move, such as heat, has no turns.
-  const toolpath::RotaryTurns start = program.steps.empty()
-                                          ? toolpath::RotaryTurns{}
-                                          : program.steps.front().rotary.value_or(toolpath::RotaryTurns{});
+  toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
+  if (!options.rotary || program.steps.empty()) return std::nullopt;
+  // What stands before the first move, such as heat, has no turns: the machine is at home.
+  const toolpath::RotaryTurns home{options.rotary->b_home, options.rotary->c_home};
+  const toolpath::RotaryTurns start = program.steps.front().rotary.value_or(home);
   const auto turned = [&](const toolpath::Step& s) {
     return s.kind == toolpath::StepKind::print && s.rotary &&
            (s.rotary->b != start.b || s.rotary->c != start.c);
   };
   if (std::ranges::none_of(program.steps, turned)) return std::nullopt;
-  toolpath::GcodeOptions options = gcode_options(request.dialect, machine);
   std::vector<toolpath::PassedOver> told_already;
   options.passed_over = &told_already;
   return misread_words(program, {request.program, read_file(request.program)}, options, request.machine);

@@ -118,7 +118,7 @@ TEST(GcodeArc, WhatIsNoArcIsRefused) {
   EXPECT_EQ(rejection(start + "G3 X0 Y10.01 I-10 F600"), "accepted") << "a file's rounding";
 }
 
-// A hundred turns of a circle of a kilometre would be 160 million chords: more than memory holds.
+// A hundred turns of a circle of 1000 km would be 160 million chords: more than memory holds.
 TEST(GcodeArc, EndlessChordsAreRefused) {
   const std::string start = "G0 X10 Y0 Z5\n", circle = "G3 I-10 F600\n";
   EXPECT_THAT(rejection(start + "G3 I1e9 P100 F600"),
