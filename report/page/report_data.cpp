@@ -125,9 +125,9 @@ Json frame_value(const FrameRecord& frame) {
 Json picture_value(const Illustration& illustration) {
   Json object;
   if (!illustration.caption.empty()) object["caption"] = illustration.caption;
-  object["width"] = illustration.picture.width;
-  object["height"] = illustration.picture.height;
-  object["image"] = data_uri(encode_png(illustration.picture));
+  object["width"] = illustration.width;
+  object["height"] = illustration.height;
+  object["image"] = data_uri(illustration.png);
   return object;
 }
 

@@ -74,8 +74,7 @@ void write_results(const rehearsal::Record& record, const std::vector<Illustrati
   fs::create_directory(folder / "pictures");
   int number = 0;
   for (const Illustration& illustration : pictures)
-    write_file(folder / "pictures" / fmt::format("picture-{:02}.png", ++number),
-               encode_png(illustration.picture));
+    write_file(folder / "pictures" / fmt::format("picture-{:02}.png", ++number), illustration.png);
 }
 
 }  // namespace understudy::report

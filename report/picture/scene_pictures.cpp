@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <future>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,6 +13,7 @@
 #include "core/units.h"
 #include "report/picture/bead_surface.h"
 #include "report/picture/body_colours.h"
+#include "report/picture/png.h"
 #include "sim/surface/bead_sweep.h"
 #include "sim/surface/swept_shell.h"
 
@@ -167,8 +171,13 @@ Eigen::AlignedBox3d box_of(const sim::BeadIndex& beads) {
   return box;
 }
 
+struct Captioned {
+  renderer::Picture picture;
+  std::string caption;
+};
+
 /// What was laid, without the machine.
-std::optional<Illustration> draw_printed_part(const rehearsal::Scene& scene) {
+std::optional<Captioned> draw_printed_part(const rehearsal::Scene& scene) {
   const sim::BeadIndex& beads = scene.printed->beads();
   const Eigen::AlignedBox3d box = box_of(beads);
   const double radius = std::max(3e-3, 0.5 * box.diagonal().norm()), distance = 4.6 * radius;
@@ -183,7 +192,7 @@ std::optional<Illustration> draw_printed_part(const rehearsal::Scene& scene) {
   std::string caption =
       fmt::format("As printed: {} beads, drawn to within {:.0f} µm", beads.size(), to_um(printed->within));
   if (printed->one_of > 1) caption += fmt::format(", one stretch of {}", printed->one_of);
-  return Illustration{renderer::render_picture(std::move(drawn)), caption};
+  return Captioned{renderer::render_picture(std::move(drawn)), caption};
 }
 
 renderer::Picture from_afar(const rehearsal::Scene& scene) {
@@ -211,18 +220,27 @@ renderer::Picture close_up(const rehearsal::Scene& scene) {
 
 }  // namespace
 
+Illustration illustration(const renderer::Picture& picture, std::string caption) {
+  return {encode_png(picture), picture.width, picture.height, std::move(caption)};
+}
+
 renderer::Picture draw_overview(const rehearsal::Scene& scene) { return from_afar(scene); }
 
 std::vector<Illustration> draw_scene(const rehearsal::Scene& scene) {
-  std::vector<Illustration> pictures;
-  pictures.push_back({from_afar(scene), scene.simulated ? "Machine and part at the middle of the print"
-                                                        : "Machine at home; nothing was simulated"});
-  return_free_memory();
-  pictures.push_back({close_up(scene), "The tool on the path"});
-  return_free_memory();
+  // One is encoded while the next is drawn.
+  std::vector<std::future<Illustration>> encoded;
+  const auto add = [&](renderer::Picture picture, std::string caption) {
+    encoded.push_back(std::async(std::launch::async, &illustration, std::move(picture), std::move(caption)));
+    return_free_memory();
+  };
+  add(from_afar(scene), scene.simulated ? "Machine and part at the middle of the print"
+                                        : "Machine at home; nothing was simulated");
+  add(close_up(scene), "The tool on the path");
   if (scene.printed && scene.printed->beads().size() > 0)
-    if (auto printed = draw_printed_part(scene)) pictures.push_back(std::move(*printed));
-  return_free_memory();
+    if (auto printed = draw_printed_part(scene))
+      add(std::move(printed->picture), std::move(printed->caption));
+  std::vector<Illustration> pictures;
+  for (std::future<Illustration>& each : encoded) pictures.push_back(each.get());
   return pictures;
 }
 

@@ -10,9 +10,13 @@
 namespace understudy::report {
 
 struct Illustration {
-  renderer::Picture picture;
+  std::string png;
+  int width = 0, height = 0;  ///< [px]
   std::string caption;
 };
+
+/// Throws std::logic_error as encode_png() does.
+Illustration illustration(const renderer::Picture& picture, std::string caption);
 
 /// Machine and part as a whole. Throws MachineError when no OSMesa context can be made.
 renderer::Picture draw_overview(const rehearsal::Scene& scene);

@@ -89,6 +89,38 @@ TEST(SceneView, TheShapeThrowsASoftShadowOnTheGround) {
   EXPECT_GT(shades, 20);
 }
 
+/// [px] Where the shade between two pixels is half-way between theirs.
+double half_way(const std::vector<int>& shades, std::size_t dark, std::size_t bright) {
+  const double half = 0.5 * (shades[dark] + shades[bright]);
+  std::size_t i = dark;
+  while (shades[i + 1] < half) ++i;
+  return static_cast<double>(i) + 0.5 + (half - shades[i]) / (shades[i + 1] - shades[i]);
+}
+
+// The lamp stands over the viewer's left shoulder: seen from above, a plate that hovers throws its shadow to
+// the right and down, by its height times the tangents of the lamp's direction (-0.45, 0.35, 0.55 + 0.75).
+TEST(SceneView, TheLampsShadowEndsWhereGeometrySaysSo) {
+  constexpr double kHigh = 0.05, kHalf = 0.03;  // [m]
+  PictureScene s;
+  s.shapes = {{{"floor", geometry::Box{{0.4, 0.4, 0.002}}}, {0.6f, 0.6f, 0.6f}},
+              {{"plate", geometry::Box{{2 * kHalf, 2 * kHalf, 0.001}}}, {0.6f, 0.6f, 0.6f}}};
+  s.shapes[0].shape.X_FS.translation() = Vec3(0, 0, -0.001);
+  s.shapes[1].shape.X_FS.translation() = Vec3(0, 0, kHigh);
+  s.eye_W = {0, 0, 1};
+  s.up_W = {0, 1, 0};
+  s.width = 400;
+  s.height = 300;
+  s.field_of_view = 2 * std::atan(0.15);  // 0.3 m at 1 m: 1 mm a pixel
+  const Picture p = render_picture(s);
+  std::vector<int> along, down;
+  for (int x = 0; x < s.width; ++x) along.push_back(pixel(p, x, 155)[0]);
+  for (int y = 0; y < s.height; ++y) down.push_back(pixel(p, 205, y)[0]);
+  // The plate itself is seen to end at 30 mm / 0.95 = 32 mm from the middle. Light is computed every 2
+  // pixels.
+  EXPECT_NEAR(half_way(along, 240, 255), 200 + 1e3 * (kHalf + kHigh * 0.45 / 1.3), 0.6);
+  EXPECT_NEAR(half_way(down, 188, 201), 150 + 1e3 * (kHalf + kHigh * 0.35 / 1.3), 0.6);
+}
+
 TEST(SceneView, EdgesAreSmoothed) {
   PictureScene s = red_ball();
   s.eye_W = {0, 0, 1};  // against the ground's white, from above

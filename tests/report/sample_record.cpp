@@ -164,8 +164,8 @@ void add_run(Record& record) {
 }  // namespace
 
 std::vector<Illustration> sample_pictures() {
-  return {{sample_picture(0), "The machine at the end of the program"},
-          {sample_picture(60), "The nozzle above the part"}};
+  return {illustration(sample_picture(0), "The machine at the end of the program"),
+          illustration(sample_picture(60), "The nozzle above the part")};
 }
 
 Record sample_go() {
