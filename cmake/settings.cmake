@@ -41,7 +41,7 @@ add_compile_options(
   $<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:${UNDERSTUDY_JOIN}>>:-Wno-shadow>
   $<$<BOOL:${UNDERSTUDY_WERROR}>:-Werror>)
 # GCC collects garbage whenever its heap has doubled from 128 MB, less than the precompiled header takes. Where there is memory
-# for it, it begins later, which saves a twelfth of the time.
+# for it, it begins later (docs/build.md).
 cmake_host_system_information(RESULT memory_mb QUERY TOTAL_PHYSICAL_MEMORY)
 cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
 math(EXPR memory_per_core_mb "${memory_mb} / ${cores}")
