@@ -48,7 +48,7 @@ float lamp(vec3 place, vec3 n) {
   return sum / 9.0;
 }
 
-// Both in one number: whole 1/1024 of the sky, and the lamp as what is behind the point.
+// Both in one number: the sky in whole 1/1024, and the lamp as the fraction.
 float packed_light(float sky, float lamp) { return floor(1024.0 * sky) + 0.998 * lamp; }
 
 void main() {

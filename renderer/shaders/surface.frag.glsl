@@ -1,7 +1,6 @@
 #version 450 core
 centroid in vec3 place;
 centroid in vec3 direction;
-centroid in vec3 albedo;
 
 uniform vec3 eye;
 

@@ -9,8 +9,9 @@
 
 namespace understudy::report {
 
+/// A picture of a report.
 struct Illustration {
-  std::string png;
+  std::string png;            ///< its bytes
   int width = 0, height = 0;  ///< [px]
   std::string caption;
 };
