@@ -79,7 +79,7 @@ void BodySet::add_body(const geometry::Shape& shape, Owner owner, std::size_t in
   if (owner == Owner::tool) body.lever = reach_of(shape);
   // A strut turns about its base joint: no point of it moves farther than its ball joint.
   if (owner == Owner::strut) body.lever = geometry_.platform_joint[index].norm();
-  body.fcl = body.hull ? world_.add_hull(*body.hull->mesh) : world_.add(shape);
+  body.fcl = body.hull ? world_.add_hull(body.hull->mesh) : world_.add(shape);
   bodies_.push_back(std::move(body));
 }
 

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -155,29 +157,43 @@ Separation measure(const Body& a, const Pose& X_Wa, const Body& b, const Pose& X
 }  // namespace
 
 struct FclWorld::State {
-  std::vector<Body> bodies;
+  // Built when it is first asked for: the hierarchy over a part's triangles takes longer than a short print,
+  // and bodies that another distance serves never ask.
+  struct Item {
+    std::function<Body()> make;
+    std::optional<Body> made;
+  };
+  std::vector<Item> items;
+
+  const Body& body(int index) {
+    Item& item = items[index];
+    if (!item.made) item.made = item.make();
+    return *item.made;
+  }
+  int add(std::function<Body()> make) {
+    items.push_back({std::move(make), {}});
+    return static_cast<int>(items.size()) - 1;
+  }
 };
 
 FclWorld::FclWorld() : state_(std::make_unique<State>()) {}
 FclWorld::~FclWorld() = default;
 
 int FclWorld::add(const geometry::Shape& shape) {
-  state_->bodies.push_back(std::visit(Convert{}, shape.form));
-  return static_cast<int>(state_->bodies.size()) - 1;
+  return state_->add([form = shape.form] { return std::visit(Convert{}, form); });
 }
 
-int FclWorld::add_hull(const geometry::Mesh& mesh) {
-  state_->bodies.push_back({hull(mesh), 0, nullptr, Vec3::Zero(), false});
-  return static_cast<int>(state_->bodies.size()) - 1;
+int FclWorld::add_hull(std::shared_ptr<const geometry::Mesh> mesh) {
+  return state_->add([mesh = std::move(mesh)] { return Body{hull(*mesh), 0, nullptr, Vec3::Zero(), false}; });
 }
 
 void FclWorld::set_capsule_length(int index, double length) {
-  state_->bodies[index].capsule->lz = length * kScale;
+  state_->body(index).capsule->lz = length * kScale;
 }
 
 Separation FclWorld::distance(int first, const Pose& X_W1, int second, const Pose& X_W2) const {
-  const Body& a = state_->bodies[first];
-  const Body& b = state_->bodies[second];
+  const Body& a = state_->body(first);
+  const Body& b = state_->body(second);
   // FCL turns a shape and a mesh round inside, but not the points it answers.
   if (b.is_mesh && !a.is_mesh) return measure(b, X_W2, a, X_W1, true);
   return measure(a, X_W1, b, X_W2, false);

@@ -1,4 +1,5 @@
-// Distances between rigid shapes by FCL, its types kept out of sight. Built once, posed at every query.
+// Distances between rigid shapes by FCL, its types kept out of sight. A shape is built when a distance first
+// asks for it, and posed at every query: not for two threads at once.
 #pragma once
 
 #include <memory>
@@ -19,7 +20,7 @@ class FclWorld {
   /// Index of the shape. Its X_FS is left out: the caller poses the shape's own frame.
   int add(const geometry::Shape& shape);
   /// The same of a mesh that is its own convex hull: a solid body, where add() takes its surface.
-  int add_hull(const geometry::Mesh& mesh);
+  int add_hull(std::shared_ptr<const geometry::Mesh> mesh);
   /// For struts: the capsule's distance between its cap centres [m].
   void set_capsule_length(int index, double length);
 
