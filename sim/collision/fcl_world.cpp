@@ -157,8 +157,8 @@ Separation measure(const Body& a, const Pose& X_Wa, const Body& b, const Pose& X
 }  // namespace
 
 struct FclWorld::State {
-  // Built when it is first asked for: the hierarchy over a part's triangles takes longer than a short print,
-  // and bodies that another distance serves never ask.
+  // Built when it is first asked for: the hierarchy over a part's triangles takes long, and bodies that
+  // another distance serves (BodySet) never ask.
   struct Item {
     std::function<Body()> make;
     std::optional<Body> made;

@@ -1,5 +1,5 @@
-// Distances between rigid shapes by FCL, its types kept out of sight. A shape is built when a distance first
-// asks for it, and posed at every query: not for two threads at once.
+// Distances between rigid shapes by FCL, its types kept out of sight. A shape is built when it is first asked
+// for, and posed at every query; two threads must not ask at once.
 #pragma once
 
 #include <memory>
