@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "core/digest.h"
+#include "core/file/kept_files.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "core/yaml/changed_file.h"
@@ -222,10 +223,14 @@ MachineFile read_file_of(const std::string& name_or_path) {
   return read_text_of(read_file(path), path.string() + changed.braces(), tool ? name.substr(plus + 1) : "");
 }
 
+std::shared_ptr<const MachineFile> file_of(const std::string& name_or_path) {
+  return kept<MachineFile>(name_or_path, [&] { return read_file_of(name_or_path); });
+}
+
 }  // namespace
 
 MachineDescription load_machine(const std::string& name_or_path) {
-  return read_file_of(name_or_path).description;
+  return file_of(name_or_path)->description;
 }
 
 void check_machine_text(const std::string& text, const std::filesystem::path& file) {
@@ -233,26 +238,26 @@ void check_machine_text(const std::string& text, const std::filesystem::path& fi
 }
 
 MachineDescription load_machine(const std::string& name_or_path, CalibratedParameters& parameters) {
-  MachineFile file = read_file_of(name_or_path);
-  parameters = std::move(file.calibrated);
-  return std::move(file.description);
+  const auto file = file_of(name_or_path);
+  parameters = file->calibrated;
+  return file->description;
 }
 
 BuiltTolerances load_built_tolerances(const std::string& name_or_path) {
-  return read_file_of(name_or_path).tolerances;
+  return file_of(name_or_path)->tolerances;
 }
 
 LoadEncoderCounts load_encoder_counts(const std::string& name_or_path) {
-  return read_file_of(name_or_path).load_encoders;
+  return file_of(name_or_path)->load_encoders;
 }
 
-std::optional<Cure> load_cure(const std::string& name_or_path) { return read_file_of(name_or_path).cure; }
+std::optional<Cure> load_cure(const std::string& name_or_path) { return file_of(name_or_path)->cure; }
 
-MachineNotes load_machine_notes(const std::string& name_or_path) { return read_file_of(name_or_path).notes; }
+MachineNotes load_machine_notes(const std::string& name_or_path) { return file_of(name_or_path)->notes; }
 
 AcceptedErrors load_accepted_errors(const std::string& name_or_path) {
-  const MachineFile file = read_file_of(name_or_path);
-  return file.accepted.value_or(default_accepted_errors(file.description.tool));
+  const auto file = file_of(name_or_path);
+  return file->accepted.value_or(default_accepted_errors(file->description.tool));
 }
 
 MapSchema machine_schema() {

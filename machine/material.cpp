@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/file/kept_files.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "core/yaml/changed_file.h"
@@ -102,13 +103,19 @@ std::vector<std::string> material_names() {
   return names;
 }
 
-Material load_material(const std::string& name_or_path) {
+namespace {
+Material read_file_of(const std::string& name_or_path) {
   const ChangedFile changed = changed_file(name_or_path);
   const fs::path path = find_material(changed.file);
   Material material;
   YamlMap::read_text(read_file(path), path.string() + changed.braces(),
                      [&](YamlMap& map) { read_material(map, material); });
   return material;
+}
+}  // namespace
+
+Material load_material(const std::string& name_or_path) {
+  return *kept<Material>(name_or_path, [&] { return read_file_of(name_or_path); });
 }
 
 MapSchema material_schema() {

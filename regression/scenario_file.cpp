@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "control/registration/pattern.h"
+#include "core/file/kept_files.h"
 #include "core/file/read_file.h"
 #include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
@@ -236,9 +237,7 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
   });
 }
 
-}  // namespace
-
-Scenario load_scenario(const fs::path& word) {
+Scenario read_file_of(const fs::path& word) {
   const fs::path path = changed_file(word.string()).file;
   Scenario scenario;
   scenario.file = path;
@@ -249,6 +248,12 @@ Scenario load_scenario(const fs::path& word) {
   if (fs::exists(golden, ignored))
     scenario.golden = load_golden(golden, scenario.command.empty() ? FiguresOf::run : FiguresOf::command);
   return scenario;
+}
+
+}  // namespace
+
+Scenario load_scenario(const fs::path& word) {
+  return *kept<Scenario>(word.string(), [&] { return read_file_of(word); });
 }
 
 MapSchema scenario_schema() {

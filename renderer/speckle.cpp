@@ -46,8 +46,8 @@ class AmplitudeSpread {
     for (double& value : values_) value /= std::sqrt(energy);
   }
   double operator()(double distance_squared) const {
-    const auto k = static_cast<std::size_t>(distance_squared * scale_);
-    return k < kTable ? values_[k] : 0;
+    const int k = static_cast<int>(distance_squared * scale_);
+    return k < kTable ? values_[static_cast<std::size_t>(k)] : 0;
   }
 
  private:
@@ -149,13 +149,16 @@ void add(Field& field, const Scatterer& s, const AmplitudeSpread& spread, const 
          int reach_limit) {
   const double x = s.x / s.points, y = s.y / s.points;
   const double pitch = s.depth / s.points / (o.focal_px * kSamplesPerPixel * fine);  // [m] between points
-  const int reach = std::min(static_cast<int>(std::ceil(kernel_reach(o) / pitch)), reach_limit);
+  const double radius = kernel_reach(o) / pitch;                                     // [points]
+  const int reach = std::min(static_cast<int>(std::ceil(radius)), reach_limit);
   const int cx = static_cast<int>(std::lround(x)), cy = static_cast<int>(std::lround(y));
   const Region& r = field.points;
   // A cell with more surface scatters more: the energy is that of its field points.
   const std::complex<double> amplitude = s.amplitude * (std::sqrt(static_cast<double>(s.points)) * pitch);
-  const int left = std::max(cx - reach, r.x), right = std::min(cx + reach, r.x + r.width - 1);
   for (int b = std::max(cy - reach, r.y); b <= std::min(cy + reach, r.y + r.height - 1); ++b) {
+    const double half_row = std::sqrt(std::max(0.0, radius * radius - (b - y) * (b - y)));  // of a round spot
+    const int half = std::min(static_cast<int>(half_row) + 2, reach);
+    const int left = std::max(cx - half, r.x), right = std::min(cx + half, r.x + r.width - 1);
     std::complex<double>* row =
         &field.values[static_cast<std::size_t>(b - r.y) * static_cast<std::size_t>(r.width)];
     for (int a = left; a <= right; ++a) {

@@ -1,6 +1,7 @@
 #include "sim/distance/penetration.h"
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "geometry/mesh.h"
@@ -23,15 +24,27 @@ std::vector<Ball> balls_of(const geometry::Shape& shape) {
   return balls;
 }
 
+constexpr double kRounding = 1e-12;  // [m]
+
+/// How far the last place that was looked at is from the other body: places around it are as far, but for the
+/// way there.
+struct Looked {
+  Vec3 place{0, 0, 0};
+  double distance = 0;
+};
+
 void deepen(const geometry::Shape& a, const Pose& X_Wa, const geometry::Shape& b, const Pose& X_Wb,
             Penetration& deepest) {
   const geometry::Mesh* mesh = mesh_of(b);
   if (mesh && mesh->open_edges() > 0) return;
   const auto solid = convex_solid(b);
   const Pose X_ba = X_Wb.inverse(Eigen::Isometry) * X_Wa;
+  std::optional<Looked> last;
   for (const Ball& ball : balls_of(a)) {
     const Vec3 p = X_ba * ball.centre;
-    const double depth = ball.radius - (mesh ? mesh->signed_distance(p) : signed_distance(*solid, p));
+    if (last && ball.radius - last->distance + (p - last->place).norm() < deepest.depth - kRounding) continue;
+    last = {p, mesh ? mesh->signed_distance(p) : signed_distance(*solid, p)};
+    const double depth = ball.radius - last->distance;
     if (depth > deepest.depth) deepest = {depth, X_Wb * p};
   }
 }

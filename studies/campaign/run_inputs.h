@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file/kept_files.h"
 #include "core/file/scratch_folder.h"
 #include "regression/scenario.h"
 #include "rehearsal/record.h"
@@ -29,7 +30,8 @@ struct CampaignTools {
   std::function<std::string(const rehearsal::Record&)> summary_json;
 };
 
-/// Holds what runs share: scenarios, and programs that are planned once for all runs with the same words.
+/// Holds what runs share: machines, materials, scenarios and parts are read once, and programs are planned
+/// once for all runs with the same words.
 class RunInputs {
  public:
   /// The campaign must outlive it.
@@ -62,6 +64,7 @@ class RunInputs {
 
   const Campaign& campaign_;
   CampaignTools tools_;
+  KeptFiles kept_files_;
   std::vector<std::string> names_;
   std::optional<ScratchFolder> scratch_;                  // from the first plan on
   std::map<std::string, std::filesystem::path> planned_;  // by what it is made from

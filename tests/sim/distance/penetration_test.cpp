@@ -1,12 +1,16 @@
 #include "sim/distance/penetration.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include <gtest/gtest.h>
 
+#include "core/random_vector.h"
 #include "geometry/mesh.h"
+#include "sim/distance/convex_solid.h"
 #include "tests/geometry/test_solids.h"
+#include "tests/sim/collision/bodies_for_tests.h"
 
 namespace understudy::sim {
 namespace {
@@ -45,6 +49,36 @@ TEST(Penetration, OfAMeshIsThatOfTheSolidThatItBounds) {
   EXPECT_NEAR(penetration(ball(0.5), at(0, 0, 1.25), mesh_cube(1), kHere).depth, 0.25, 1e-12);
   EXPECT_EQ(penetration(ball(0.5), at(0, 0, 1.25), mesh_cube(1, true), kHere).depth, 0)
       << "an open mesh has no inside";
+}
+
+/// Over all points that the header names, one by one.
+double deepest_of_all(const Shape& solid, const Pose& X_WS, const geometry::Mesh& mesh) {
+  const ConvexSolid body = *convex_solid(solid);
+  double depth = 0;
+  for (const Ball& ball : surface_balls(body))
+    depth = std::max(depth, ball.radius - mesh.signed_distance(X_WS * ball.centre));
+  for (const Vec3& v : mesh.vertices())
+    depth = std::max(depth, -signed_distance(body, X_WS.inverse(Eigen::Isometry) * v));
+  return depth;
+}
+
+TEST(Penetration, IsThatOfTheDeepestOfAllPoints) {
+  const auto part = test::bottle_mesh(Vec3::Zero(), 15.5e-3, 0.08, 96, 12);
+  const Shape bottle{"part", geometry::MeshShape{part}, kHere};
+  Random random(5, "penetration");
+  int deep = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Pose X = make_pose(exp_rotation(0.5 * uniform_vec3(random, 1)),
+                             Vec3(15.5e-3, 0, 0) + 4e-3 * uniform_vec3(random, 1));
+    for (const Shape& solid : {Shape{"nozzle", geometry::Frustum{0.5e-3, 3.5e-3, 6e-3}, kHere},
+                               Shape{"strut", geometry::Capsule{1e-3, 6e-3}, kHere},
+                               Shape{"block", geometry::Box{Vec3(6e-3, 4e-3, 3e-3)}, kHere}}) {
+      const double depth = penetration(solid, X, bottle, kHere).depth;
+      EXPECT_NEAR(depth, deepest_of_all(solid, X, *part), 1e-15) << solid.name << " " << i;
+      deep += depth > 0.1e-3;
+    }
+  }
+  EXPECT_GT(deep, 100);
 }
 
 TEST(Penetration, APointIsInsideABodyOrNot) {
