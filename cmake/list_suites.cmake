@@ -1,13 +1,18 @@
 # After a test program is linked: writes what CTest reads of it. A suite is one CTest test, since the start of a
 # process costs more than most tests; each test of a suite whose name starts with Slow or Extended is one, with the label slow or extended.
-# PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [LEFT_OUT: a file, a pattern of tests that their suites leave out on each line, comments after #]
+# PROGRAM PREFIX TIMEOUT [s] PROPERTIES OUT [LEFT_OUT: files, separated by commas: a pattern of tests that their suites leave out on each line, comments after #]
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY TIMEOUT 60)
 string(REGEX REPLACE "[[;]|]" "" listed "${listed}")
 string(REPLACE "\n" ";" listed "${listed}")
 set(text "")
 set(excluded "")
 if(LEFT_OUT)
-  file(STRINGS ${LEFT_OUT} patterns REGEX "^[^#]")
+  string(REPLACE "," ";" files "${LEFT_OUT}")
+  set(patterns "")
+  foreach(file IN LISTS files)
+    file(STRINGS ${file} more REGEX "^[^#]")
+    list(APPEND patterns ${more})
+  endforeach()
   list(JOIN patterns ":" patterns)
   set(excluded "-${patterns}")
 endif()

@@ -26,11 +26,12 @@ changed_sources() {
   { git diff --name-only --diff-filter=d "$since" -- '*.h' '*.cpp'; git ls-files -o --exclude-standard '*.h' '*.cpp'; } | sort -u
 }
 
-# run_tests PRESET CTEST-OPTIONS...: the count of tests, or what failed and where to read more.
+# run_tests PRESET [--fast] CTEST-OPTIONS...: the count of tests, or what failed and where to read more. --fast: those of ./test.
 run_tests() {
-  local preset=$1; shift
+  local preset=$1 without=slow; shift
+  if [ "${1:-}" = --fast ]; then without='slow|extended'; shift; fi
   local log=build/$preset/tests.log
-  if ctest --test-dir "build/$preset" --output-on-failure -LE slow -j "$(nproc)" --no-tests=error "$@" >"$log" 2>&1; then
+  if ctest --test-dir "build/$preset" --output-on-failure -LE "$without" -j "$(nproc)" --no-tests=error "$@" >"$log" 2>&1; then
     grep 'tests passed' "$log"
     return
   fi
@@ -69,14 +70,27 @@ stage_controller() {
 }
 
 stage_sanitize() {
+  if [ "$all" = 1 ]; then
+    build asan
+    run_tests asan --fast
+    return
+  fi
   build asan-controller $(printf '%s_test ' $sanitize_rooms)
   say "sanitize: leaves out" $(grep -v '^#' cmake/sanitize_left_out.txt)
   run_tests asan-controller -R "^(${sanitize_rooms// /|})\."
 }
 
+# Of libraries that were built without ThreadSanitizer (Mesa, LLVM, OpenCV) it sees calls of malloc and locks, and not how
+# they order what they do.
 stage_threads() {
+  export TSAN_OPTIONS=ignore_noninstrumented_modules=1
+  if [ "$all" = 1 ]; then
+    build tsan
+    run_tests tsan --fast
+    return
+  fi
   build tsan "${thread_programs[@]}"
-  TSAN_OPTIONS="suppressions=$PWD/cmake/tsan.supp print_suppressions=0" run_tests tsan -R "$thread_tests"
+  run_tests tsan -R "$thread_tests"
 }
 
 # The compile commands of release for clang, in build/clang: each source on its own and without GCC's precompiled header,

@@ -24,15 +24,16 @@ Some/Typed/0.  # TypeParam = int
 
 
 class ListSuites(unittest.TestCase):
-    def listed(self, left_out=None):
-        """(filter, time limit, label) by name; left_out: the lines of a file of patterns."""
+    def listed(self, *left_out):
+        """(filter, time limit, label) by name; left_out: the lines of files of patterns."""
         with tempfile.TemporaryDirectory() as folder:
             program, out = Path(folder) / "program", Path(folder) / "tests.cmake"
             program.write_text(f"#!/bin/sh\ncat <<'END'\n{LISTED}END\n")
             program.chmod(0o755)
-            patterns = Path(folder) / "left_out.txt" if left_out else ""
-            if left_out:
-                patterns.write_text(left_out)
+            files = [Path(folder) / f"left_out_{i}.txt" for i in range(len(left_out))]
+            for file, lines in zip(files, left_out):
+                file.write_text(lines)
+            patterns = ",".join(map(str, files))
             subprocess.run(["cmake", f"-DPROGRAM={program}", "-DPREFIX=room", "-DTIMEOUT=100", f"-DLEFT_OUT={patterns}", "-DPROPERTIES=",
                             f"-DOUT={out}", "-P", SCRIPT], check=True)
             text = out.read_text()
@@ -53,9 +54,13 @@ class ListSuites(unittest.TestCase):
         self.assertEqual(self.listed("# why\nFast.B\n\nTyped.*\n"),
                          {"room.Fast": (f"Fast.*{but}", 160, ""), "room.Some/Typed/0": (f"Some/Typed/0.*{but}", 100, ""), **self.LABELLED})
 
+    def test_patterns_of_several_files_count(self):
+        self.assertEqual(self.listed("Fast.A\n", "# why\nFast.B\n")["room.Fast"][0], "Fast.*-Fast.A:Fast.B")
+
     def test_what_the_sanitizers_leave_out_exists(self):
         sources = "".join(source.read_text() for source in SCRIPT.parents[1].glob("tests/**/*_test.cpp"))
-        patterns = [line for line in (SCRIPT.parent / "sanitize_left_out.txt").read_text().splitlines() if not line.startswith("#")]
+        patterns = [line for name in ("sanitize_left_out.txt", "thread_left_out.txt")
+                    for line in (SCRIPT.parent / name).read_text().splitlines() if not line.startswith("#")]
         self.assertTrue(patterns)
         for pattern in patterns:
             suite, test = pattern.split("/")[-2 if pattern.count("/") > 1 else -1].split(".")
