@@ -46,8 +46,8 @@ class AmplitudeSpread {
     for (double& value : values_) value /= std::sqrt(energy);
   }
   double operator()(double distance_squared) const {
-    const int k = static_cast<int>(distance_squared * scale_);
-    return k < kTable ? values_[static_cast<std::size_t>(k)] : 0;
+    const double k = distance_squared * scale_;
+    return k < kTable ? values_[static_cast<std::size_t>(static_cast<int>(k))] : 0;
   }
 
  private:
