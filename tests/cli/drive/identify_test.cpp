@@ -17,7 +17,6 @@ namespace understudy::cli_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 const std::string kMoves = std::string(UNDERSTUDY_SOURCE_DIR) + "/scenarios/identify/hexapod.gcode";
 const std::string kWithEncoders = " --machine 'hexapod{load_encoders.count_um: 1}'";
