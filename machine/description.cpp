@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "core/digest.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "core/yaml/changed_file.h"
@@ -224,7 +224,7 @@ MachineFile read_file_of(const std::string& name_or_path) {
 }
 
 std::shared_ptr<const MachineFile> file_of(const std::string& name_or_path) {
-  return kept<MachineFile>(name_or_path, [&] { return read_file_of(name_or_path); });
+  return cached<MachineFile>(name_or_path, [&] { return read_file_of(name_or_path); });
 }
 
 }  // namespace

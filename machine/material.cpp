@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "core/yaml/changed_file.h"
@@ -115,7 +115,7 @@ Material read_file_of(const std::string& name_or_path) {
 }  // namespace
 
 Material load_material(const std::string& name_or_path) {
-  return *kept<Material>(name_or_path, [&] { return read_file_of(name_or_path); });
+  return *cached<Material>(name_or_path, [&] { return read_file_of(name_or_path); });
 }
 
 MapSchema material_schema() {

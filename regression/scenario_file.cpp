@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "control/registration/pattern.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/file/read_file.h"
 #include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
@@ -253,7 +253,7 @@ Scenario read_file_of(const fs::path& word) {
 }  // namespace
 
 Scenario load_scenario(const fs::path& word) {
-  return *kept<Scenario>(word.string(), [&] { return read_file_of(word); });
+  return *cached<Scenario>(word.string(), [&] { return read_file_of(word); });
 }
 
 MapSchema scenario_schema() {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/units.h"
 #include "sim/as_built/as_built.h"
 #include "sim/collision/collision.h"
@@ -46,7 +46,7 @@ void check_home(const std::string& path, const std::shared_ptr<const geometry::M
 std::shared_ptr<const geometry::Mesh> read_fixture(const std::string& path,
                                                    const machine::MachineDescription& machine) {
   // It builds its tree of triangles when it is first asked, for whoever shares it.
-  auto mesh = *kept<std::shared_ptr<const geometry::Mesh>>(path, [&] { return geometry::read_stl(path); });
+  auto mesh = *cached<std::shared_ptr<const geometry::Mesh>>(path, [&] { return geometry::read_stl(path); });
   check_table(path, *mesh);
   check_home(path, mesh, machine);
   return mesh;

@@ -8,7 +8,7 @@
 #include "control/registration/moved_program.h"
 #include "control/registration/part_pose_file.h"
 #include "core/error.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/units.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/findings/process_check.h"
@@ -64,7 +64,7 @@ void believe_part_pose(const RehearsalRequest& request, TwinSetup& setup) {
                                    what, told, actual));
   };
   check("machine file", pose.machine_sha256, setup.machine.sha256);
-  check("part", pose.part_sha256, kept_sha256(machine::find_fixture(request.fixture)));
+  check("part", pose.part_sha256, cached_sha256(machine::find_fixture(request.fixture)));
   setup.program = control::moved_program(setup.program, pose.X_W);
   setup.part = control::moved_part(*setup.part, pose.X_W);
 }

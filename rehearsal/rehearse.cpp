@@ -9,7 +9,7 @@
 
 #include "core/assert.h"
 #include "core/error.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/file/read_file.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -67,7 +67,7 @@ Record describe_run(const RehearsalRequest& request, const TwinSetup& setup, con
                        request.seed, setup.as_built.source, request.command};
   record.provenance.inputs_sha256 = inputs_sha256(request, setup.program.sha256);
   if (!request.fixture.empty())
-    record.provenance.fixture_sha256 = kept_sha256(machine::find_fixture(request.fixture));
+    record.provenance.fixture_sha256 = cached_sha256(machine::find_fixture(request.fixture));
   record.provenance.libraries = library_versions();
   for (const sim::FaultEvent& event : setup.faults)
     record.provenance.faults.push_back(describe(event, setup.machine));

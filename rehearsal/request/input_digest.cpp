@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "core/digest.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/version.h"
 #include "core/yaml/changed_file.h"
 #include "machine/description.h"
@@ -32,7 +32,7 @@ class Inputs {
     word(key, line);
   }
   void bytes_of(std::string_view key, const std::filesystem::path& path) {
-    word(key, path.empty() ? "" : kept_sha256(path));
+    word(key, path.empty() ? "" : cached_sha256(path));
   }
   void machine(std::string_view key, const std::string& name) {
     word(key, name.empty() ? "" : machine::load_machine(name).sha256);

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "core/digest.h"
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/file/read_file.h"
 #include "core/version.h"
 #include "core/yaml/changed_file.h"
@@ -207,7 +207,7 @@ std::string RunInputs::inputs_sha256() {
                                  campaign_.seed_first, campaign_.seed_last, to_string(campaign_.plan));
   for (const std::string& word : campaign_.scenarios) {
     const regression::Scenario scenario = regression::load_scenario(word);
-    text += kept_sha256(scenario.file) + "\n";
+    text += cached_sha256(scenario.file) + "\n";
     rehearsal::RehearsalRequest request = regression::request_of(scenario);
     text +=
         rehearsal::inputs_sha256(request, scenario.plan.empty() ? "" : tools_.plan_sha256(scenario)) + "\n";

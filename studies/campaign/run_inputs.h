@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 #include "core/file/scratch_folder.h"
 #include "regression/scenario.h"
 #include "rehearsal/record.h"
@@ -64,7 +64,7 @@ class RunInputs {
 
   const Campaign& campaign_;
   CampaignTools tools_;
-  KeptFiles kept_files_;
+  FileCacheScope file_cache_;
   std::vector<std::string> names_;
   std::optional<ScratchFolder> scratch_;                  // from the first plan on
   std::map<std::string, std::filesystem::path> planned_;  // by what it is made from

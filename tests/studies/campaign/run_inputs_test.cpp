@@ -13,7 +13,7 @@
 namespace understudy::studies {
 namespace {
 
-class KeptInputs : public testing::Test {
+class CachedInputs : public testing::Test {
  protected:
   void SetUp() override {
     copy("machine.yaml", machine::find_model("hexapod"));
@@ -41,7 +41,7 @@ class KeptInputs : public testing::Test {
   Campaign campaign_;
 };
 
-TEST_F(KeptInputs, AreReadOnceForAllRuns) {
+TEST_F(CachedInputs, AreReadOnceForAllRuns) {
   const RunPlan plan(campaign_);
   RunInputs inputs(campaign_, tools());
   const RunRow first = inputs.rehearse(plan.run(0));
@@ -53,7 +53,7 @@ TEST_F(KeptInputs, AreReadOnceForAllRuns) {
   EXPECT_EQ(again.summary_sha256, first.summary_sha256);
 }
 
-TEST_F(KeptInputs, AreReadAgainByTheNextCampaign) {
+TEST_F(CachedInputs, AreReadAgainByTheNextCampaign) {
   { RunInputs(campaign_, tools()).rehearse(RunPlan(campaign_).run(0)); }
   write_file(folder_ / "machine.yaml", "spoilt: [");
   const RunRow row = RunInputs(campaign_, tools()).rehearse(RunPlan(campaign_).run(0));

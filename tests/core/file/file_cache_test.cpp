@@ -1,4 +1,4 @@
-#include "core/file/kept_files.h"
+#include "core/file/file_cache.h"
 
 #include <optional>
 #include <string>
@@ -15,10 +15,10 @@
 namespace understudy {
 namespace {
 
-class KeptText : public testing::Test {
+class CachedText : public testing::Test {
  protected:
   std::string text(const std::string& word) {
-    return *kept<std::string>(word, [&] {
+    return *cached<std::string>(word, [&] {
       ++reads_;
       return read_file(folder_ / word);
     });
@@ -30,19 +30,19 @@ class KeptText : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(KeptText, IsReadAgainWhereNobodyKeepsFiles) {
+TEST_F(CachedText, IsReadAgainWhereNobodyKeepsFiles) {
   write("a", "old");
   EXPECT_EQ(text("a"), "old");
   write("a", "new");
   EXPECT_EQ(text("a"), "new");
 }
 
-TEST_F(KeptText, IsReadOnceUntilTheLastKeeperGoes) {
+TEST_F(CachedText, IsReadOnceUntilTheLastKeeperGoes) {
   write("a", "old");
   {
-    std::optional<KeptFiles> first{std::in_place};
+    std::optional<FileCacheScope> first{std::in_place};
     EXPECT_EQ(text("a"), "old");
-    const KeptFiles second;
+    const FileCacheScope second;
     first.reset();
     write("a", "new");
     EXPECT_EQ(text("a"), "old");
@@ -51,24 +51,24 @@ TEST_F(KeptText, IsReadOnceUntilTheLastKeeperGoes) {
   EXPECT_EQ(text("a"), "new");
 }
 
-TEST_F(KeptText, IsToldByItsType) {
-  const KeptFiles keeper;
+TEST_F(CachedText, IsToldByItsType) {
+  const FileCacheScope keeper;
   write("1", "text");
   text("1");
-  EXPECT_EQ(*kept<int>("1", [] { return 7; }), 7);
+  EXPECT_EQ(*cached<int>("1", [] { return 7; }), 7);
   EXPECT_EQ(text("1"), "text");
 }
 
-TEST_F(KeptText, IsNotKeptWhereItCouldNotBeRead) {
-  const KeptFiles keeper;
+TEST_F(CachedText, IsNotKeptWhereItCouldNotBeRead) {
+  const FileCacheScope keeper;
   EXPECT_THROW(text("a"), InputError);
   write("a", "there now");
   EXPECT_EQ(text("a"), "there now");
 }
 
-TEST_F(KeptText, MakesRoomForOthersWhenItWasAskedForLongestAgo) {
-  const KeptFiles keeper;
-  for (std::size_t i = 0; i < KeptFiles::kMost; ++i) {
+TEST_F(CachedText, MakesRoomForOthersWhenItWasAskedForLongestAgo) {
+  const FileCacheScope keeper;
+  for (std::size_t i = 0; i < FileCacheScope::kMost; ++i) {
     write(std::to_string(i), "");
     text(std::to_string(i));
   }
@@ -83,20 +83,20 @@ TEST_F(KeptText, MakesRoomForOthersWhenItWasAskedForLongestAgo) {
   EXPECT_EQ(reads_, 1);
 }
 
-TEST(KeptDigest, IsThatOfTheBytesThatWereRead) {
+TEST(CachedDigest, IsThatOfTheBytesThatWereRead) {
   const TemporaryFolder folder;
   write_file(folder / "a", "old");
-  const std::string old = kept_sha256(folder / "a");
-  const KeptFiles keeper;
-  EXPECT_EQ(kept_sha256(folder / "a"), old);
+  const std::string old = cached_sha256(folder / "a");
+  const FileCacheScope keeper;
+  EXPECT_EQ(cached_sha256(folder / "a"), old);
   write_file(folder / "a", "new");
-  EXPECT_EQ(kept_sha256(folder / "a"), old);
+  EXPECT_EQ(cached_sha256(folder / "a"), old);
 }
 
-TEST_F(KeptText, IsOneForAllThreads) {
-  const KeptFiles keeper;
+TEST_F(CachedText, IsOneForAllThreads) {
+  const FileCacheScope keeper;
   std::vector<std::shared_ptr<const int>> seen(100);
-  in_parallel(seen.size(), 4, [&](std::size_t i) { seen[i] = kept<int>("a", [] { return 7; }); });
+  in_parallel(seen.size(), 4, [&](std::size_t i) { seen[i] = cached<int>("a", [] { return 7; }); });
   for (const auto& value : seen) EXPECT_EQ(value, seen.front());
 }
 
