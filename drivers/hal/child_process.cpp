@@ -97,14 +97,15 @@ bool ChildProcess::ended_within(milliseconds time) {
   return true;
 }
 
-void ChildProcess::end(milliseconds patience) {
+bool ChildProcess::end(milliseconds patience) {
   input.close();
-  if (pid_ < 0 || ended_within(patience)) return;
+  if (pid_ < 0 || ended_within(patience)) return true;
   const pid_t group = -pid_;
   ::kill(group, SIGTERM);
-  if (ended_within(milliseconds(1000))) return;
+  if (ended_within(milliseconds(1000))) return false;
   ::kill(group, SIGKILL);
   static_cast<void>(ended_within(milliseconds(1000)));
+  return false;
 }
 
 std::string answer_of(const std::vector<std::string>& words, milliseconds time) {

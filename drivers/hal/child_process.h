@@ -32,8 +32,9 @@ class ChildProcess {
   Descriptor input, output;  ///< ours; not blocking
   bool running();
   int status() const { return status_; }  ///< of waitpid(), once it has ended
-  /// Waits that long, then asks its group by SIGTERM, a second later kills it.
-  void end(std::chrono::milliseconds patience);
+  /// Waits that long, then asks its group by SIGTERM, a second later kills it. False: it did not end by
+  /// itself.
+  bool end(std::chrono::milliseconds patience);
 
  private:
   bool ended_within(std::chrono::milliseconds time);

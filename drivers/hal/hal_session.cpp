@@ -3,9 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/file.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 #include <array>
 #include <cerrno>
@@ -31,13 +29,7 @@ constexpr milliseconds kStartPatience{15000};
 constexpr milliseconds kAnswerPatience{5000};
 constexpr int kPipeBytes = 1 << 20;
 
-std::string signal_name(const HalSettings& settings) { return "understudy-" + settings.fingerprint; }
-
-/// rtapi_app refuses to stay root, and puts its socket into $HOME where nothing else is said.
-void prepare_environment() {
-  if (::geteuid() == 0) ::setenv("RTAPI_UID", "65534", 0);
-  ::setenv("RTAPI_FIFO_PATH", fmt::format("/tmp/understudy-rtapi-{}", ::getuid()).c_str(), 0);
-}
+std::string signal_name(const HalSettings& settings) { return kHalSignal + settings.fingerprint; }
 
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -59,22 +51,6 @@ void check_folder(const HalSettings& settings, const std::string& folder) {
         file.string(), signal_name(settings), settings.machine, folder));
 }
 
-/// What HAL says of a line that it does not take, "pins.hal:9: Pin 'x' does not exist"; empty: of none.
-std::string wrong_line(const std::string& log) {
-  const std::size_t place = log.find(".hal:");
-  if (place == std::string::npos) return {};
-  const std::size_t begin = log.rfind(';', place);
-  return log.substr(begin == std::string::npos ? 0 : begin + 1, log.find(';', place) - begin - 1);
-}
-
-/// Names of the configurations that run: one, or none.
-std::string running_configuration() {
-  std::istringstream lines(answer_of({"halcmd", "-s", "show", "sig"}, kAnswerPatience));
-  for (std::string word; lines >> word;)
-    if (word.starts_with("understudy-")) return word;
-  return {};
-}
-
 }  // namespace
 
 HalSession::HalSession(const HalSettings& settings, const std::string& folder) : settings_(settings) {
@@ -88,12 +64,13 @@ HalSession::HalSession(const HalSettings& settings, const std::string& folder) :
 
 void HalSession::open(const std::string& folder) {
   if (!folder.empty()) check_folder(settings_, folder);
-  prepare_environment();
+  set_hal_environment();
   hold_lock();
   if (folder.empty())
     check_running();
   else
-    start(folder);
+    hal_ = std::make_unique<HalProcess>(folder, signal_name(settings_),
+                                        1 + settings_.options.watchdog + settings_.brake_time);
   open_streams();
   skip_old_samples();
 }
@@ -108,8 +85,7 @@ void HalSession::close() {
   if (!hal_) return;
   std::this_thread::sleep_for(
       std::chrono::duration<double>(settings_.options.watchdog + settings_.brake_time));
-  if (guard_) guard_->end(milliseconds(0));
-  hal_->end(milliseconds(5000));
+  hal_->end();
 }
 
 void HalSession::hold_lock() {
@@ -120,44 +96,8 @@ void HalSession::hold_lock() {
         fmt::format("HAL is held by another run of this program ({}): one may print at a time", kLock));
 }
 
-void HalSession::start(const std::string& folder) {
-  if (const std::string running = running_configuration(); !running.empty())
-    throw MachineError(fmt::format(
-        "HAL runs already, with the configuration {}: end it, or print on it by hal://", running));
-  log_ = Descriptor(::memfd_create("understudy-hal", MFD_CLOEXEC));
-  ChildStreams streams;
-  streams.input = true;
-  streams.log = log_.get();
-  hal_ = std::make_unique<ChildProcess>(std::vector<std::string>{"halrun", "-I", "-f", "machine.hal"}, folder,
-                                        streams, false);
-  // HAL ends when nobody holds its standard input open. The guard does for as long as the watchdog needs.
-  std::array<int, 2> life{};
-  if (::pipe2(life.data(), O_CLOEXEC) != 0) throw MachineError("no pipe could be made to HAL's guard");
-  const Descriptor seen(life[0]);
-  life_ = Descriptor(life[1]);
-  const double linger = 1 + settings_.options.watchdog + settings_.brake_time;
-  ChildStreams guarding;
-  guarding.log = hal_->input.get();  // held open, never written to: its programs print nothing
-  guarding.inherited = seen.get();
-  guard_ = std::make_unique<ChildProcess>(
-      std::vector<std::string>{"sh", "-c", fmt::format("cat <&3 >/dev/null 2>&1; sleep {:.3f}", linger)}, "",
-      guarding, false);
-  const auto until = Clock::now() + kStartPatience;
-  while (running_configuration() != signal_name(settings_)) {
-    if (!hal_->running() && WEXITSTATUS(hal_->status()) == 127)
-      throw MachineError("halrun is not installed: apt-get install linuxcnc-uspace");
-    if (!hal_->running())
-      throw MachineError(
-          fmt::format("halrun ended with status {}: {}", WEXITSTATUS(hal_->status()), log_text()));
-    if (const std::string wrong = wrong_line(log_text()); !wrong.empty())
-      throw InputError(fmt::format("hal://{}: HAL refuses {}", folder, wrong));
-    if (Clock::now() > until) throw MachineError("HAL does not start: " + log_text());
-    std::this_thread::sleep_for(milliseconds(20));
-  }
-}
-
 void HalSession::check_running() const {
-  const std::string running = running_configuration();
+  const std::string running = running_hal();
   if (running.empty())
     throw MachineError(fmt::format(
         "hal://: HAL does not run with a configuration of this program; start it by "
@@ -238,14 +178,5 @@ bool HalSession::exchange(std::vector<HalSample>& samples, milliseconds time) {
 }
 
 void open_latch() { static_cast<void>(answer_of({"halcmd", "sets", "software-stop", "1"}, kAnswerPatience)); }
-
-std::string HalSession::log_text() const {
-  std::string text(4000, '\0');
-  const ssize_t n = ::pread(log_.get(), text.data(), text.size(), 0);
-  text.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
-  for (char& c : text)
-    if (c == '\n') c = ';';
-  return text.empty() ? "it said nothing" : text;
-}
 
 }  // namespace understudy::drivers

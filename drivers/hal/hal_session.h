@@ -9,6 +9,7 @@
 
 #include "core/file/descriptor.h"
 #include "drivers/hal/child_process.h"
+#include "drivers/hal/hal_process.h"
 #include "drivers/hal/hal_row.h"
 
 namespace understudy::drivers {
@@ -31,17 +32,13 @@ class HalSession {
   void open(const std::string& folder);
   void close();
   void hold_lock();
-  void start(const std::string& folder);
   void check_running() const;
   void open_streams();
   void skip_old_samples();
-  std::string log_text() const;
 
   const HalSettings settings_;
-  Descriptor lock_, log_;
-  Descriptor life_;                      ///< closes with us: the guard's sign that we have died
-  std::unique_ptr<ChildProcess> hal_;    ///< halrun, where we started it
-  std::unique_ptr<ChildProcess> guard_;  ///< keeps HAL alive long enough to stop the machine after our death
+  Descriptor lock_;
+  std::unique_ptr<HalProcess> hal_;  ///< where we started it
   std::unique_ptr<ChildProcess> streamer_, sampler_;
   std::string outgoing_, incoming_;
 };
