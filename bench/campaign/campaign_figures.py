@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What campaigns cost, measured on this machine.
 
-workers   the bottle's line on N machines with 1 and with 2 workers: wall time, ratio, agreement of the tables
+workers   the bottle's line on N machines with 1 and with 2 workers: wall time, ratio, agreement of the tables; and the
+          same N machines twice at once, by two commands that share nothing: the ratio that this computer can reach
 overhead  cheap runs: wall time beyond the runs' own, per run; bytes of a row; merging
 model     from `overhead`: a million runs on a thousand processors
 
@@ -14,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -44,8 +46,11 @@ def workers(program, folder, runs, engine):
         f"  - {{key: scenario.engine, values: [{engine}]}}\nmetrics: [gap.start_mm]\n")
     one = campaign(program, folder, "bottle", "one", 1)
     two = campaign(program, folder, "bottle", "two", 2)
+    with ThreadPoolExecutor(2) as pool:
+        apart = list(pool.map(lambda out: campaign(program, folder, "bottle", out, 1), ("apart-1", "apart-2")))
+    limit = 2 * one["wall"] / max(a["wall"] for a in apart)
     print(f"bottle, {engine}, {runs} machines: 1 worker {one['wall']:.1f} s ({one['cpu']:.1f} s of processor), "
-          f"2 workers {two['wall']:.1f} s ({two['cpu']:.1f} s); ratio {one['wall'] / two['wall']:.2f}; "
+          f"2 workers {two['wall']:.1f} s ({two['cpu']:.1f} s); ratio {one['wall'] / two['wall']:.2f}, of two separate commands {limit:.2f}; "
           f"tables {'equal' if same(folder, 'one', 'two') else 'DIFFER'}")
 
 

@@ -91,12 +91,11 @@ Stop stop_in(const std::vector<std::vector<double>>& samples, std::size_t begin,
 
 /// Until the recorder has seen the machine move, and stop if `stopped`: the lead, the watchdog, the brake,
 /// and what the samplers are behind, up to ten seconds.
-Stop wait_for(bool stopped, HalRecorder& recorder, std::size_t begin, std::size_t axes,
-              std::vector<std::vector<double>>& samples) {
+Stop wait_for(bool stopped, HalRecorder& recorder, std::size_t begin, std::size_t axes) {
   Stop stop;
   for (int k = 0; k < 100 && !(stop.moved && (stop.stopped || !stopped)); ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    samples = recorder.so_far();
+    const auto& samples = recorder.so_far();
     if (samples.size() > begin) stop = stop_in(samples, begin, axes);
   }
   return stop;
@@ -141,19 +140,18 @@ void kill_and_see(int times, unsigned seed) {
   std::mt19937 random(seed);
   int worst_starved = 0, deepest = 0, kills = 0, ended = 0;
   std::size_t begin = 0;
-  std::vector<std::vector<double>> samples;
   while (kills < times) {
     const Victim victim = start_victim(hal, home);
     ASSERT_GE(victim.pid, 0);
     // The first setpoints may still be on their way: a machine that never began to move cannot be stopped.
     if (victim.prints) {
-      wait_for(false, recorder, begin, axes, samples);
+      wait_for(false, recorder, begin, axes);
       std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution(20, 600)(random)));
     }
     int status = 0;
     const bool was_killed = kill_victim(victim, status);
-    const Stop stop = wait_for(true, recorder, begin, axes, samples);
-    begin = samples.empty() ? 0 : samples.size() - 1;
+    const Stop stop = wait_for(true, recorder, begin, axes);
+    begin = std::max<std::size_t>(recorder.so_far().size(), 1) - 1;
     if (!was_killed) {
       // A controller that a busy computer held up for longer than its lead has stopped the machine by itself.
       ASSERT_LE(++ended, 2 + times / 10) << "controllers ended before they were killed, the last with status "

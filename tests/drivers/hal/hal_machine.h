@@ -120,22 +120,24 @@ class HalRecorder {
     sampler_.end(std::chrono::milliseconds(0));
     return so_far();
   }
-  /// Whole lines of the file while it grows.
-  std::vector<std::vector<double>> so_far() const {
-    std::vector<std::vector<double>> all;
+  /// Whole lines of the file while it grows; only those that have come since the last call are read.
+  const std::vector<std::vector<double>>& so_far() {
     std::ifstream in(file_);
-    for (std::string line; std::getline(in, line) && !in.eof();) {
+    in.seekg(read_);
+    for (std::string line; std::getline(in, line) && !in.eof(); read_ = in.tellg()) {
       EXPECT_NE(line, "overrun") << "the recorder was late";
       if (line == "overrun") continue;
       std::istringstream words(line);
-      all.emplace_back(std::istream_iterator<double>(words), std::istream_iterator<double>());
+      samples_.emplace_back(std::istream_iterator<double>(words), std::istream_iterator<double>());
     }
-    return all;
+    return samples_;
   }
 
  private:
   std::string file_;
   ChildProcess sampler_;
+  std::streamoff read_ = 0;
+  std::vector<std::vector<double>> samples_;
 };
 
 }  // namespace understudy::drivers
