@@ -192,6 +192,7 @@ TEST(HalKill, AHalThatThePortStartedIsGoneAfterItsControllerIsKilled) {
   ASSERT_GE(victim, 0);
   if (victim == 0) {
     const auto port = hal.open(kVictimLead);
+    if (port->state().fault != machine::Fault::none) ::_exit(3);
     const char ready = 'r';
     if (::write(told[1], &ready, 1) != 1) ::_exit(4);
     for (;;) ::pause();
