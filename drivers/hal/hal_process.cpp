@@ -19,7 +19,6 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds kAnswerPatience{5000};
 constexpr milliseconds kLoadPatience{10000};   // for one attempt; a second is usual
 constexpr milliseconds kStartPatience{15000};  // for the last attempt to begin
 // halrun unloads all components, and then gives its realtime process five seconds to end.

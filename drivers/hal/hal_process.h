@@ -46,6 +46,8 @@ class HalProcess {
   std::unique_ptr<ChildProcess> guard_;  ///< keeps HAL alive for `linger` after our death
 };
 
+inline constexpr std::chrono::milliseconds kAnswerPatience{5000};  ///< for one call of halcmd
+
 /// Where HAL's programs find each other; once before any of them is called.
 void set_hal_environment();
 

@@ -26,7 +26,6 @@ using Clock = std::chrono::steady_clock;
 // One HAL runs on a computer, whoever started it.
 constexpr const char* kLock = "/tmp/understudy-hal.lock";
 constexpr milliseconds kStartPatience{15000};
-constexpr milliseconds kAnswerPatience{5000};
 constexpr int kPipeBytes = 1 << 20;
 
 std::string signal_name(const HalSettings& settings) { return kHalSignal + settings.fingerprint; }

@@ -78,8 +78,7 @@ void expect_loads(const std::string& name) {
       std::filesystem::path(testing::TempDir()) / ("hal-files-" + name.substr(0, name.find('{')));
   std::filesystem::create_directories(folder);
   for (const HalFile& f : hal_files(s)) std::ofstream(folder / f.name) << f.text;
-  ::setenv("RTAPI_UID", "65534", 0);
-  ::setenv("RTAPI_FIFO_PATH", ("/tmp/understudy-rtapi-" + std::to_string(::getuid())).c_str(), 0);
+  set_hal_environment();
   const std::string said =
       answer_of({"sh", "-c",
                  "cd '" + folder.string() +
