@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/interrupt.h"
+#include "core/thread_limit.h"
 
 namespace understudy {
 namespace {
@@ -60,7 +61,8 @@ void in_parallel_with(std::size_t count, int threads, const std::function<Indexe
   };
   {
     std::vector<std::jthread> others;
-    const std::size_t wanted = std::min(count, static_cast<std::size_t>(std::max(1, threads)));
+    const std::size_t wanted =
+        std::min(count, static_cast<std::size_t>(std::clamp(threads, 1, thread_limit())));
     for (std::size_t i = 1; i < wanted; ++i) others.emplace_back(run);
     run();
   }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "sim/distance/gjk.h"
+#include "sim/distance/supporting_plane.h"
 
 namespace understudy::sim {
 namespace {
@@ -72,6 +73,11 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
     return distance - (X_WS.linear() * away).cwiseAbs().dot(n.half) / distance;
   };
   Separation best{kInfinity, Vec3::Zero()};
+  // Behind a plane between the solid and the best triangle lies all of a bulging part.
+  SupportingPlane plane;
+  const auto behind = [&](int node) {
+    return plane.bound(nodes_[node].centre, nodes_[node].half) >= best.distance;
+  };
   struct Entry {
     int node;
     double bound;
@@ -81,21 +87,27 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
   stack[size++] = {0, bound(0)};
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (entry.bound >= best.distance) continue;
+    if (entry.bound >= best.distance || behind(entry.node)) continue;
     const Node& node = nodes_[entry.node];
     if (node.count == 0) {
-      Entry near{node.first, bound(node.first)}, far{node.first + 1, bound(node.first + 1)};
-      if (far.bound < near.bound) std::swap(near, far);
-      stack[size++] = far;
-      stack[size++] = near;
+      std::array<Entry, 2> children{{{node.first, kInfinity}, {node.first + 1, kInfinity}}};
+      for (Entry& child : children)
+        if (!behind(child.node)) child.bound = bound(child.node);
+      if (children[0].bound < children[1].bound) std::swap(children[0], children[1]);
+      for (const Entry& child : children) stack[size++] = child;
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
       const auto& t = mesh_->triangles()[order_[i]];
+      const auto& v = mesh_->vertices();
+      const Triangle corners_W{v[t[0]], v[t[1]], v[t[2]]};
+      if (plane.bound(corners_W) >= best.distance) continue;
       Triangle corners;
-      for (std::size_t k = 0; k < 3; ++k) corners[k] = X_SW * mesh_->vertices()[t[k]];
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = X_SW * corners_W[k];
       const GjkResult result = distance_to_triangle(core, corners, best.distance);
-      if (result.distance < best.distance) best = {result.distance, X_WS * result.on_other};
+      if (!(result.distance < best.distance)) continue;
+      best = {result.distance, X_WS * result.on_other};
+      plane = supporting_plane(core, X_WS, result.on_other);
     }
   }
   return best;

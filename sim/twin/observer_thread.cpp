@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/thread_limit.h"
 
 namespace understudy::sim {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::size_t kBatchesWaiting = 16;
 
 ObserverThread::ObserverThread(std::vector<Observer*> observers) : observers_(std::move(observers)) {
   filling_.reserve(kBatch);
-  thread_ = std::thread([this] { work(); });
+  if (thread_limit() > 1) thread_ = std::thread([this] { work(); });
 }
 
 ObserverThread::~ObserverThread() {
@@ -23,7 +24,7 @@ ObserverThread::~ObserverThread() {
     done_ = true;
   }
   changed_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void ObserverThread::observe(const Snapshot& snapshot) {
@@ -36,6 +37,11 @@ void ObserverThread::observe(const Snapshot& snapshot) {
 }
 
 void ObserverThread::hand_over() {
+  if (!thread_.joinable()) {
+    if (failure_.empty()) failure_ = show(filling_);
+    filling_.clear();
+    return;
+  }
   waiting_.push_back(std::move(filling_));
   filling_ = spare_.empty() ? Batch() : std::move(spare_.back());
   if (!spare_.empty()) spare_.pop_back();
@@ -55,6 +61,17 @@ void ObserverThread::throw_failure() const {
   if (!failure_.empty()) throw MachineError("an observer of the run failed: " + failure_);
 }
 
+/// The failure of one of them, which ends it; empty when all have seen everything.
+std::string ObserverThread::show(const Batch& batch) const {
+  try {
+    for (const Snapshot& snapshot : batch)
+      for (Observer* observer : observers_) observer->observe(snapshot);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
 // After a failure the rest is taken off unseen: every later call of the other side says why.
 void ObserverThread::work() {
   std::unique_lock lock(mutex_);
@@ -66,16 +83,9 @@ void ObserverThread::work() {
     busy_ = true;
     const bool failed = !failure_.empty();
     lock.unlock();
-    std::string failure;
-    try {
-      if (!failed)
-        for (const Snapshot& snapshot : batch)
-          for (Observer* observer : observers_) observer->observe(snapshot);
-    } catch (const std::exception& error) {
-      failure = error.what();
-    }
+    std::string failure = failed ? std::string() : show(batch);
     lock.lock();
-    if (!failure.empty() && failure_.empty()) failure_ = std::move(failure);
+    if (!failed) failure_ = std::move(failure);
     busy_ = false;
     spare_.push_back(std::move(batch));
     changed_.notify_all();

@@ -1,4 +1,5 @@
 // Observers on a thread of their own, so that the machine is simulated on one core and watched on the other.
+// In a process that may have one thread alone (core/thread_limit.h) they are called on that.
 #pragma once
 
 #include <condition_variable>
@@ -27,6 +28,7 @@ class ObserverThread : public Observer {
 
  private:
   using Batch = std::vector<Snapshot>;
+  std::string show(const Batch& batch) const;
   void hand_over();
   void work();
   void throw_failure() const;

@@ -25,6 +25,8 @@
 #include "core/error.h"
 #include "core/file/descriptor.h"
 #include "core/interrupt.h"
+#include "core/thread_limit.h"
+#include "renderer/drawing_threads.h"
 
 namespace understudy::cli {
 namespace {
@@ -237,6 +239,9 @@ void LocalWorkers::run(const std::vector<std::uint64_t>& runs, const studies::Ru
 int run_campaign_worker(const CampaignFolder& folder, const std::string& part, const studies::RunPlan& plan,
                         studies::RunInputs& inputs) {
   end_with_parent();
+  // As many workers as processors are there: more threads would wait for each other.
+  limit_threads(1);
+  renderer::draw_on_calling_thread();
   folder.check();
   studies::ResultStore store(folder.part(part), folder.header());
   for (std::uint64_t index = 0; std::cin >> index;) {

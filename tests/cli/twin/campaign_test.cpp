@@ -112,15 +112,41 @@ std::vector<pid_t> children_of(pid_t parent) {
   return children;
 }
 
+/// A campaign in the background.
+pid_t start(const std::string& campaign, const char* workers, const std::string& out) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  ::execl(UNDERSTUDY_PROGRAM, "understudy", "campaign", campaign.c_str(), "--workers", workers, "--out",
+          out.c_str(), nullptr);
+  ::_exit(127);
+}
+
+// With gap control, so that it draws pictures and reads them.
+TEST_F(ExtendedCampaign, AWorkerHasOneThread) {
+  folder_.write("bottle.yaml", "name: bottle\nscenarios: ['" UNDERSTUDY_SOURCE_DIR
+                               "/scenarios/song-bottle.yaml']\nseeds: 1-2\nparameters:\n"
+                               "  - {key: scenario.engine, values: [quasistatic]}\n");
+  const pid_t campaign = start(at("bottle.yaml"), "1", at("out"));
+  std::size_t most = 0;
+  int looks = 0, status = 0;
+  while (::waitpid(campaign, &status, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    for (const pid_t worker : children_of(campaign)) {
+      std::error_code ended;
+      const fs::directory_iterator threads("/proc/" + std::to_string(worker) + "/task", ended);
+      most = std::max(most, static_cast<std::size_t>(std::distance(fs::begin(threads), fs::end(threads))));
+      ++looks;
+    }
+  }
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_GT(looks, 20);
+  EXPECT_EQ(most, 1u);
+}
+
 TEST_F(ExtendedCampaign, AWorkerThatIsKilledLosesNothing) {
   write("long", "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\n", "1-40");
   ASSERT_EQ(run(at("long.yaml") + " --workers 2 --out " + at("whole")).status, 0);
-  const pid_t campaign = ::fork();
-  if (campaign == 0) {
-    ::execl(UNDERSTUDY_PROGRAM, "understudy", "campaign", at("long.yaml").c_str(), "--workers", "2", "--out",
-            at("killed").c_str(), nullptr);
-    ::_exit(127);
-  }
+  const pid_t campaign = start(at("long.yaml"), "2", at("killed"));
   Random random(1, "kills");
   int kills = 0, status = 0;
   while (::waitpid(campaign, &status, WNOHANG) == 0) {

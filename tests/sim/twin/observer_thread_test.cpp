@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "core/error.h"
+#include "core/thread_limit.h"
 
 namespace understudy::sim {
 namespace {
@@ -15,8 +19,10 @@ class Recorder : public Observer {
   void observe(const Snapshot& s) override {
     if (s.time == fail_at) throw std::runtime_error("cannot see this");
     times.push_back(s.time);
+    threads.insert(std::this_thread::get_id());
   }
   std::vector<double> times;
+  std::set<std::thread::id> threads;
   double fail_at = -1;
 };
 
@@ -49,7 +55,7 @@ TEST(ObserverThread, AfterDrainNothingIsOnItsWay) {
   }
 }
 
-TEST(ObserverThread, AnObserverThatFailsEndsTheRun) {
+void fail_at_the_seventh() {
   Recorder recorder;
   recorder.fail_at = 7;
   ObserverThread thread({&recorder});
@@ -63,6 +69,29 @@ TEST(ObserverThread, AnObserverThatFailsEndsTheRun) {
   EXPECT_THROW(thread.drain(), MachineError);
   EXPECT_EQ(recorder.times.size(), 7u);
 }
+
+TEST(ObserverThread, AnObserverThatFailsEndsTheRun) { fail_at_the_seventh(); }
+
+class ObserverThreadOfOne : public testing::Test {
+ protected:
+  ObserverThreadOfOne() { limit_threads(1); }
+  ~ObserverThreadOfOne() override { limit_threads(std::numeric_limits<int>::max()); }
+};
+
+TEST_F(ObserverThreadOfOne, CallsOnTheThreadOfTheRun) {
+  Recorder recorder;
+  ObserverThread thread({&recorder});
+  std::vector<double> expected;
+  for (int k = 0; k < 1000; ++k) {
+    thread.observe(at_time(k));
+    expected.push_back(k);
+  }
+  thread.drain();
+  EXPECT_EQ(recorder.times, expected);
+  EXPECT_EQ(recorder.threads, std::set{std::this_thread::get_id()});
+}
+
+TEST_F(ObserverThreadOfOne, AnObserverThatFailsEndsTheRun) { fail_at_the_seventh(); }
 
 TEST(ObserverThread, EndsWithoutDrain) {
   Recorder recorder;
