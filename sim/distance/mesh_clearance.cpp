@@ -73,7 +73,7 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
     return distance - (X_WS.linear() * away).cwiseAbs().dot(n.half) / distance;
   };
   Separation best{kInfinity, Vec3::Zero()};
-  // Behind a plane between the solid and the best triangle lies all of a bulging part.
+  // A plane between the solid and the nearest triangle so far: all of a bulging part lies behind it.
   SupportingPlane plane;
   const auto behind = [&](int node) {
     return plane.bound(nodes_[node].centre, nodes_[node].half) >= best.distance;
@@ -93,7 +93,7 @@ Separation MeshClearance::search(const Core& core, const Pose& X_WS) const {
       std::array<Entry, 2> children{{{node.first, kInfinity}, {node.first + 1, kInfinity}}};
       for (Entry& child : children)
         if (!behind(child.node)) child.bound = bound(child.node);
-      if (children[0].bound < children[1].bound) std::swap(children[0], children[1]);
+      if (children[0].bound <= children[1].bound) std::swap(children[0], children[1]);
       for (const Entry& child : children) stack[size++] = child;
       continue;
     }

@@ -16,6 +16,7 @@ struct SupportingPlane {
   Vec3 normal{0, 0, 0};  ///< unit
   double offset = std::numeric_limits<double>::infinity();
 
+  /// Of a triangle.
   double bound(const std::array<Vec3, 3>& corners) const {
     return std::min({normal.dot(corners[0]), normal.dot(corners[1]), normal.dot(corners[2])}) - offset;
   }
