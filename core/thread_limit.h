@@ -3,7 +3,8 @@
 
 namespace understudy {
 
-/// From now on at most `most` (1 or more) threads compute at once, the calling one among them. To be called
+/// From now on a call of in_parallel() (core/parallel.h) takes at most `most` (1 or more) threads, the
+/// calling one among them; with 1 no part of this process computes on a thread of its own. To be called
 /// before anything computes.
 void limit_threads(int most);
 

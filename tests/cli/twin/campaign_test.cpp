@@ -139,8 +139,9 @@ void add_ticks(pid_t process, Ticks& ticks) {
     std::getline(stat, text);
     std::istringstream fields(text.substr(text.rfind(')') + 1));
     const std::vector<std::string> words{std::istream_iterator<std::string>(fields), {}};
-    if (words.size() < 13) continue;                                                           // it has ended
-    ticks[std::stoi(thread.path().filename())] = std::stol(words[11]) + std::stol(words[12]);  // utime, stime
+    if (words.size() < 13) continue;  // it has ended
+    // utime and stime of proc(5)
+    ticks[std::stoi(thread.path().filename())] = std::stol(words[11]) + std::stol(words[12]);
   }
 }
 
@@ -152,6 +153,7 @@ TEST_F(ExtendedCampaign, AWorkerComputesOnOneThread) {
                                    "  - {key: scenario.engine, values: [quasistatic]}\n");
   const pid_t campaign = start(at("bottle.yaml"), "1", at("out"));
   std::map<pid_t, Ticks> workers;
+  long computed = 0;
   int status = 0;
   while (::waitpid(campaign, &status, WNOHANG) == 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -162,7 +164,9 @@ TEST_F(ExtendedCampaign, AWorkerComputesOnOneThread) {
     long others = 0;
     for (const auto& [thread, used] : ticks) others += thread == worker ? 0 : used;
     EXPECT_LE(20 * others, ticks[worker]) << others;
+    computed += ticks[worker];
   }
+  EXPECT_GT(computed, 20) << "no worker was seen at work";
 }
 
 TEST_F(ExtendedCampaign, AWorkerThatIsKilledLosesNothing) {

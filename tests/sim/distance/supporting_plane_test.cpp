@@ -12,7 +12,8 @@ namespace {
 const FrustumCore kNozzle{0.5e-3, 3.5e-3, 0, 12e-3};
 
 Pose random_pose(Random& random) {
-  return make_pose(exp_rotation(uniform_vec3(random, 2)), uniform_vec3(random, 20e-3));
+  const Mat3 R = exp_rotation(uniform_vec3(random, 2));
+  return make_pose(R, uniform_vec3(random, 20e-3));
 }
 
 // GJK knows nothing of the plane.
@@ -44,7 +45,7 @@ TEST(SupportingPlane, IsTheDistanceOfThePointThatItIsMadeFor) {
   Random random(2, "planes");
   for (int trial = 0; trial < 500; ++trial) {
     const Pose X_WS = random_pose(random);
-    const Vec3 p(20e-3 + random.uniform(0, 10e-3), random.uniform(-5e-3, 5e-3), random.uniform(-5e-3, 20e-3));
+    const Vec3 p = Vec3(25e-3, 0, 6e-3) + uniform_vec3(random, 5e-3);
     const double distance = (p - kNozzle.nearest(p)).norm();
     const Vec3 p_W = X_WS * p;
     EXPECT_NEAR(supporting_plane(kNozzle, X_WS, p).bound(p_W, Vec3::Zero()), distance, 1e-12);
