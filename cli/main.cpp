@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -42,18 +43,35 @@ int delivered(int status) {
 }
 
 /// CLI11 would only say that a sub-command is missing.
-void check_first_word(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  std::vector<std::string> known;
-  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return;
-  const std::vector<std::string> left_out = cli::left_out_commands();
-  if (std::find(left_out.begin(), left_out.end(), argv[1]) != left_out.end())
-    throw InputError(fmt::format("this build is without the twin: {} needs it", argv[1]));
-  const std::string nearest = nearest_word(std::string(argv[1]), known);
-  throw InputError(
-      fmt::format("unknown command '{}'{}", argv[1],
-                  nearest.empty() ? ": see understudy --help" : "; did you mean '" + nearest + "'?"));
+void check_commands(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* command = &app;
+  std::string words;  // those that name `command`
+  for (int i = 1; i < argc && argv[i][0] != '-' && command->get_require_subcommand_min() > 0; ++i) {
+    const std::vector<const CLI::App*> known = command->get_subcommands({});
+    const auto name_of = [](const CLI::App* sub) { return sub->get_name(); };
+    const auto named = std::ranges::find(known, argv[i], name_of);
+    if (named == known.end()) {
+      const std::vector<std::string> left_out = cli::left_out_commands();
+      if (i == 1 && std::ranges::find(left_out, argv[i]) != left_out.end())
+        throw InputError(fmt::format("this build is without the twin: {} needs it", argv[i]));
+      const std::string nearest = nearest_word(std::string(argv[i]), known | std::views::transform(name_of));
+      throw InputError(fmt::format("unknown command '{}{}'{}", words, argv[i],
+                                   nearest.empty() ? fmt::format(": see understudy {}--help", words)
+                                                   : fmt::format("; did you mean '{}{}'?", words, nearest)));
+    }
+    command = *named;
+    words += command->get_name() + " ";
+  }
+}
+
+/// The command with its sub-commands, as far as CLI11 has read them.
+std::string command_read(const CLI::App& app) {
+  std::string words = app.get_name();
+  for (const CLI::App* command = &app; !command->get_subcommands().empty();) {
+    command = command->get_subcommands().front();
+    words += " " + command->get_name();
+  }
+  return words;
 }
 
 std::string footer() {
@@ -85,13 +103,13 @@ int run(int argc, char** argv) {
   cli::add_drive(app, action);
   cli::add_post(app, action);
   cli::add_inspection(app, action);
-  check_first_word(app, argc, argv);
+  check_commands(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    return fail(cli::kBadInput, std::string(e.what()) + " (see understudy --help)");
+    return fail(cli::kBadInput, fmt::format("{} (see {} --help)", e.what(), command_read(app)));
   }
   return action ? action() : cli::kBadInput;
 }

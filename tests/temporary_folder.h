@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -18,8 +19,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder()
       : path_(std::filesystem::path(testing::TempDir()) /
-              fmt::format("understudy-{}-{}-{}", ::getpid(),
-                          testing::UnitTest::GetInstance()->current_test_info()->name(), count_++)) {
+              fmt::format("understudy-{}-{}-{}", ::getpid(), name_of_test(), count_++)) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
@@ -37,6 +37,13 @@ class TemporaryFolder {
   }
 
  private:
+  /// As the name of a file: a test with a parameter is called Test/Parameter.
+  static std::string name_of_test() {
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '-');
+    return name;
+  }
+
   static inline int count_ = 0;
   std::filesystem::path path_;
 };

@@ -94,7 +94,9 @@ void add_register(CLI::App& app, Action& action) {
       ->required();
   add_machine_option(*command, call->request.machine);
   add_registration_options(*command, call->request.registration);
-  command->add_option("--engine", call->request.engine, "plant: mujoco, bullet (hexapod, arm), quasistatic")
+  command
+      ->add_option("--engine", call->request.engine,
+                   "plant: mujoco, bullet (hexapods, and arms over a table that stands still), quasistatic")
       ->capture_default_str();
   command->add_option("--as-built", call->request.as_built,
                       "the machine and the part that stand there, as for `rehearse`");

@@ -86,7 +86,8 @@ void add_request(CLI::App& command, rehearsal::RehearsalRequest& request) {
       ->group("Programs of other machines");
   command
       .add_option("--engine", request.engine,
-                  "plant: mujoco (the reference), bullet (hexapod, arm), quasistatic (fast)")
+                  "plant: mujoco (the reference), bullet (hexapods, and arms over a table that stands "
+                  "still), quasistatic (fast)")
       ->capture_default_str();
   command
       .add_option("--fixture", request.fixture,

@@ -157,6 +157,23 @@ TEST(BadUsage, OneLineAndStatusTwo) {
   expect_refused("rehearse " + kBottleLine + " --seed -1" + rest, folder, {"seed"});
 }
 
+TEST(BadUsage, AMisspeltSubCommandIsNamedWithTheNearest) {
+  const Folder folder;
+  expect_refused("rehears", folder, {"unknown command 'rehears'; did you mean 'rehearse'?"});
+  expect_refused("plan spirral -o a.gcode", folder,
+                 {"unknown command 'plan spirral'; did you mean 'plan spiral'?"});
+  expect_refused("schema 7", folder, {"unknown command 'schema 7': see understudy schema --help"});
+}
+
+TEST(BadUsage, TheHelpThatIsNamedIsTheSubCommands) {
+  const Folder folder;
+  expect_refused("", folder, {"(see understudy --help)"});
+  expect_refused("plan", folder, {"(see understudy plan --help)"});
+  expect_refused("plan surface bottle", folder,
+                 {"--output is required (see understudy plan surface --help)"});
+  expect_refused("machines --all", folder, {"--all (see understudy machines --help)"});
+}
+
 TEST(BadUsage, JobsAreFrom1To1024) {
   const Folder folder;
   const std::string commands[] = {"sweep " + kSource + "/scenarios/song-bottle.yaml",

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "geometry/mesh.h"
 #include "tests/geometry/test_solids.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::geometry {
 namespace {
@@ -21,8 +22,6 @@ using ::testing::StartsWith;
 
 class StlFile : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
-
   void save(const std::string& bytes) { std::ofstream(path_, std::ios::binary) << bytes; }
   std::string rejection(const std::string& bytes, const MeshCheck& check = {}) {
     save(bytes);
@@ -52,9 +51,8 @@ class StlFile : public ::testing::Test {
     return out.str();
   }
 
-  const std::filesystem::path path_ =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("understudy_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".stl");
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "part.stl";
   const Triangles box_ = box(Vec3(0, 0, 0), Vec3(0.02, 0.03, 0.04));
 };
 

@@ -9,13 +9,13 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::machine {
 namespace {
 
 class AcceptedErrorsOf : public testing::Test {
  protected:
-  ~AcceptedErrorsOf() override { std::filesystem::remove(path_); }
   /// The shipped hexapod, with another section `accuracy`.
   AcceptedErrors file_with(const std::string& section) {
     std::string yaml = read_file(models_folder() / "hexapod" / "machine.yaml");
@@ -24,9 +24,8 @@ class AcceptedErrorsOf : public testing::Test {
     std::ofstream(path_) << yaml;
     return load_accepted_errors(path_.string());
   }
-  const std::filesystem::path path_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("accepted.") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml");
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "machine.yaml";
 };
 
 // Song 2015 asks for 0.5 mm of a calibrated machine.

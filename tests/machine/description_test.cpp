@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::machine {
 namespace {
@@ -28,12 +29,6 @@ const std::string kShipped = UNDERSTUDY_SOURCE_DIR "/models/hexapod/machine.yaml
 
 class MachineFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& text) {
     const fs::path path = folder_ / "machine.yaml";
     std::ofstream(path) << text;
@@ -66,7 +61,7 @@ class MachineFile : public testing::Test {
   }
   std::string at_line(int offset = 0) const { return "machine.yaml:" + std::to_string(line_ + offset) + ":"; }
 
-  fs::path folder_;
+  const TemporaryFolder folder_;
   int line_ = 0;
 };
 
@@ -132,7 +127,7 @@ TEST(MachineDescription, AnUnknownMachineListsTheKnownOnes) {
 TEST_F(MachineFile, ModelsFolderFollowsTheEnvironment) {
   fs::create_directory(folder_ / "bench");
   fs::copy_file(kShipped, folder_ / "bench" / "machine.yaml");
-  ::setenv("UNDERSTUDY_MODELS", folder_.c_str(), 1);
+  ::setenv("UNDERSTUDY_MODELS", folder_.path().c_str(), 1);
   const auto names = machine_names();
   const auto m = load_machine("bench");
   ::unsetenv("UNDERSTUDY_MODELS");
@@ -142,7 +137,7 @@ TEST_F(MachineFile, ModelsFolderFollowsTheEnvironment) {
 
 TEST_F(MachineFile, AFolderMeansItsMachineFile) {
   write(read_file(kShipped));
-  EXPECT_EQ(load_machine(folder_.string() + "/").name, "hexapod");
+  EXPECT_EQ(load_machine(folder_.path().string() + "/").name, "hexapod");
 }
 
 TEST_F(MachineFile, AMisspeltKeyNamesTheNearestKnownOne) {

@@ -11,19 +11,12 @@
 
 #include "core/error.h"
 #include "machine/description.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::machine {
 
 class EditedFile : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string(test->test_suite_name()) + "." + test->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& text) const {
     const std::filesystem::path path = folder_ / "machine.yaml";
     std::ofstream(path) << text;
@@ -58,7 +51,7 @@ class EditedFile : public testing::Test {
     return "accepted";
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 
  private:
   std::ptrdiff_t line_ = 0;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "machine/description.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::machine {
 namespace {
@@ -19,11 +20,9 @@ using ::testing::HasSubstr;
 class FixtureFile : public ::testing::Test {
  protected:
   FixtureFile() {
-    std::filesystem::create_directories(folder_);
     std::filesystem::copy_file(models_folder() / "parts" / "slanted_box.stl", folder_ / "box.stl",
                                std::filesystem::copy_options::overwrite_existing);
   }
-  ~FixtureFile() override { std::filesystem::remove_all(folder_); }
   std::string written(const std::string& text) const {
     write_file(folder_ / "clamp.yaml", text);
     return (folder_ / "clamp.yaml").string();
@@ -36,9 +35,7 @@ class FixtureFile : public ::testing::Test {
     }
     return "";
   }
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("fixture-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryFolder folder_;
 };
 
 TEST_F(FixtureFile, FindsItsShapeBesideItOrByName) {

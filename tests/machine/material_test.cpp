@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machine/description.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::machine {
 namespace {
@@ -80,10 +81,7 @@ class MaterialFile : public testing::Test {
     std::ostringstream text;
     text << file.rdbuf();
     text_ = text.str();
-    path_ = std::filesystem::path(testing::TempDir()) /
-            (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".yaml");
   }
-  void TearDown() override { std::filesystem::remove(path_); }
 
   std::string error_of(const std::string& from, const std::string& to) {
     std::string text = text_;
@@ -105,7 +103,8 @@ class MaterialFile : public testing::Test {
   }
 
   std::string text_;
-  std::filesystem::path path_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "material.yaml";
   bool line_named_ = false;
 };
 

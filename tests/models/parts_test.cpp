@@ -7,11 +7,10 @@
 #include <string>
 #include <tuple>
 
-#include <unistd.h>
-
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy {
 namespace {
@@ -19,16 +18,13 @@ namespace {
 const std::filesystem::path kParts = UNDERSTUDY_SOURCE_DIR "/models/parts";
 
 TEST(Parts, MakingThemAgainGivesTheSameBytes) {
-  const auto folder =
-      std::filesystem::path(::testing::TempDir()) / ("understudy_parts_" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
-  ASSERT_EQ(std::system(("\"" MAKE_PARTS "\" \"" + folder.string() + "\"").c_str()), 0);
+  const TemporaryFolder folder;
+  ASSERT_EQ(std::system(("\"" MAKE_PARTS "\" \"" + folder.path().string() + "\"").c_str()), 0);
   for (const char* name :
        {"bottle.stl", "slanted_box.stl", "crown.stl", "crown_core.stl", "crown_base.stl", "bent_cylinder.stl",
         "bent_bar.stl", "s_tube.stl", "cross_90.stl", "cross_150.stl", "ellipse_50.stl", "ellipse_75.stl",
         "column_with_arms.stl", "two_bends_round.stl", "two_bends_bar.stl", "two_bends_oval.stl"})
     EXPECT_TRUE(read_file(folder / name) == read_file(kParts / name)) << name;
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Parts, MakePartsRefusesAFolderThatIsNotThere) {

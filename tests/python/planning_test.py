@@ -41,7 +41,7 @@ class ThePlanners(unittest.TestCase):
         for kind, part, options, words in (("spiral", None, dict(radius=-1), "--radius -1 is outside 0..1000"),
                                            ("surface", "botle", {}, "bottle"),
                                            ("spiral", None, dict(radiuss=1), "--radiuss"),
-                                           ("spirral", None, {}, "A subcommand is required")):
+                                           ("spirral", None, {}, "did you mean 'plan spiral'")):
             with self.subTest(words), self.assertRaisesRegex(InputError, words):
                 understudy.plan(kind, part, **options)
 

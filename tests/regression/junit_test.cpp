@@ -6,9 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "core/file/output_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::regression {
 namespace {
@@ -70,10 +69,10 @@ TEST(JunitXml, IsWellFormedForAnIndependentParser) {
   for (int c = 1; c < 256; ++c) every_byte += static_cast<char>(c);
   ScenarioResult results[] = {
       mixed(), {every_byte, every_byte, {check_of(every_byte, false, every_byte)}, every_byte, 2.0}};
-  const auto path = std::filesystem::temp_directory_path() / ("junit-" + std::to_string(::getpid()) + ".xml");
+  const TemporaryFolder folder;
+  const auto path = folder / "junit.xml";
   write_file(path, junit_xml(results));
   EXPECT_EQ(std::system(("xmllint --noout '" + path.string() + "'").c_str()), 0);
-  std::filesystem::remove(path);
 }
 
 TEST(ScenarioResult, PassesOnlyWhenSomethingWasCheckedAndAllHeld) {

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "regression/scenario_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::regression {
 namespace {
@@ -32,8 +33,8 @@ std::string error_of_faults(const std::filesystem::path& folder, const std::stri
 }
 
 TEST(ScenarioFaults, AreReadStrictly) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "scenario_faults";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder scratch;
+  const std::filesystem::path& folder = scratch.path();
   std::ofstream(folder / "line.gcode") << "G21\n";
   EXPECT_EQ(error_of_faults(folder, "faults:\n  - {fault: lost_steps, axis: l1, at_s: 1, steps: 8}\n"),
             "accepted");
@@ -57,12 +58,11 @@ TEST(ScenarioFaults, AreReadStrictly) {
                   folder, "faults:\n  - {fault: thermal_growth, axis: l1, at_s: 1, over_s: 5, growth: 3}\n"),
               HasSubstr("growth_um"));
   EXPECT_THAT(error_of_faults(folder, "faults: []\n"), HasSubstr("at least one"));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(ScenarioCameraFaults, AreReadStrictly) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "scenario_camera_faults";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder scratch;
+  const std::filesystem::path& folder = scratch.path();
   std::ofstream(folder / "line.gcode") << "G21\n";
   const auto error_of = [&](const std::string& fault) {
     return error_of_faults(folder, "camera_faults:\n  - {" + fault + "}\n");
@@ -80,7 +80,6 @@ TEST(ScenarioCameraFaults, AreReadStrictly) {
   EXPECT_THAT(error_of("fault: dim, at_s: 1"), HasSubstr("power' is missing"));
   EXPECT_THAT(error_of("fault: dark, at_s: 1, power: 0.5"),
               HasSubstr("unknown key 'camera_faults[1].power'"));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "regression/scenario_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::regression {
 namespace fs = std::filesystem;
@@ -42,13 +41,11 @@ const char kMachines[] =
 class ScenarioFile : public testing::Test {
  protected:
   ScenarioFile() {
-    root_ = fs::temp_directory_path() / ("scenario-file-" + std::to_string(::getpid()));
     fs::create_directories(root_ / "scenarios");
     fs::create_directories(root_ / "parts");
     write_file(root_ / "parts/line.gcode", "G28\n");
     write_file(root_ / "parts/bottle.stl", "solid\n");
   }
-  ~ScenarioFile() override { fs::remove_all(root_); }
 
   Scenario load(const std::string& text) {
     const fs::path path = root_ / "scenarios/s.yaml";
@@ -69,7 +66,7 @@ class ScenarioFile : public testing::Test {
     return error_of(std::string(kHead) + "expect:\n  - {" + fields + ", source: x}\n");
   }
 
-  fs::path root_;
+  const TemporaryFolder root_;
 };
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

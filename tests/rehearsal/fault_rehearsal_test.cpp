@@ -11,6 +11,7 @@
 #include "core/units.h"
 #include "machine/description.h"
 #include "rehearsal/rehearse.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -22,12 +23,10 @@ using testing::HasSubstr;
 class FaultyRehearsal : public testing::Test {
  protected:
   FaultyRehearsal() {
-    std::filesystem::create_directories(folder_);
     // From -3 to +3 mm in 6 s, 45 mm over the table; struts 1 and 2 move steadily.
     std::ofstream(folder_ / "line.gcode")
         << "G21\nG90\nM82 M109 S230\nG94\nG0 X-3 Y0 Z45\nG1 X3 Y0 Z45 E0.5 F60\n";
   }
-  ~FaultyRehearsal() override { std::filesystem::remove_all(folder_); }
 
   Record run(const std::vector<FaultRequest>& faults, const std::string& machine = "hexapod") const {
     RehearsalRequest request;
@@ -74,9 +73,7 @@ class FaultyRehearsal : public testing::Test {
     return {event, axis, false, Place{"s.yaml", 7, 0}};
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("faulty_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryFolder folder_;
   const machine::MachineDescription machine_ = machine::load_machine("hexapod");
 };
 

@@ -194,10 +194,10 @@ std::string with_other_camera() {
 // The description takes its camera as exact: what it states must neither grow with an error that it cannot
 // see nor be 0.
 TEST(StatedUncertainty, DoesNotKnowTheTruth) {
-  const auto file = std::filesystem::temp_directory_path() / "gap-belief-other-camera.yaml";
+  const TemporaryFolder folder;
+  const auto file = folder / "other-camera.yaml";
   write_file(file, with_other_camera());
   const Record drawn = bottle("nominal", 3, "start"), other = bottle(file.string(), 3, "start");
-  std::filesystem::remove(file);
   ASSERT_TRUE(drawn.gap && other.gap);
   EXPECT_GT(std::abs(other.gap->start_mm - other.gap->commanded_mm), 0.03);
   EXPECT_LT(other.gap->inside_stated_3_sigma_fraction.value(), 0.05);

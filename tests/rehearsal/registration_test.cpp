@@ -11,6 +11,7 @@
 #include "core/file/output_file.h"
 #include "machine/fixture_file.h"
 #include "rehearsal/rehearse.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -35,10 +36,8 @@ struct MovedPart {
     write_file(path,
                "part: {position_mm: [0.3, -0.2, -0.35], quaternion: [0.999994875, 0.002, 0, 0.0025]}\n");
   }
-  ~MovedPart() { std::filesystem::remove(path); }
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() /
-      (std::string("moved-") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml");
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "moved.yaml";
 };
 
 TEST(RegisteredRehearsal, PrintsInTheBandOnAPartThatStandsBesideItsPlace) {
@@ -71,7 +70,7 @@ TEST(RegisteredRehearsal, APoseFromAFilePutsProgramAndBeliefWhereThePartStands) 
   const MovedPart moved;
   RehearsalRequest request = bottle();
   request.as_built = moved.path.string();
-  const std::string file = (std::filesystem::path(testing::TempDir()) / "told-pose.yaml").string();
+  const std::string file = (moved.folder / "told-pose.yaml").string();
   control::PartPose pose;
   // As MovedPart has it.
   pose.X_W = make_pose(Quat(0.999994875, 0.002, 0, 0.0025).normalized(), Vec3(0.3e-3, -0.2e-3, -0.35e-3));
@@ -79,7 +78,6 @@ TEST(RegisteredRehearsal, APoseFromAFilePutsProgramAndBeliefWhereThePartStands) 
   write_file(file, control::write_part_pose(pose, "by hand"));
   request.part_pose = file;
   const Record told = rehearse(request);
-  std::filesystem::remove(file);
   request.part_pose.clear();
   request.as_built = "nominal";
   const Record in_place = rehearse(request);

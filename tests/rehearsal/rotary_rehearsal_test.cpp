@@ -13,6 +13,7 @@
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "rehearsal/rehearse.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -40,9 +41,6 @@ std::string with_rotary_words() {
 
 class RotaryRehearsal : public testing::Test {
  protected:
-  RotaryRehearsal() { std::filesystem::create_directories(folder_); }
-  ~RotaryRehearsal() override { std::filesystem::remove_all(folder_); }
-
   Record run(const std::string& text, const std::string& machine = "five-axis") const {
     std::ofstream(folder_ / "p.gcode") << text;
     RehearsalRequest request;
@@ -95,9 +93,7 @@ class RotaryRehearsal : public testing::Test {
     }
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("rotary_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryFolder folder_;
   const machine::MachineDescription machine_ = machine::load_machine("five-axis");
 };
 

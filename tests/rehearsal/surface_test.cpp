@@ -5,9 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "core/error.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::rehearsal {
 namespace {
@@ -90,14 +89,13 @@ TEST(Surface, ALineBesideThePrintIsAWarningAndNoFailure) {
 }
 
 TEST(Surface, ThePartAsPrintedIsWritten) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("surface-" + std::to_string(::getpid()) + ".stl");
+  const TemporaryFolder folder;
+  const auto path = folder / "surface.stl";
   SurfaceRequest request;
   request.as_printed = path.string();
   Record record;
   study_surface(prepare_surface(request), one_bead(), record);
   const auto written = geometry::read_stl(path);
-  std::filesystem::remove(path);
   EXPECT_NEAR(written->upper().z(), 0.2e-3, 1e-8);
 }
 

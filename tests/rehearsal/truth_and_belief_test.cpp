@@ -12,6 +12,7 @@
 #include "rehearsal/run_figures.h"
 #include "rehearsal/run_twin.h"
 #include "sim/as_built/truth.h"
+#include "tests/temporary_folder.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
@@ -179,7 +180,8 @@ TEST(TruthAndBeliefOfSensors, ThickerFilamentIsTooMuchForTheProgramAndNoneIsMiss
 
 /// The same from a file to the record.
 TEST(TruthAndBeliefOfSensors, ARehearsalCountsTheFilamentThatTheMachineHolds) {
-  const auto file = std::filesystem::temp_directory_path() / "thick-filament.yaml";
+  const TemporaryFolder folder;
+  const auto file = folder / "thick-filament.yaml";
   write_file(file, "process: {filament_diameter_mm: 1.96}\n");  // 1.12 of what is described
   RehearsalRequest request;
   request.program = (machine::models_folder().parent_path() / "scenarios" / "song-bottle.gcode").string();
@@ -188,7 +190,6 @@ TEST(TruthAndBeliefOfSensors, ARehearsalCountsTheFilamentThatTheMachineHolds) {
   request.as_built = file.string();
   request.keep_scene = false;
   const Record record = rehearse(request);
-  std::filesystem::remove(file);
   ASSERT_TRUE(record.print);
   const PrintFigures& print = *record.print;
   ASSERT_GT(print.printed_mm, 0.1);

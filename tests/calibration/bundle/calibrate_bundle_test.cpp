@@ -13,6 +13,7 @@
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "tests/calibration/bundle/drawn_bundle.h"
+#include "tests/temporary_folder.h"
 #include "vision/boards/rig_file.h"
 
 namespace understudy::calibration {
@@ -24,14 +25,6 @@ using ::testing::ThrowsMessage;
 /// The files of a lab: set-up, corners, targets, commanded poses.
 class CalibrateBundle : public ::testing::Test {
  protected:
-  CalibrateBundle()
-      : folder_(std::filesystem::path(::testing::TempDir()) /
-                (std::string("calibrate-bundle-") +
-                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~CalibrateBundle() override { std::filesystem::remove_all(folder_); }
-
   std::string path(const char* name) const { return (folder_ / name).string(); }
 
   /// `lost`: the pose of which a target is missing; 0: none.
@@ -77,7 +70,7 @@ class CalibrateBundle : public ::testing::Test {
     return request;
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 // Without sides, half of the play counts as noise of the lengths; drawn machines have that noise here.

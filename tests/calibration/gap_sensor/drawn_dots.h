@@ -9,19 +9,12 @@
 #include <gtest/gtest.h>
 
 #include "core/frames.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::calibration {
 
 class DotFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string(test->test_suite_name()) + "." + test->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) const {
     const std::filesystem::path path = folder_ / name;
     std::ofstream(path, std::ios::binary) << text;
@@ -41,7 +34,7 @@ class DotFolder : public testing::Test {
     write(name, text);
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 }  // namespace understudy::calibration

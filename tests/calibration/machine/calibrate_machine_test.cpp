@@ -14,6 +14,7 @@
 #include "core/units.h"
 #include "machine/file/calibration_section.h"
 #include "tests/calibration/machine/measured_machine.h"
+#include "tests/temporary_folder.h"
 #include "tests/told_progress.h"
 
 namespace understudy::calibration {
@@ -26,13 +27,6 @@ namespace fs = std::filesystem;
 
 class Calibrate : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / (std::string("calibrate.") + test->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// A built machine, measured by a controller that knows `known`; the table's path.
   std::string table(const machine::MachineDescription& known, std::uint64_t seed, std::size_t count,
                     const std::function<void(Measurements&)>& edit = {}) const {
@@ -54,7 +48,7 @@ class Calibrate : public ::testing::Test {
     return calibrate_machine(request);
   }
 
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 /// RMS tip error [m] of machine `seed` when its controller knows `known`.

@@ -12,6 +12,7 @@
 #include "core/file/output_file.h"
 #include "core/units.h"
 #include "tests/calibration/machine/measured_machine.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::calibration {
 namespace {
@@ -22,12 +23,7 @@ namespace fs = std::filesystem;
 
 class MeasurementTable : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = fs::path(::testing::TempDir()) / (std::string("table.") + test->name() + ".csv");
-    sample_ = BuiltMachine(machine_, 1).measured(machine_, 12);
-  }
-  void TearDown() override { fs::remove(path_); }
+  void SetUp() override { sample_ = BuiltMachine(machine_, 1).measured(machine_, 12); }
 
   Measurements read(const std::string& text) const {
     write_file(path_, text);
@@ -60,7 +56,8 @@ class MeasurementTable : public ::testing::Test {
 
   machine::MachineDescription machine_ = machine::load_machine("hexapod");
   Measurements sample_;
-  fs::path path_;
+  const TemporaryFolder folder_;
+  const fs::path path_ = folder_ / "table.csv";
 };
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

@@ -12,6 +12,7 @@
 #include "calibration/machine/tip_map.h"
 #include "machine/file/calibration_section.h"
 #include "tests/calibration/machine/measured_machine.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::calibration {
 namespace {
@@ -164,10 +165,10 @@ TEST(StoredParameters, AreReadBack) {
       written = stored_parameters(make_maximum_likelihood()->calibrate(hexapod_problem(table, drawn)), {},
                                   table, known);
     }
-    const auto path = std::filesystem::path(testing::TempDir()) / "stored_parameters.yaml";
+    const TemporaryFolder folder;
+    const auto path = folder / "machine.yaml";
     machine::write_calibrated(known, path, written);
     (void)machine::load_machine(path.string(), read);
-    std::filesystem::remove(path);
     EXPECT_LT((read.covariance - written.covariance).norm(), 1e-9 * written.covariance.norm()) << name;
   }
 }

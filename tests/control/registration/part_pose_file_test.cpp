@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/units.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::control {
 namespace {
@@ -35,7 +36,6 @@ PartPose some_pose() {
 
 class PartPoseFile : public ::testing::Test {
  protected:
-  ~PartPoseFile() override { std::filesystem::remove(file_); }
   PartPose read(const std::string& text) const {
     write_file(file_, text);
     return read_part_pose(file_);
@@ -54,8 +54,8 @@ class PartPoseFile : public ::testing::Test {
     EXPECT_NE(at, std::string::npos) << text;
     return text.replace(at, old.size(), now);
   }
-  const std::string file_ =
-      testing::TempDir() + "/" + testing::UnitTest::GetInstance()->current_test_info()->name() + "-pose.yaml";
+  const TemporaryFolder folder_;
+  const std::string file_ = (folder_ / "pose.yaml").string();
 };
 
 TEST_F(PartPoseFile, ReadsBackWhatWasWritten) {

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "tests/control/gap/bead_program.h"
 #include "tests/geometry/test_solids.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::control {
 namespace {
@@ -30,14 +31,9 @@ ProbingCheck slab_check() { return {hexapod(), slab(), largest_shift(slab(), kTo
 
 /// A file that goes with the test.
 struct PatternFile {
-  explicit PatternFile(const std::string& rows)
-      : path(std::filesystem::temp_directory_path() /
-             ("pattern-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
-              ".csv")) {
-    std::ofstream(path) << "x_mm,y_mm,z_mm\n" << rows;
-  }
-  ~PatternFile() { std::filesystem::remove(path); }
-  std::filesystem::path path;
+  explicit PatternFile(const std::string& rows) { std::ofstream(path) << "x_mm,y_mm,z_mm\n" << rows; }
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "pattern.csv";
 };
 
 std::string refusal(const std::string& rows) {

@@ -13,16 +13,15 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy {
 namespace {
 
 class RunJournalTest : public testing::Test {
  protected:
-  ~RunJournalTest() override { std::filesystem::remove(path); }
-  const std::filesystem::path path =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("journal-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryFolder folder_;
+  const std::filesystem::path path = folder_ / "journal";
 };
 
 TEST_F(RunJournalTest, AnswersOfAKilledRunStandToTheLastBit) {

@@ -14,6 +14,7 @@
 #include "core/random_vector.h"
 #include "kinematics/chain/chain.h"
 #include "machine/file/urdf_writer.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::machine {
 namespace {
@@ -29,12 +30,6 @@ const fs::path kShipped = UNDERSTUDY_SOURCE_DIR "/models/offset-wrist-arm/arm.ur
 
 class UrdfFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& text) {
     const fs::path path = folder_ / "arm.urdf";
     std::ofstream(path) << text;
@@ -65,7 +60,7 @@ class UrdfFile : public testing::Test {
     return message;
   }
 
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 std::string joint(const std::string& name, const std::string& type, const std::string& parent,

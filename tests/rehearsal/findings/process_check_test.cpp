@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "rehearsal/fixture.h"
 #include "tests/geometry/test_solids.h"
+#include "tests/temporary_folder.h"
 #include "toolpath/gcode/gcode.h"
 
 namespace understudy::rehearsal {
@@ -161,7 +162,6 @@ TEST(MendProcess, WhatLeavesNothingOrIsEverywhereIsRefusedAsAWhole) {
 
 class Fixture : public testing::Test {
  protected:
-  ~Fixture() override { std::filesystem::remove(path_); }
   std::string refusal_of_box(const Vec3& low, const Vec3& high) {
     const geometry::Triangles box = geometry::box(low, high);
     const geometry::Mesh mesh(box.vertices, box.triangles);
@@ -173,9 +173,8 @@ class Fixture : public testing::Test {
     }
     return "accepted";
   }
-  const std::filesystem::path path_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("fixture.") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".stl");
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "fixture.stl";
 };
 
 TEST_F(Fixture, StandsOnTheTable) {

@@ -11,6 +11,7 @@
 #include "core/units.h"
 #include "report/page/calibration_page.h"
 #include "tests/calibration/machine/measured_machine.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::report {
 namespace {
@@ -22,15 +23,13 @@ calibration::MachineCalibration calibrated(bool frame = false, const std::string
   const auto machine = machine::load_machine("hexapod");
   auto table = calibration::BuiltMachine(machine, 5).measured(machine, 24);
   if (frame) table.frame = {30e-6, 0, 0};
-  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  const auto path = std::filesystem::path(::testing::TempDir()) / (std::string(test->name()) + ".csv");
+  const TemporaryFolder folder;
+  const auto path = folder / "poses.csv";
   write_file(path, calibration::measurements_csv(table, machine, "test"));
   calibration::CalibrationRequest request;
   request.measurements = path.string();
   request.plugin = plugin;
-  const auto result = calibration::calibrate_machine(request);
-  std::filesystem::remove(path);
-  return result;
+  return calibration::calibrate_machine(request);
 }
 
 TEST(CalibrationSummary, SummaryAndPageHaveWhatTheTextSays) {

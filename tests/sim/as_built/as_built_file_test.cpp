@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::sim {
 namespace {
@@ -23,7 +24,6 @@ constexpr double kAngle = 1e-17;   // [rad]
 
 class AsBuiltFile : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
   std::string write(const std::string& text) {
     std::ofstream(path_) << text;
     return path_;
@@ -39,10 +39,8 @@ class AsBuiltFile : public testing::Test {
     return "accepted";
   }
 
-  const std::string path_ =
-      (std::filesystem::path(testing::TempDir()) /
-       (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_built.yaml"))
-          .string();
+  const TemporaryFolder folder_;
+  const std::string path_ = (folder_ / "built.yaml").string();
   const machine::MachineDescription hexapod_ = machine::load_machine("hexapod");
   const machine::MachineDescription five_axis_ = machine::load_machine("five-axis");
 };

@@ -12,6 +12,7 @@
 #include "core/random.h"
 #include "machine/file/calibration_section.h"
 #include "sim/as_built/as_built_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::sim {
 namespace {
@@ -130,7 +131,6 @@ TEST(CalibratedDraw, PlayThatWasFoundTakesThePlaceOfTheDescribedOne) {
 
 class CalibratedFile : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
   machine::MachineDescription written(const machine::MachineDescription& machine,
                                       const machine::CalibratedParameters& parameters) {
     machine::write_calibrated(machine, path_, parameters);
@@ -144,9 +144,8 @@ class CalibratedFile : public testing::Test {
     }
     return "accepted";
   }
-  const std::filesystem::path path_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_machine.yaml");
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "machine.yaml";
 };
 
 TEST_F(CalibratedFile, IsDrawnFromByItsWordAndByDefault) {

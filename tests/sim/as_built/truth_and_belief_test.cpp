@@ -13,6 +13,7 @@
 #include "sim/as_built/as_built.h"
 #include "sim/as_built/as_built_file.h"
 #include "sim/plant/plant.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::sim {
 namespace {
@@ -117,8 +118,8 @@ std::string numbers(AsBuilt built) {
 
 template <typename Geometry>
 void expect_apart(const MachineDescription& machine, const std::vector<Move<Geometry>>& moves) {
-  const std::string file =
-      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml";
+  const TemporaryFolder folder;
+  const std::string file = (folder / "built.yaml").string();
   write_file(file, write_as_built(make_as_built(machine, "manufactured", 3)));
   const std::array<std::string, 4> sets{"nominal", "sampled", "manufactured", file};
   const AsBuilt truth = make_as_built(machine, "manufactured", 3);
@@ -139,7 +140,6 @@ void expect_apart(const MachineDescription& machine, const std::vector<Move<Geom
           << set << " moved with the belief";
     EXPECT_EQ(reached(known, truth, drives), tip) << "the plant looked at the belief";
   }
-  std::filesystem::remove(file);
 }
 
 TEST(TruthAndBelief, AHexapodsNumbersMoveAlone) { expect_apart(calibrated("hexapod"), hexapod_moves()); }

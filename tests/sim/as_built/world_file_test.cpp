@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "sim/as_built/as_built_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::sim {
 namespace {
@@ -18,7 +19,6 @@ using testing::HasSubstr;
 
 class WorldFile : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
   AsBuilt read(const std::string& text) {
     write_file(path_, text);
     return make_as_built(hexapod_, path_, 1);
@@ -32,8 +32,8 @@ class WorldFile : public testing::Test {
     return "accepted";
   }
   const machine::MachineDescription hexapod_ = machine::load_machine("hexapod");
-  const std::string path_ =
-      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + "_world.yaml";
+  const TemporaryFolder folder_;
+  const std::string path_ = (folder_ / "world.yaml").string();
 };
 
 // Units are divided out and multiplied in again, and a rotation passes through a quaternion: some roundings.

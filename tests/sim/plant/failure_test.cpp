@@ -12,6 +12,7 @@
 #include "sim/plant/plant.h"
 #include "tests/sim/plant/machine_g4.h"
 #include "tests/sim/plant/motion.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::sim {
 namespace {
@@ -107,10 +108,9 @@ TEST(MujocoEngine, SilentResetsOfTheEngineBecomeErrors) {
 }
 
 TEST(MujocoEngine, ErrorsBecomeExceptionsAndLeaveNoFile) {
-  const auto folder = std::filesystem::temp_directory_path() / "understudy_engine_errors";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const auto before = std::filesystem::current_path();
-  std::filesystem::current_path(folder);
+  std::filesystem::current_path(folder.path());
   EXPECT_THAT([] { load_model("<mujoco><nonsense/></mujoco>"); },
               ThrowsMessage<MachineError>(HasSubstr("nonsense")));
   EXPECT_THROW(load_model("no markup at all"), MachineError);
@@ -129,9 +129,8 @@ TEST(MujocoEngine, ErrorsBecomeExceptionsAndLeaveNoFile) {
         checked_step(*model, *data);  // mju_warning
       },
       MachineError);
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   std::filesystem::current_path(before);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

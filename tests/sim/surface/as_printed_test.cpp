@@ -6,12 +6,11 @@
 #include <cstring>
 #include <string>
 
-#include <unistd.h>
-
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
 #include "tests/geometry/test_solids.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::sim {
 namespace {
@@ -21,9 +20,7 @@ using ::testing::HasSubstr;
 
 class AsPrinted : public ::testing::Test {
  protected:
-  AsPrinted() { fs::create_directories(folder_); }
-  ~AsPrinted() override { fs::remove_all(folder_); }
-  fs::path folder_ = fs::temp_directory_path() / ("as-printed-" + std::to_string(::getpid()));
+  const TemporaryFolder folder_;
 };
 
 // A stretch along x, its middle at this height.
@@ -169,7 +166,8 @@ TEST_F(AsPrinted, RefusesWhatCannotBeWritten) {
   fs::create_directories(folder_ / "taken.stl" / "inside");
   EXPECT_THROW(write_as_printed(folder_ / "taken.stl", beads), MachineError);
   std::vector<std::string> left;
-  for (const auto& entry : fs::directory_iterator(folder_)) left.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder_.path()))
+    left.push_back(entry.path().filename().string());
   EXPECT_THAT(left, ::testing::ElementsAre("taken.stl"));
 }
 

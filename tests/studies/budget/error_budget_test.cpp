@@ -11,6 +11,7 @@
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
 #include "machine/description.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::studies {
 namespace {
@@ -30,9 +31,6 @@ constexpr const char* kLine =
 class BottleBudget : public testing::Test {
  protected:
   BottleBudget() {
-    folder_ = std::filesystem::temp_directory_path() /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
     write_file(folder_ / "line.gcode", kLine);
     request_.print.program = (folder_ / "line.gcode").string();
     request_.print.fixture = "bottle";
@@ -42,7 +40,6 @@ class BottleBudget : public testing::Test {
     request_.samples = kBudgetSamplesMin;
     request_.threads = 2;
   }
-  ~BottleBudget() override { std::filesystem::remove_all(folder_); }
 
   /// The hexapod with tolerances of our own.
   void use_tolerances(const std::string& yaml) {
@@ -61,7 +58,7 @@ class BottleBudget : public testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
   BudgetRequest request_;
 };
 

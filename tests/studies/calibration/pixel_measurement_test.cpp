@@ -15,6 +15,7 @@
 #include "studies/calibration/calibration_benchmark.h"
 #include "studies/calibration/sample_poses.h"
 #include "tests/shipped_hexapod.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::studies {
 namespace {
@@ -126,7 +127,8 @@ TEST(SlowPixelMeasurement, TwentyAsBuiltMachinesFallBelowATenthOfAMillimetre) {
 TEST(SlowPixelMeasurement, TheUncertaintyThatACalibrationStatesIsTheErrorThatIsLeft) {
   double squares = 0, stated = 0;
   constexpr int kStands = 6;
-  const auto path = std::filesystem::path(::testing::TempDir()) / "pixel-poses.csv";
+  const TemporaryFolder folder;
+  const auto path = folder / "poses.csv";
   for (int seed = 1; seed <= kStands; ++seed) {
     SamplePosesRequest sample;
     sample.as_built = "manufactured";
@@ -142,7 +144,6 @@ TEST(SlowPixelMeasurement, TheUncertaintyThatACalibrationStatesIsTheErrorThatIsL
     squares += error * error;
     stated += result.tip.rms * result.tip.rms;
   }
-  std::filesystem::remove(path);
   // About seven independent errors a stand: 1 sigma of the ratio is sqrt(2 / 42) = 0.22; three of them.
   EXPECT_NEAR(squares / stated, 1, 0.66);
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -15,7 +16,6 @@ using ::testing::HasSubstr;
 
 class CurveCsv : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
   std::vector<Vec3> read(const std::string& text) {
     std::ofstream(path_, std::ios::binary) << text;
     return read_curve_csv(path_);
@@ -28,9 +28,8 @@ class CurveCsv : public ::testing::Test {
     }
     return "accepted";
   }
-  const std::filesystem::path path_ =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("understudy_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv");
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "curve.csv";
 };
 
 TEST_F(CurveCsv, GivesMetres) {

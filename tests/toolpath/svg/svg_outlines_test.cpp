@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -21,7 +22,6 @@ constexpr double kRounding = 1e-9;  // [m]
 
 class SvgOutlines : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
   /// `body` on a page of 100 x 50 mm, a unit a millimetre.
   std::vector<SvgStroke> page(const std::string& body) {
     return read("<svg width=\"100mm\" height=\"50mm\" viewBox=\"0 0 100 50\">\n" + body + "</svg>");
@@ -45,9 +45,8 @@ class SvgOutlines : public testing::Test {
       sum += (stroke.points[i] - stroke.points[i - 1]).norm();
     return sum;
   }
-  const std::filesystem::path path_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("understudy_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".svg");
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "page.svg";
 };
 
 TEST_F(SvgOutlines, PointsUpwardsInMillimetresOfThePage) {

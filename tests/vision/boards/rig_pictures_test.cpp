@@ -7,6 +7,7 @@
 
 #include "core/file/output_file.h"
 #include "tests/complaint.h"
+#include "tests/temporary_folder.h"
 #include "tests/vision/boards/drawn_picture.h"
 #include "tests/vision/boards/two_cameras.h"
 
@@ -69,7 +70,7 @@ TEST(RigPictures, BoardsAreMeasuredFromFilesOfTheSensorsSize) {
   d.rig.board = Board{7, 4, 10e-3, 2.5e-3};
   for (MountedCamera& mounted : d.rig.cameras) mounted.camera.width = 400, mounted.camera.height = 300;
   const Image drawn = drawn_board(400, 300, d.rig.board, Vec2(70.5, 80.5), 40);
-  const auto folder = std::filesystem::path(::testing::TempDir());
+  const TemporaryFolder folder;
   const auto pgm = [&](const std::string& name, int width, int height) {
     write_file(folder / name, "P5 " + std::to_string(width) + " " + std::to_string(height) + " 255\n" +
                                   std::string(drawn.pixels.begin(), drawn.pixels.begin() + width * height));

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/file/output_file.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::vision {
 namespace {
@@ -23,7 +24,8 @@ std::string from_hex(const std::string& hex) {
 
 /// What is read of a file with these bytes.
 Image read_bytes(const std::string& bytes) {
-  const auto path = std::filesystem::path(::testing::TempDir()) / "picture-file-test.png";
+  const TemporaryFolder folder;
+  const auto path = folder / "picture.png";
   write_file(path, bytes);
   return read_picture(path.string());
 }
@@ -60,7 +62,7 @@ TEST(PictureFile, ColourIsReadByItsLuminanceAndSixteenBitsByTheUpperEight) {
 }
 
 TEST(PictureFile, WhatIsNoPictureIsRefusedByName) {
-  EXPECT_THAT(refusal(""), HasSubstr("picture-file-test.png: holds no picture"));
+  EXPECT_THAT(refusal(""), HasSubstr("picture.png: holds no picture"));
   EXPECT_THAT(refusal("x_mm,y_mm\n1,2\n"), HasSubstr("holds no picture"));
   EXPECT_THAT(refusal(from_hex("89504e470d0a1a0a0000000d49484452")), HasSubstr("holds no picture"));
   // 65535 x 65535 px in 67 bytes.
