@@ -139,7 +139,7 @@ TEST_F(AsBuiltFile, AnOffsetMayBeBelowZero) {
 
 TEST_F(AsBuiltFile, MistakesOfAHexapodHaveLineAndKey) {
   EXPECT_THAT(error_of(hexapod_, "struts:\n  - {strut: 7}\n"),
-              AllOf(HasSubstr("_built.yaml:2:"), HasSubstr("struts[1].strut is 7, outside 1 to 6")));
+              AllOf(HasSubstr("/built.yaml:2:"), HasSubstr("struts[1].strut is 7, outside 1 to 6")));
   EXPECT_THAT(error_of(hexapod_, "struts:\n  - {strut: 1, nut_play_um: -5}\n"),
               HasSubstr("struts[1].nut_play_um is -5 um, outside 0 to 2000 um"));
   EXPECT_THAT(error_of(hexapod_, "struts:\n  - {length_offset_mm: 170}\n"),
@@ -148,17 +148,17 @@ TEST_F(AsBuiltFile, MistakesOfAHexapodHaveLineAndKey) {
               HasSubstr("unknown key 'struts[1].base_join_mm', did you mean 'base_joint_mm'?"));
   EXPECT_THAT(
       error_of(hexapod_, "struts:\n  - {strut: 1}\n  - {strut: 1}\n"),
-      AllOf(HasSubstr("_built.yaml:3:"), HasSubstr("struts[2].strut names a part that was told before")));
+      AllOf(HasSubstr("/built.yaml:3:"), HasSubstr("struts[2].strut names a part that was told before")));
   EXPECT_THAT(error_of(hexapod_, "axes:\n  - {axis: x}\n"), HasSubstr("unknown key 'axes'"));
 }
 
 TEST_F(AsBuiltFile, MistakesOfAChainHaveLineAndKey) {
   EXPECT_THAT(error_of(five_axis_, "axes:\n  - {axis: a}\n"),
-              AllOf(HasSubstr("_built.yaml:2:"), HasSubstr("axes[1].axis is 'a', not one of x, y, z, b, c")));
+              AllOf(HasSubstr("/built.yaml:2:"), HasSubstr("axes[1].axis is 'a', not one of x, y, z, b, c")));
   EXPECT_THAT(error_of(five_axis_, "axes:\n  - axis: b\n    direction: [0, 1.1, 0]\n"),
               HasSubstr("axes[1].direction is 1.1, outside -1 to 1"));
   EXPECT_THAT(error_of(five_axis_, "axes:\n  - axis: b\n    direction: [0, 0.99, 0]\n"),
-              AllOf(HasSubstr("_built.yaml:3:"), HasSubstr("axes[1].direction has length 0.9900000, not 1")));
+              AllOf(HasSubstr("/built.yaml:3:"), HasSubstr("axes[1].direction has length 0.9900000, not 1")));
   EXPECT_THAT(error_of(five_axis_, "axes:\n  - {axis: b, zero_mm: 1}\n"),
               HasSubstr("unknown key 'axes[1].zero_mm'"));  // it turns
   EXPECT_THAT(error_of(five_axis_, "axes:\n  - {axis: x, play_um: 1e9}\n"),

@@ -182,7 +182,7 @@ TEST_F(CalibratedFile, WithoutACalibrationOrItsCovarianceSaysWhatToDo) {
   Open open("hexapod");
   open.machine.calibration->estimator = "plug-in: ./mine.py";
   EXPECT_THAT(error_of(written(open.machine, {})),
-              AllOf(HasSubstr("_machine.yaml"), HasSubstr("by plug-in: ./mine.py, has no covariance"),
+              AllOf(HasSubstr("/machine.yaml"), HasSubstr("by plug-in: ./mine.py, has no covariance"),
                     HasSubstr("manufactured")));
 }
 

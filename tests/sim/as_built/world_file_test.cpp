@@ -77,12 +77,12 @@ TEST_F(WorldFile, OmittedValuesAreThoseOfTheDrawing) {
 
 TEST_F(WorldFile, MistakesAreNamedWithTheirLine) {
   EXPECT_THAT(error_of("deviation_mm: 15\nlaser: {peak_level: 150}\n"),
-              AllOf(HasSubstr("_world.yaml:2"), HasSubstr("laser.peak_level"), HasSubstr("peak_levels")));
+              AllOf(HasSubstr("/world.yaml:2"), HasSubstr("laser.peak_level"), HasSubstr("peak_levels")));
   EXPECT_THAT(
       error_of("camera: {quaternion: [1, 0, 0, 0.1]}\n"),
-      AllOf(HasSubstr("_world.yaml:1"), HasSubstr("camera.quaternion has length 1.00"), HasSubstr("not 1")));
+      AllOf(HasSubstr("/world.yaml:1"), HasSubstr("camera.quaternion has length 1.00"), HasSubstr("not 1")));
   EXPECT_THAT(error_of("drives:\n  - {drive: 2}\n  - {drive: 2}\n"),
-              AllOf(HasSubstr("_world.yaml:3"), HasSubstr("told before")));
+              AllOf(HasSubstr("/world.yaml:3"), HasSubstr("told before")));
   EXPECT_THAT(error_of("part: {size: 3}\n"), AllOf(HasSubstr("part.size"), HasSubstr("0.5 to 2")));
 }
 
