@@ -6,7 +6,6 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -47,19 +46,18 @@ void check_commands(const CLI::App& app, int argc, char** argv) {
   const CLI::App* command = &app;
   std::string words;  // those that name `command`
   for (int i = 1; i < argc && argv[i][0] != '-' && command->get_require_subcommand_min() > 0; ++i) {
-    const std::vector<const CLI::App*> known = command->get_subcommands({});
-    const auto name_of = [](const CLI::App* sub) { return sub->get_name(); };
-    const auto named = std::ranges::find(known, argv[i], name_of);
-    if (named == known.end()) {
+    std::vector<std::string> known;
+    for (const CLI::App* sub : command->get_subcommands({})) known.push_back(sub->get_name());
+    if (std::find(known.begin(), known.end(), argv[i]) == known.end()) {
       const std::vector<std::string> left_out = cli::left_out_commands();
-      if (i == 1 && std::ranges::find(left_out, argv[i]) != left_out.end())
+      if (i == 1 && std::find(left_out.begin(), left_out.end(), argv[i]) != left_out.end())
         throw InputError(fmt::format("this build is without the twin: {} needs it", argv[i]));
-      const std::string nearest = nearest_word(std::string(argv[i]), known | std::views::transform(name_of));
+      const std::string nearest = nearest_word(std::string(argv[i]), known);
       throw InputError(fmt::format("unknown command '{}{}'{}", words, argv[i],
                                    nearest.empty() ? fmt::format(": see understudy {}--help", words)
                                                    : fmt::format("; did you mean '{}{}'?", words, nearest)));
     }
-    command = *named;
+    command = command->get_subcommand(argv[i]);
     words += command->get_name() + " ";
   }
 }
