@@ -165,7 +165,7 @@ TEST(BadUsage, AMisspeltSubCommandIsNamedWithTheNearest) {
   expect_refused("schema 7", folder, {"unknown command 'schema 7': see understudy schema --help"});
 }
 
-TEST(BadUsage, TheHelpThatIsNamedIsTheSubCommands) {
+TEST(BadUsage, AnErrorNamesTheHelpOfItsSubCommand) {
   const Folder folder;
   expect_refused("", folder, {"(see understudy --help)"});
   expect_refused("plan", folder, {"(see understudy plan --help)"});

@@ -20,8 +20,7 @@ using ::testing::HasSubstr;
 class FixtureFile : public ::testing::Test {
  protected:
   FixtureFile() {
-    std::filesystem::copy_file(models_folder() / "parts" / "slanted_box.stl", folder_ / "box.stl",
-                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(models_folder() / "parts" / "slanted_box.stl", folder_ / "box.stl");
   }
   std::string written(const std::string& text) const {
     write_file(folder_ / "clamp.yaml", text);

@@ -1,7 +1,6 @@
 #include "regression/junit.h"
 
 #include <cstdlib>
-#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // Faults in a whole rehearsal: where the tip goes is a column of the inverse Jacobian; bad requests have a
 // line.
-#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>

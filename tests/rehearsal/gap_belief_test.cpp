@@ -3,7 +3,6 @@
 #include "rehearsal/gap_belief.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

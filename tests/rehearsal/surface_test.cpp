@@ -1,7 +1,5 @@
 #include "rehearsal/surface.h"
 
-#include <filesystem>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

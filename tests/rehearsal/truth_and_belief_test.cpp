@@ -1,7 +1,6 @@
 // Sensors and part of the twin against what the controller holds of them: either moves alone.
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 #include "calibration/bundle/calibrate_bundle.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -2,7 +2,6 @@
 // way of its own: derivatives of the forward kinematics by the numbers of the file.
 #include "calibration/machine/stored_parameters.h"
 
-#include <filesystem>
 #include <functional>
 
 #include <gtest/gtest.h>

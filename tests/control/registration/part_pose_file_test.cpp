@@ -1,8 +1,6 @@
 // The pose that `register` writes is the one that a print reads.
 #include "control/registration/part_pose_file.h"
 
-#include <filesystem>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/drivers/hal/hal_machine.h"
+#include "tests/temporary_folder.h"
 
 namespace understudy::drivers {
 namespace {
@@ -74,14 +75,12 @@ TEST(HalFiles, HaveAPinForEachEncoderBehindThePlay) {
 /// HAL itself loads what is written, and its threads run.
 void expect_loads(const std::string& name) {
   const HalSettings s = hal_settings(machine::load_machine(name));
-  const auto folder =
-      std::filesystem::path(testing::TempDir()) / ("hal-files-" + name.substr(0, name.find('{')));
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   for (const HalFile& f : hal_files(s)) std::ofstream(folder / f.name) << f.text;
   set_hal_environment();
   const std::string said =
       answer_of({"sh", "-c",
-                 "cd '" + folder.string() +
+                 "cd '" + folder.path().string() +
                      "' && echo 'getp sampler.0.curr-depth\ngetp sampler.3.curr-depth' | (sleep 0.3; cat) | "
                      "halrun -I -f machine.hal 2>&1"},
                 std::chrono::seconds(60));
@@ -94,7 +93,6 @@ void expect_loads(const std::string& name) {
   ASSERT_GE(counts.size(), 2U) << name << ": " << said;
   EXPECT_GT(counts[0], 0) << name;
   EXPECT_GT(counts[1], 0) << name;
-  std::filesystem::remove_all(folder);
 }
 
 TEST(HalFiles, AreLoadedByHal) {

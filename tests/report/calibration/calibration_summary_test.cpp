@@ -1,8 +1,6 @@
 // What a calibration says in words, JSON and on its page is the same.
 #include "report/calibration/calibration_summary.h"
 
-#include <filesystem>
-
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,6 @@
 // Built machines in files: what is written reads back, what is not told stays, mistakes have a line.
 #include "sim/as_built/as_built_file.h"
 
-#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>

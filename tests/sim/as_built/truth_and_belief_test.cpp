@@ -1,6 +1,5 @@
 // The built machine and its controller's description share no number of the geometry: either moves alone.
 #include <array>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>

@@ -1,8 +1,6 @@
 // Drives, sensors, part and filament in as-built files: what is written reads back, mistakes have a line.
 #include "sim/as_built/world_file.h"
 
-#include <filesystem>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

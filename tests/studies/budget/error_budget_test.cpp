@@ -1,7 +1,6 @@
 // Budgets of the bottle's line, where physics says what can matter, and of answers made by hand.
 #include "studies/budget/error_budget.h"
 
-#include <filesystem>
 #include <map>
 
 #include <gmock/gmock.h>
