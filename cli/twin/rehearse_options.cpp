@@ -215,7 +215,7 @@ std::string among_results(const std::string& file, const std::string& folder, co
   if (file.empty()) return file;
   const auto among = place_among(file, folder);
   if (!among) return file;
-  const fs::path name = *among;
+  const fs::path& name = *among;
   fs::create_directories((working / name).parent_path());
   return (working / name).string();
 }

@@ -96,9 +96,10 @@ TEST_F(AsPrinted, FacesGoOnCountingAcrossChunks) {
   BeadIndex beads;
   constexpr int kBeads = 20000;  // more than two chunks
   for (int i = 0; i < kBeads; ++i) {
+    const int column = i % 100;
+    const int row = i / 100;
     Bead bead;
-    bead.from_W =
-        bead.to_W = {static_cast<float>(i % 100) * 1e-3f, static_cast<float>(i / 100) * 1e-3f, 1e-3f};
+    bead.from_W = bead.to_W = {static_cast<float>(column) * 1e-3f, static_cast<float>(row) * 1e-3f, 1e-3f};
     bead.width = bead.height = 0.4e-3f;
     beads.add(bead);
   }
