@@ -35,7 +35,8 @@ run_tests() {
     grep 'tests passed' "$log"
     return
   fi
-  { grep -E 'SUMMARY: |runtime error: |: Failure$|^C\+\+ exception with description' "$log" | sort -u
+  local reason='SUMMARY: |runtime error: |: Failure$|^C\+\+ exception with description|^(FAIL|ERROR): |^[A-Za-z.]*Error: '
+  { { grep -E "$reason" "$log" || true; } | sort -u
     sed -n '/tests passed/p; /The following tests FAILED/,/Errors while/p' "$log"
     echo "$stage: all of it: $log"; } >&2
   return 1
