@@ -36,11 +36,12 @@ function(understudy_sources out recurse exclude)
 endfunction()
 
 # understudy_test(NAME [RECURSE] [EXCLUDE regex] [SOURCES extra ...] USES room ... [PRIVATE lib ...] [TIMEOUT s]
-# [LOCK what])
-# LOCK: tests that share what there is once on a computer never run at the same time.
+# [LOCK what] [PROCESSORS n])
+# LOCK: tests that share what there is once on a computer never run at the same time. PROCESSORS: how many a test keeps busy;
+# CTest runs nothing else on them.
 # One GoogleTest program of every source in the folder; suites whose name starts with Extended or Slow do not run under ./test.
 function(understudy_test name)
-  cmake_parse_arguments(TEST "RECURSE" "TIMEOUT;EXCLUDE;LOCK" "SOURCES;USES;PRIVATE" ${ARGN})
+  cmake_parse_arguments(TEST "RECURSE" "TIMEOUT;EXCLUDE;LOCK;PROCESSORS" "SOURCES;USES;PRIVATE" ${ARGN})
   understudy_sources(sources "${TEST_RECURSE}" "${TEST_EXCLUDE}")
   add_executable(${name}_test ${sources} ${TEST_SOURCES})
   foreach(used IN LISTS TEST_USES)
@@ -52,11 +53,11 @@ function(understudy_test name)
   target_compile_definitions(${name}_test PRIVATE
     UNDERSTUDY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   understudy_join_sources(${name}_test 16)
-  understudy_list_suites(${name} "${TEST_TIMEOUT}" "${TEST_LOCK}")
+  understudy_list_suites(${name} "${TEST_TIMEOUT}" "${TEST_LOCK}" "${TEST_PROCESSORS}")
 endfunction()
 
-# understudy_list_suites(NAME TIMEOUT LOCK): CTest's tests of NAME_test, one for each suite.
-function(understudy_list_suites name timeout lock)
+# understudy_list_suites(NAME TIMEOUT LOCK PROCESSORS): CTest's tests of NAME_test, one for each suite.
+function(understudy_list_suites name timeout lock processors)
   if(NOT timeout)
     set(timeout 120)
   endif()
@@ -74,6 +75,9 @@ function(understudy_list_suites name timeout lock)
   set(properties "ENVIRONMENT LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0")
   if(lock)
     string(APPEND properties " RESOURCE_LOCK ${lock}")
+  endif()
+  if(processors)
+    string(APPEND properties " PROCESSORS ${processors}")
   endif()
   set_property(TARGET ${name}_test APPEND PROPERTY LINK_DEPENDS ${read})
   set(tests ${CMAKE_CURRENT_BINARY_DIR}/${name}_tests.cmake)

@@ -124,6 +124,11 @@ class BadInput(unittest.TestCase):
 
 
 class WhileItRuns(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
     def test_progress_is_told(self):
         told = []
         understudy.rehearse(BOTTLE, **OPTIONS, progress=lambda share, what: told.append((share, what)))
@@ -144,8 +149,12 @@ class WhileItRuns(unittest.TestCase):
         self.assertEqual(records[0].trace_csv, records[1].trace_csv)
 
     def test_ctrl_c_ends_it(self):
+        # Two hours of motion, so that no computer is done with them before the signal arrives.
+        moves = "G1 X10\nG1 X-10\n" * 1800
+        program = self.folder / "long.gcode"
+        program.write_text(f"G21\nG90\nG1 X0 Y0 Z60 F600\n{moves}")
         script = ("import understudy\nprint('started', flush=True)\n"
-                  f"understudy.rehearse({BOTTLE!r}, fixture='bottle', engine='mujoco')\n")
+                  f"understudy.rehearse({str(program)!r}, engine='mujoco', gap_control='off')\n")
         process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    text=True)
         self.assertEqual(process.stdout.readline(), "started\n")
