@@ -133,8 +133,14 @@ Eigen::MatrixXd aligned(const Eigen::MatrixXd& basis) {
   return result;
 }
 
+/// v^T C^-1 v. One kind of decomposition in this source, of matrices of any size: each takes the compiler
+/// seconds.
+double weighted_square(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& v) {
+  return v.dot(covariance.ldlt().solve(v));
+}
+
 double sigma_of(const Mat6& covariance, const Eigen::Matrix<double, 6, 1>& unit) {
-  return 1 / std::sqrt(unit.dot(covariance.ldlt().solve(unit)));
+  return 1 / std::sqrt(weighted_square(covariance, unit));
 }
 
 UnseenFreedom shift_along(const Vec3& direction, const Mat6& tolerance) {
@@ -192,7 +198,7 @@ double chi_square_of(const Linearised& at, const Noise& noise, const SeenFit& fi
   const Eigen::VectorXd left = beside.transpose() * at.distance.cwiseQuotient(noise.own);
   const Eigen::MatrixXd covariance =
       beside.transpose() * (fit.covariance + growth * growth.transpose()) * beside;
-  return left.dot(covariance.ldlt().solve(left));
+  return weighted_square(covariance, left);
 }
 
 double half_size(const geometry::Mesh& mesh) { return 0.5 * (mesh.upper() - mesh.lower()).norm(); }
