@@ -7,7 +7,7 @@ from pathlib import Path
 
 STAGES = Path(__file__).resolve().parents[2] / "scripts" / "stages.sh"
 # As ./check calls a stage.
-SCRIPT = f"set -euo pipefail; . {STAGES}; stage=extended all=0; (set -e; run_tests release -L extended)"
+SCRIPT = f"set -euo pipefail; . '{STAGES}'; stage=extended all=0; (set -e; run_tests release -L extended)"
 SUMMARY = """50% tests passed, 1 tests failed out of 2
 The following tests FAILED:
 \t2 - room.Name (Failed)
