@@ -5,7 +5,7 @@ say() { printf '==> %s\n' "$*"; }
 
 # install_packages [check]: the list up to "# check", or all of it.
 install_packages() {
-  local missing=() name sudo=
+  local missing=() name sudo= log
   while read -r name; do
     [ "$name" != '# check' ] || [ "${1:-}" = check ] || break
     case "$name" in '' | '#'*) continue ;; esac
@@ -20,7 +20,10 @@ install_packages() {
     sudo=sudo
   fi
   $sudo apt-get update -qq
-  $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  log=$(mktemp)
+  $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >"$log" ||
+    { grep -vE '^(Selecting|Preparing|Unpacking|Setting up|Processing|\(Reading)' "$log" | tail -n 40 >&2; exit 3; }
+  rm -f "$log"
 }
 
 # configure PRESET [-DNAME=VALUE...]: nothing to do where it is configured and no value is given.
