@@ -74,9 +74,7 @@ Finding contact_finding(const ContactStretch& stretch, bool touches, double limi
                                     -f.value, place_text(contact.place_W))
                       : fmt::format("{} passes {} at {:.3f} mm, nearer than {:.3f} mm, at {}", contact.body,
                                     contact.obstacle, f.value, f.limit, place_text(contact.place_W));
-  if (stretch.last_line != stretch.first_line)
-    f.message += fmt::format(" (lines {} to {}, the worst on {})", stretch.first_line, stretch.last_line,
-                             contact.line);
+  if (stretch.last_line != stretch.first_line) f.message += fmt::format(" on line {}", contact.line);
   return f;
 }
 

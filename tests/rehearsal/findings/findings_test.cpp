@@ -52,6 +52,21 @@ TEST(Findings, APlaceAtZeroHasNoSign) {
   EXPECT_THAT(findings[0].message, testing::HasSubstr("(0.00, 0.00, -12.34) mm"));
 }
 
+// Where findings are told, their lines stand beside them.
+TEST(Findings, AContactOfManyLinesSaysWhichIsTheWorstAndNotAllOfThem) {
+  TwinSetup setup;
+  setup.machine = machine::load_machine("hexapod");
+  TwinRun run;
+  run.result.completed = true;
+  for (const auto& [line, depth] : {std::pair{35, 0.01e-3}, {36, 0.07e-3}, {37, 0.02e-3}})
+    run.collisions.push_back({"nozzle", "part", -depth, Vec3(5e-3, 0, 30e-3), 1.0 * line, line});
+  const auto findings = findings_of(run, setup, control::GapControl::off);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].gcode_line, 35);
+  EXPECT_EQ(findings[0].last_line, 37);
+  EXPECT_EQ(findings[0].message, "nozzle touches part, 0.070 mm deep at (5.00, 0.00, 30.00) mm on line 36");
+}
+
 TEST(Findings, AGrooveOfThePrintIsNone) {
   sim::UnsupportedStretch groove = high_start();
   groove.held_at_start = groove.on_printed = true;
