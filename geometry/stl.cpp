@@ -11,6 +11,7 @@
 #include <assimp/Importer.hpp>
 
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/file/read_file.h"
 #include "geometry/mesh.h"
 #include "geometry/stl_structure.h"
@@ -183,13 +184,7 @@ std::shared_ptr<const Mesh> read_stl(const std::filesystem::path& path, const Me
   const Soup soup = parse_stl(bytes, file);
   if (soup.corners.empty()) throw InputError(Place{file}, "0 triangles, at least 1 is needed");
   check_size(soup, check, file);
-  std::shared_ptr<const Mesh> mesh;
-  try {
-    mesh = weld(soup, file);
-  } catch (const InputError& error) {
-    if (!error.place().file.empty()) throw;
-    throw InputError(Place{file}, error.what());
-  }
+  const std::shared_ptr<const Mesh> mesh = in_context_of(file, [&] { return weld(soup, file); });
   check_surface(*mesh, check, file);
   return mesh;
 }

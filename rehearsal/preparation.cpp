@@ -23,6 +23,7 @@
 #include "rehearsal/removal.h"
 #include "rehearsal/request/memory_need.h"
 #include "sim/as_built/truth.h"
+#include "sim/plant/hexapod_assembly.h"
 #include "toolpath/crowding.h"
 #include "toolpath/duration.h"
 
@@ -106,6 +107,7 @@ TwinSetup prepare(const RehearsalRequest& request, Mended& mended) {
   setup.as_built = sim::make_as_built(
       setup.machine, request.as_built.empty() ? sim::default_as_built(setup.machine) : request.as_built,
       seeds, request.fixture);
+  sim::check_stands_at_home(setup.machine, setup.as_built);
   setup.truth = sim::true_description(setup.machine, setup.as_built);
   setup.built_part = sim::true_part(setup.part, setup.as_built.part);
   if (!request.part_pose.empty()) believe_part_pose(request, setup);

@@ -13,6 +13,7 @@
 #include "cli/plan/plan_options.h"
 #include "cli/progress.h"
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/units.h"
 #include "geometry/box_mesh.h"
 #include "geometry/printed_clearance.h"
@@ -176,7 +177,7 @@ int plan_lattice(const LatticeRequest& r) {
   auto plan = plan_of(r, machine);
   const auto result = with_progress(!r.options.quiet, [&](const Progress& progress) {
     plan.limits.progress = progress;
-    return toolpath::plan_lattice(lattice, plan);
+    return in_context_of(is_frame(r) ? r.part : "", [&] { return toolpath::plan_lattice(lattice, plan); });
   });
   warn_of_lengths(lattice);
   for (const std::string& warning : result.sequence.warnings) fmt::print(stderr, "warning: {}\n", warning);

@@ -130,6 +130,7 @@ int plan_surface(const SurfaceRequest& r) {
   fill_process(r, machine, plan);
   plan.tilt_max = std::numbers::pi;  // the machine says
   plan.upright = r.upright;
+  plan.curve_files = r.curves;
   const auto program = with_progress(!r.options.quiet, [&](const Progress& progress) {
     const auto curves = curves_on(*mesh, r, plan, stage_of(progress, 0, 0.3));
     plan.progress = stage_of(progress, 0.3, 0.7);

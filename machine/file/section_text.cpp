@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/file/output_file.h"
 #include "machine/file/beside_machine.h"
 #include "machine/model_files.h"
@@ -60,8 +61,9 @@ StagedFile staged_with_section(const std::filesystem::path& original, const std:
     const bool urdf = !urdf_named_in(text, original).empty();
     check_machine_text(text, std::filesystem::absolute(urdf ? original : path));
   } catch (const InputError& error) {
-    throw InputError(
-        fmt::format("{}: the calibrated machine would be refused: {}", path.string(), error.what()));
+    // Its place is a line of a file that is never written.
+    throw InputError(Place{path.string()}, fmt::format("the calibrated machine would be refused: {}",
+                                                       message_without_place(error)));
   }
   return StagedFile(path, text);
 }

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <numbers>
 
 #include "core/error.h"
 #include "core/units.h"
+#include "core/yaml/changed_file.h"
 
 namespace understudy::sim {
 
@@ -53,6 +55,19 @@ kinematics::AxisVector home_displacement(const machine::MachineDescription& mach
   kinematics::AxisVector displacement{};
   for (std::size_t i = 0; i < kStruts; ++i) displacement[i] = lengths[i] - as_built.hexapod.length_offset[i];
   return displacement;
+}
+
+void check_stands_at_home(const machine::MachineDescription& machine, const AsBuilt& as_built) {
+  if (machine.is_chain()) return;
+  try {
+    static_cast<void>(assemble_hexapod(machine, as_built, home_displacement(machine, as_described(machine))));
+  } catch (const MachineError& error) {
+    const bool file = std::filesystem::is_regular_file(changed_file(as_built.source).file);
+    throw InputError(Place{file ? as_built.source : machine.file.string()},
+                     fmt::format("with its drives where the machine file has them at home, {}; are these the "
+                                 "errors of another machine?",
+                                 error.what()));
+  }
 }
 
 }  // namespace understudy::sim

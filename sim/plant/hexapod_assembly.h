@@ -31,4 +31,9 @@ Pose assemble_hexapod(const machine::MachineDescription& machine, const AsBuilt&
 /// Drive displacements at home. Throws MachineError when the as-built machine does not reach it.
 kinematics::AxisVector home_displacement(const machine::MachineDescription& machine, const AsBuilt& as_built);
 
+/// That a built hexapod can stand with its drives where the description has them at home, as a machine does
+/// whose drives are referenced; any other machine can. Throws InputError, said of the as-built file or of the
+/// machine's.
+void check_stands_at_home(const machine::MachineDescription& machine, const AsBuilt& as_built);
+
 }  // namespace understudy::sim

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/units.h"
 #include "toolpath/planners/curve_sampling.h"
 #include "toolpath/planners/plan_checks.h"
@@ -87,8 +88,11 @@ Program plan_surface(const geometry::Mesh& mesh, const std::vector<std::vector<V
   std::vector<std::vector<SurfacePoint>> paths;
   const double outermost = plan.gap + (layers - 1) * plan.bead_height;
   for (const auto& curve : curves) {
-    paths.push_back(sample_curve(mesh, curve, {outermost, plan.step, plan.chord_tolerance}));
-    if (!plan.upright) check_tilt(paths.back(), plan.tilt_max);
+    const std::size_t i = paths.size();
+    in_context_of(i < plan.curve_files.size() ? plan.curve_files[i] : "", [&] {
+      paths.push_back(sample_curve(mesh, curve, {outermost, plan.step, plan.chord_tolerance}));
+      if (!plan.upright) check_tilt(paths.back(), plan.tilt_max);
+    });
     tell(plan.progress, paths.size(), curves.size(), "laying curves on the surface");
   }
   ProgramBuilder program(plan.cuts ? 1.0 : plan.filament_diameter);

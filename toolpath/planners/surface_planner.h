@@ -1,6 +1,7 @@
 // Prints a curve on any surface with the tool along the local normal (Song 2015, 3.2 and 6.2).
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/progress.h"
@@ -28,6 +29,7 @@ struct SurfacePlan {
   /// An end mill, its face on the surface: nothing is laid, filament, heater and gap do not count, and layers
   /// are passes from the outermost inwards, bead_height apart.
   bool cuts = false;
+  std::vector<std::string> curve_files = {};  ///< of the curves, in order, for errors; may be empty
   Progress progress = {};
 };
 
@@ -39,7 +41,8 @@ struct SurfacePlan {
 /// area. Order of steps: temperature and wait, fan, travel above, S' (travel), S (move: the approach), print
 /// moves, retreat (travel, straight along the tool axis). Throws InputError when a value of the plan is out
 /// of range, the curve has no length, leaves the mesh by more than 5 mm, crosses a sharp edge (normals of
-/// neighbours more than 20 degrees apart however close they are), or tilts the tool beyond tilt_max.
+/// neighbours more than 20 degrees apart however close they are), or tilts the tool beyond tilt_max; the
+/// curve's file is then its place.
 Program plan_surface(const geometry::Mesh& mesh, const std::vector<Vec3>& curve, const SurfacePlan& plan);
 
 /// The same for several curves, each with its own approach and retreat, and for `layers` layers of them:

@@ -93,7 +93,7 @@ TEST(PlanLattice, RefusesAStrutThatTheMachineCannotReachAndSaysWhy) {
   const std::string output = folder / "far.gcode";
   const Outcome far = understudy("plan lattice " + frame + " --place 400,0,0 -o " + output);
   EXPECT_EQ(far.status, 2);
-  EXPECT_THAT(far.err, HasSubstr("strut 0 from "));
+  EXPECT_THAT(far.err, HasSubstr("far.json: strut 0 from "));
   EXPECT_THAT(far.err, HasSubstr("no tool axis within 90 deg of vertical can print it: "));
   EXPECT_EQ(understudy("plan lattice " + frame + " --place 400,0,0 --ignore-reach -o " + output).status, 0);
   EXPECT_EQ(understudy("plan lattice " + frame + " -o " + output).status, 0);

@@ -64,6 +64,17 @@ TEST(PlanSurface, TakesAnyCurveOnAnyMesh) {
   EXPECT_THAT(read_file(folder / "line.gcode"), HasSubstr("Y10"));
 }
 
+TEST(PlanSurface, NamesTheCurveThatIsNotOnThePart) {
+  const Folder folder;
+  const auto near = folder.write("near.csv", "x_mm,y_mm,z_mm\n-3,-10,31\n0,0,31\n3,10,31\n");
+  const auto far = folder.write("far.csv", "x_mm,y_mm,z_mm\n-3,-10,31\n0,0,310\n3,10,31\n");
+  const Outcome outcome = understudy("plan surface bottle --curve " + near + " --curve " + far + " -o " +
+                                     (folder / "line.gcode"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("far.csv: point 2 of the curve, (0.000, 0.000, 310.000) mm, is "));
+  EXPECT_EQ(folder.entries(), 2);
+}
+
 TEST(PlanSurface, RefusesWhatItCannotPlanAndWritesNothing) {
   const Folder folder;
   const std::string out = " -o " + (folder / "line.gcode");

@@ -120,6 +120,21 @@ TEST_F(CalibrationSection, IsRefusedWhereItBelongsToAnotherMachine) {
               HasSubstr("unknown key 'calibration.noses'"));
 }
 
+// The line belongs to a file that is never written.
+TEST_F(CalibrationSection, ACalibrationThatWouldBeRefusedIsNotWrittenAndNamesTheFileAlone) {
+  MachineDescription m = calibrated_hexapod();
+  m.hexapod().geometry.base_joint[0].x() += 50e-3;
+  const auto path = folder_ / "far.yaml";
+  try {
+    write_calibrated(m, path);
+    FAIL() << "written";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                StartsWith(path.string() + ": the calibrated machine would be refused: base joint 1 is"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 // A zero of 4 deg at the shoulder takes the tool of an arm much farther than any part is from its drawing.
 TEST_F(CalibrationSection, ZerosOfAnArmMaySwingItsToolAway) {
   MachineDescription m = calibrated_arm();
