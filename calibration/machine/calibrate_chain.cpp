@@ -11,6 +11,7 @@
 #include "calibration/machine/stored_parameters.h"
 #include "calibration/machine/tip_map.h"
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/units.h"
 #include "machine/file/calibration_section.h"
 
@@ -108,8 +109,10 @@ void calibrate_chain_machine(const Measurements& measurements, const machine::Ma
   const std::string misfit =
       misfit_warning(found.chi_square, found.degrees_of_freedom, "outliers, play, bending");
   if (!misfit.empty()) result.warnings.push_back(misfit);
-  result.tip = tip_map(nominal, result.machine, tip_covariance(result, found, measurements),
-                       stage_of(progress, 0.7, 1));
+  result.tip = in_context_of(measurements.file, [&] {
+    return tip_map(nominal, result.machine, tip_covariance(result, found, measurements),
+                   stage_of(progress, 0.7, 1));
+  });
 }
 
 }  // namespace understudy::calibration

@@ -11,6 +11,7 @@
 #include "calibration/machine/tip_map.h"
 #include "calibration/residual_covariance.h"
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/units.h"
 
 namespace understudy::calibration {
@@ -107,7 +108,9 @@ void report_hexapod(const Problem& problem, const Calibration& found, const Unkn
     result.poses.push_back(residual_of(problem, found, j, measurements.poses[j].line));
   result.parameters = parameter_lines(problem, found, unknowns);
   report_estimation(found, found.covariance, result);
-  result.tip = tip_map(nominal, result.machine, tip_covariance(result, found, unknowns, measurements));
+  result.tip = in_context_of(measurements.file, [&] {
+    return tip_map(nominal, result.machine, tip_covariance(result, found, unknowns, measurements));
+  });
 }
 
 }  // namespace understudy::calibration

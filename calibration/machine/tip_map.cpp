@@ -6,6 +6,7 @@
 
 #include "calibration/bound.h"
 #include "calibration/pose_choice.h"
+#include "core/error.h"
 #include "core/quantile.h"
 
 namespace understudy::calibration {
@@ -68,19 +69,29 @@ TipMap::Slice slice(const machine::MachineDescription& machine, const kinematics
   return out;
 }
 
+std::vector<Pose> poses_of_work_space(const machine::MachineDescription& machine,
+                                      const kinematics::Mechanism& mechanism) {
+  Random random(kSeed, "calibrate work space");
+  try {
+    return random_reachable_poses(mechanism, reference_region(machine.X_BT_home), kPoses, random);
+  } catch (const InputError&) {
+    throw InputError(
+        "the calibrated machine reaches hardly any pose of its work space: not all that was measured "
+        "belongs to one machine; look for a wrong pose, or try --estimator robust");
+  }
+}
+
 }  // namespace
 
 TipMap tip_map(const machine::MachineDescription& before, const machine::MachineDescription& after,
                const TipCovariance& covariance, const Progress& progress) {
   tell(progress, 0, 1, kAsked);
   const auto old_model = before.make_mechanism(), new_model = after.make_mechanism();
-  Random random(kSeed, "calibrate work space");
   TipMap map;
   std::vector<double> sigmas, moves;
   double squares = 0;
   std::size_t done = 0;
-  for (const Pose& X_BT :
-       random_reachable_poses(*new_model, reference_region(after.X_BT_home), kPoses, random)) {
+  for (const Pose& X_BT : poses_of_work_space(after, *new_model)) {
     if (double d = 0; moved_tip(before, *old_model, after, *new_model, X_BT, d)) moves.push_back(d);
     tell(stage_of(progress, 0, 0.4), ++done, kPoses, kAsked);
     Mat3 at;

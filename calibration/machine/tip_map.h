@@ -29,7 +29,8 @@ struct TipMap {
 /// Covariance of the tip [m^2] at a pose that the calibrated machine is driven to; false where it cannot go.
 using TipCovariance = std::function<bool(const Pose& X_BT, Mat3& covariance)>;
 
-/// `before` knows the machine as it was known, `after` as it is known now.
+/// `before` knows the machine as it was known, `after` as it is known now. Throws InputError where that one
+/// reaches next to nothing of the work space.
 TipMap tip_map(const machine::MachineDescription& before, const machine::MachineDescription& after,
                const TipCovariance& covariance, const Progress& progress = {});
 

@@ -8,6 +8,7 @@
 #include "cli/plan/plan_options.h"
 #include "cli/progress.h"
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/units.h"
 #include "machine/cure.h"
 #include "machine/fixture_file.h"
@@ -61,7 +62,7 @@ std::vector<std::vector<Vec3>> strokes_of_svg(const geometry::Mesh& mesh, const 
   std::vector<std::vector<Vec2>> strokes;
   for (auto& stroke : toolpath::read_svg(r.svg, r.chord_um * kMicrometre))
     strokes.push_back(std::move(stroke.points));
-  return toolpath::drawing_on_surface(mesh, strokes, place);
+  return in_context_of(r.svg, [&] { return toolpath::drawing_on_surface(mesh, strokes, place); });
 }
 
 std::vector<std::vector<Vec3>> curves_on(const geometry::Mesh& mesh, const SurfaceRequest& r,

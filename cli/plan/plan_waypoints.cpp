@@ -48,6 +48,7 @@ int plan_waypoints(const WaypointRequest& r) {
   plan.filament_diameter = machine.tool.filament_diameter;
   plan.temperature = r.options.temperature_c + kCelsiusZero;
   plan.fan = r.options.fan;
+  plan.files = r.files;
   const auto result = toolpath::plan_waypoints(layers, plan);
   write_program(result.program, machine, r.options);
   if (result.single_points > 0)

@@ -192,6 +192,21 @@ void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription&
   if (map.complete()) check_apart(map, chain, index);
 }
 
+/// An axis that moves neither the tool nor the work is a slip of the pen in what another one is carried by.
+/// `places`: of each axis in the file.
+void check_all_carry(const Chain& chain, const std::vector<Place>& places) {
+  std::vector<bool> carries(chain.axes.size(), false);
+  for (int from : {chain.tool_axis, chain.work_axis})
+    for (int axis = from; axis >= 0; axis = chain.axes[static_cast<std::size_t>(axis)].parent)
+      carries[static_cast<std::size_t>(axis)] = true;
+  for (std::size_t i = 0; i < carries.size(); ++i)
+    if (!carries[i])
+      throw InputError(places[i], fmt::format("axis {} carries neither the tool nor the work: look at "
+                                              "carried_by of the axes behind it, at tool_carried_by and "
+                                              "at work_carried_by",
+                                              chain.axes[i].name));
+}
+
 /// The tool at zero, for chains that list their axes.
 Pose read_tool_mount(YamlMap& map) {
   const Vec3 tip =
@@ -242,10 +257,12 @@ void read_chain(YamlMap& root, MachineDescription& machine, MachineNotes& notes)
       model.kinematics.condition_max = map.quantity("condition_max", {1, 1e6}, "of the Jacobian");
   });
   std::size_t count = 0;
+  std::vector<Place> places;
   root.list("axes", kind.chain ? chain.axes.size() : 0, "range, drive, play and body of each axis",
             [&](YamlMap& map, std::size_t index) {
               read_axis(map, listed, index, machine, notes);
               count = index + 1;
+              places.push_back(map.place());
             });
   if (root.has("frame"))
     root.section("frame", "what stands still", [&](YamlMap& map) { read_bodies(map, model.frame_bodies); });
@@ -257,6 +274,7 @@ void read_chain(YamlMap& root, MachineDescription& machine, MachineNotes& notes)
   if (listed) {
     chain.tool_axis = find_axis(chain, tool);
     chain.work_axis = find_axis(chain, work);
+    if (chain.rods.empty()) check_all_carry(chain, places);
   }
   check_rods(root, model);
   if (chain.work_axis >= 0 && based)

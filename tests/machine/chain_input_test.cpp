@@ -142,6 +142,19 @@ TEST_F(ChainInput, CarriedByNobodyOrByWhatComesLater) {
               HasSubstr("geometry.work_carried_by is 'table'"));
 }
 
+TEST_F(ChainInput, AnAxisThatMovesNeitherToolNorWork) {
+  EXPECT_THAT(
+      scara("- name: quill", "carried_by: wrist", "carried_by: elbow"),
+      AllOf(HasSubstr("machine.yaml:35:"), HasSubstr("axis wrist carries neither the tool nor the work")));
+  EXPECT_THAT(scara("geometry", "tool_carried_by: quill", "tool_carried_by: wrist"),
+              HasSubstr("axis quill carries neither the tool nor the work"));
+  auto both = edited(kScara, "geometry", "tool_carried_by: quill", "tool_carried_by: elbow");
+  both = edited(both, "- name: wrist", "carried_by: elbow", "carried_by: frame");
+  both = edited(both, "geometry", "  base_mm: [-250, 0, 0]\n  base_turn_deg: 0\n", "");
+  EXPECT_EQ(error_of(edited(both, "geometry", "work_carried_by: frame", "work_carried_by: quill")),
+            "accepted");
+}
+
 TEST_F(ChainInput, TwoAxesOfOneNameAndNamesThatMeanSomethingElse) {
   EXPECT_THAT(scara("- name: elbow", "name: elbow", "name: shoulder"),
               AllOf(HasSubstr(kInThatLine), HasSubstr("axes[2].name is 'shoulder', as axis 1 is")));

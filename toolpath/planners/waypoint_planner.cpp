@@ -29,13 +29,16 @@ void check(const std::vector<WaypointLayer>& layers, const WaypointPlan& plan) {
   for (std::size_t l = 0; l < layers.size(); ++l)
     for (std::size_t i = 0; i < layers[l].size(); ++i) {
       const Waypoint& w = layers[l][i];
-      const auto where = [&] { return fmt::format("waypoint {} of layer {}", i + 1, l + 1); };
+      const auto refuse = [&](const std::string& why) {
+        throw InputError(
+            Place{l < plan.files.size() ? plan.files[l] : ""},
+            fmt::format("waypoint {} of layer {} at {} {}", i + 1, l + 1, in_mm(w.position), why));
+      };
       if (w.position.z() < 0)
-        throw InputError(fmt::format("{} at {} lies {:.3f} mm under the table, lower than 0 mm", where(),
-                                     in_mm(w.position), -to_mm(w.position.z())));
+        refuse(fmt::format("lies {:.3f} mm under the table, lower than 0 mm", -to_mm(w.position.z())));
       if (const double tilt = angle(w.normal, Vec3::UnitZ()); tilt > plan.tilt_max)
-        throw InputError(fmt::format("{} at {} tilts the tool {:.3f} deg, more than {:.3f} deg", where(),
-                                     in_mm(w.position), to_deg(tilt), to_deg(plan.tilt_max)));
+        refuse(fmt::format("tilts the tool {:.3f} deg, more than {:.3f} deg", to_deg(tilt),
+                           to_deg(plan.tilt_max)));
     }
 }
 

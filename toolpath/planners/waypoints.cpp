@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
+#include "toolpath/gcode/gcode.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -32,6 +33,9 @@ Waypoint waypoint(std::string_view row, Place place) {
     const std::size_t end = std::min(row.find_first_of(kBlanks, at), row.size());
     place.column = static_cast<int>(at) + 1;
     values.push_back(number(row.substr(at, end - at), place));
+    if (values.size() <= 3 && std::abs(values.back()) > to_mm(kLargestCoordinate))
+      throw InputError(place, fmt::format("{} mm is beyond {:.6g} mm", row.substr(at, end - at),
+                                          to_mm(kLargestCoordinate)));
     at = row.find_first_not_of(kBlanks, end);
   }
   place.column = 0;

@@ -23,7 +23,8 @@ constexpr double kNormalTolerance = 2e-3;
 
 /// A file of rows `x y z nx ny nz`, positions in mm, separated by blanks; empty rows and rows that begin with
 /// # are passed over. Throws InputError with file, line and column for a row that does not have six finite
-/// numbers, and naming length and limit for a normal that is not of unit length, and for fewer than two rows.
+/// numbers, and naming value and limit for a position beyond the largest coordinate, a normal that is not of
+/// unit length, and fewer than two rows.
 WaypointLayer read_waypoints(const std::filesystem::path& path);
 WaypointLayer parse_waypoints(const std::string& text, const std::string& file);
 
@@ -38,16 +39,17 @@ void turn(std::vector<WaypointLayer>& layers, const WaypointFrame& frame);
 void place_on(std::vector<WaypointLayer>& layers, const Vec3& place);
 
 struct WaypointPlan {
-  double bead_width = 0;         ///< [m]
-  double bead_height = 0;        ///< [m]
-  double feed = 0;               ///< [m/s]
-  double approach_feed = 0;      ///< [m/s]
-  double clearance = 0;          ///< [m], of travel above all waypoints printed so far
-  double largest_step = 0;       ///< [m]; waypoints farther apart are not joined by a bead
-  double tilt_max = 0;           ///< [rad], from vertical
-  double filament_diameter = 0;  ///< [m]
-  double temperature = 0;        ///< [K]
-  double fan = 0;                ///< 0..1
+  double bead_width = 0;                ///< [m]
+  double bead_height = 0;               ///< [m]
+  double feed = 0;                      ///< [m/s]
+  double approach_feed = 0;             ///< [m/s]
+  double clearance = 0;                 ///< [m], of travel above all waypoints printed so far
+  double largest_step = 0;              ///< [m]; waypoints farther apart are not joined by a bead
+  double tilt_max = 0;                  ///< [rad], from vertical
+  double filament_diameter = 0;         ///< [m]
+  double temperature = 0;               ///< [K]
+  double fan = 0;                       ///< 0..1
+  std::vector<std::string> files = {};  ///< of the layers, in order, for errors; may be empty
 };
 
 struct WaypointProgram {

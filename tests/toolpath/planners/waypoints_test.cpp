@@ -67,6 +67,9 @@ TEST(Waypoints, EveryBadRowIsRefusedWithLineValueAndLimit) {
   EXPECT_THAT(rejection(good + "0 0 nan 0 0 1\n"), HasSubstr("'nan' is not a finite number"));
   EXPECT_THAT(rejection(good + "0 0 inf 0 0 1\n"), HasSubstr("'inf' is not a finite number"));
   EXPECT_THAT(rejection(good + "0 0 1e400 0 0 1\n"), HasSubstr("'1e400' is not a finite number"));
+  EXPECT_THAT(rejection(good + "0 -100001 1 0 0 1\n"),
+              HasSubstr("layer.txt:3:3: -100001 mm is beyond 100000 mm"));
+  EXPECT_EQ(rejection(good + "0 -100000 1 0 0 1\n"), "accepted");
   EXPECT_THAT(rejection(good + "0 0 1 0 0 1.01\n"),
               HasSubstr("layer.txt:3: the normal's length is 1.010000, more than 0.002 from 1"));
   EXPECT_THAT(rejection(good + "0 0 1 0 0 0\n"), HasSubstr("the normal's length is 0.000000"));
@@ -155,6 +158,11 @@ TEST(Waypoints, WhatCannotBePrintedIsRefused) {
       complaint([&] { plan_waypoints({layer}, p); }),
       HasSubstr("waypoint 1 of layer 1 at (-10.261, 0.000, 28.191) mm tilts the tool 20.000 deg, more "
                 "than 15.000 deg"));
+  p.files = {"first.txt", "second.txt"};
+  EXPECT_THAT(complaint([&] {
+                plan_waypoints({meridian(-10, 10, 0, 30), layer}, p);
+              }),
+              ::testing::StartsWith("second.txt: waypoint 1 of layer 2 at "));
   WaypointLayer low = layer;
   low[3].position.z() = -1e-3;
   EXPECT_THAT(complaint([&] { plan_waypoints({low}, plan()); }), HasSubstr("waypoint 4 of layer 1 at"));
