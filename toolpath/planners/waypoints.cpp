@@ -10,13 +10,13 @@
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "core/units.h"
-#include "toolpath/gcode/gcode.h"
 
 namespace understudy::toolpath {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::size_t kColumns = 6;
+constexpr double kFarthestWaypoint = 100;  // [m], what a program can say (docs/limits.md)
 
 double number(std::string_view word, const Place& place) {
   double value = 0;
@@ -33,9 +33,9 @@ Waypoint waypoint(std::string_view row, Place place) {
     const std::size_t end = std::min(row.find_first_of(kBlanks, at), row.size());
     place.column = static_cast<int>(at) + 1;
     values.push_back(number(row.substr(at, end - at), place));
-    if (values.size() <= 3 && std::abs(values.back()) > to_mm(kLargestCoordinate))
+    if (values.size() <= 3 && std::abs(values.back()) > to_mm(kFarthestWaypoint))
       throw InputError(place, fmt::format("{} mm is beyond {:.6g} mm", row.substr(at, end - at),
-                                          to_mm(kLargestCoordinate)));
+                                          to_mm(kFarthestWaypoint)));
     at = row.find_first_not_of(kBlanks, end);
   }
   place.column = 0;
