@@ -3,22 +3,26 @@
 #include <chrono>
 
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/file/scratch_folder.h"
 
 namespace understudy::regression {
+namespace fs = std::filesystem;
 namespace {
 
 constexpr double kShareOfOneRun = 0.1;  // of the progress shown when a series follows
 
-/// `outcome` says why there are no figures, when there are none.
-Metrics figures_or_failure(const std::function<Metrics()>& figures, ScenarioOutcome& outcome) {
+/// `outcome` says why there are no figures, when there are none. What no file is to blame for is the
+/// scenario's: a name that nobody knows.
+Metrics figures_or_failure(const fs::path& scenario, const std::function<Metrics()>& figures,
+                           ScenarioOutcome& outcome) {
   const auto fail = [&](const std::exception& error, int status) {
     outcome.error = error.what();
     outcome.error_status = status;
     return failed_run(status);
   };
   try {
-    return figures();
+    return in_context_of(scenario.string(), figures);
   } catch (const InputError& e) {
     return fail(e, 2);
   } catch (const MachineError& e) {
@@ -81,6 +85,7 @@ ScenarioOutcome run_scenario(const Scenario& described, const ScenarioRun& run) 
     if (run.progress) run.progress(share, what);
   };
   outcome.run = figures_or_failure(
+      scenario.file,
       [&] {
         if (!scenario.command.empty()) return run.command(scenario);
         plan();

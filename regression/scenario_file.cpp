@@ -12,9 +12,6 @@
 #include "core/file/read_file.h"
 #include "core/yaml/changed_file.h"
 #include "core/yaml/yaml_map.h"
-#include "machine/description.h"
-#include "machine/fixture_file.h"
-#include "machine/material.h"
 #include "regression/expectation_keys.h"
 #include "regression/golden_file.h"
 #include "regression/scenario_faults.h"
@@ -55,18 +52,6 @@ std::string name_or_path(YamlMap& map, const std::string& key, const fs::path& f
   if (!fs::exists(path, ignored) && !(key == "machine" && fs::exists(file, ignored)))
     map.fail(key, key + " " + path.string() + " does not exist");
   return path.string();
-}
-
-/// That `name`, where it is no path, is one of those that are known. What a file holds the run tells, of this
-/// scenario alone.
-template <typename Load>
-void check_name(YamlMap& map, const std::string& key, const std::string& name, const Load& load) {
-  if (map.recording() || name.empty()) return;
-  try {
-    load(name);
-  } catch (const InputError& error) {
-    if (error.place().file.empty()) map.fail(key, error.what());
-  }
 }
 
 std::string read_fixture(YamlMap& map, const fs::path& folder) {
@@ -217,27 +202,20 @@ void read_scenario(YamlMap& map, const fs::path& folder, Scenario& scenario) {
     return;
   }
   scenario.machine = name_or_path(map, "machine", folder, ".yaml", "name of a model, or a path");
-  check_name(map, "machine", scenario.machine,
-             [](const std::string& name) { static_cast<void>(machine::load_machine(name)); });
   if (map.has("plan"))
     scenario.plan = map.text("plan", "in place of `program`: what follows `understudy plan`");
   if (map.has("program") || scenario.plan.empty())
     scenario.program = existing_file(map, "program", folder, "path of the G-code file");
   if (!scenario.program.empty() && !scenario.plan.empty() && !map.recording())
     map.fail("plan", "plan and program exclude each other: which is to be printed?");
-  if (map.has("fixture")) {
-    scenario.fixture = read_fixture(map, folder);
-    check_name(map, "fixture", scenario.fixture, machine::find_fixture);
-  }
+  if (map.has("fixture")) scenario.fixture = read_fixture(map, folder);
   scenario.as_built = read_as_built(map, folder);
   scenario.seed = map.seed("seed", "of the built machine and of all noise");
   scenario.gap_control = map.word("gap_control", kGapControls, "whether the gap is measured");
   scenario.engine = map.word("engine", engine_names(), "the plant");
-  if (map.has("material")) {
+  if (map.has("material"))
     scenario.material =
         name_or_path(map, "material", folder, ".yaml", "a name or a path; else the machine's");
-    check_name(map, "material", scenario.material, machine::load_material);
-  }
   read_tolerances(map, scenario);
   read_dialect(map, folder, scenario.dialect);
   read_surface(map, folder, scenario.surface);
