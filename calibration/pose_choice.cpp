@@ -114,16 +114,16 @@ PoseRegion reference_region(const Pose& X_BT_home) {
 
 std::vector<Pose> random_reachable_poses(const kinematics::Mechanism& mechanism, const PoseRegion& region,
                                          std::size_t count, Random& random) {
-  // A region of which a ten-thousandth is reachable gives a pose in 10 000 tries; of fewer the end is not
-  // waited for: such a region has no pose yet after kTriesBetween of them with a probability of 1 %.
-  constexpr std::size_t kTriesPerPose = 10'000, kTriesBetween = 46'000;
+  // At least a ten-thousandth of the region must be reachable. Where far less is, the search ends early: with
+  // a ten-thousandth there is no pose after kTriesForNext tries with a probability of 1 %.
+  constexpr std::size_t kTriesPerPose = 10'000, kTriesForNext = 46'000;
   std::vector<Pose> poses;
   kinematics::AxisVector axes{};
   const auto n = static_cast<std::size_t>(mechanism.axis_count());
   const std::span<double> used(axes.data(), n);
   std::vector<kinematics::LimitViolation> violations;
   for (std::size_t tries = 0; poses.size() < count; ++tries) {
-    if (tries >= std::min(kTriesPerPose * count, kTriesBetween * (poses.size() + 1)))
+    if (tries >= std::min(kTriesPerPose * count, kTriesForNext * (poses.size() + 1)))
       throw InputError("pose region: " + std::to_string(poses.size()) + " of " + std::to_string(tries) +
                        " random poses are within the machine's limits, too few to choose " +
                        std::to_string(count) + " from: make the region smaller or tilt less");

@@ -7,14 +7,13 @@
 #include "core/file/scratch_folder.h"
 
 namespace understudy::regression {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr double kShareOfOneRun = 0.1;  // of the progress shown when a series follows
 
-/// `outcome` says why there are no figures, when there are none. What no file is to blame for is the
-/// scenario's: a name that nobody knows.
-Metrics figures_or_failure(const fs::path& scenario, const std::function<Metrics()>& figures,
+/// `outcome` says why there are no figures, when there are none. An error without a place, such as an unknown
+/// name, gets the scenario's file.
+Metrics figures_or_failure(const std::filesystem::path& scenario, const std::function<Metrics()>& figures,
                            ScenarioOutcome& outcome) {
   const auto fail = [&](const std::exception& error, int status) {
     outcome.error = error.what();

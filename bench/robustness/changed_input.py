@@ -64,7 +64,7 @@ def is_text(data):
 
 
 def changed(random, data):
-    """The kind of the change, and the changed input. Two times in three it is a number or a word of a text: the file keeps its form."""
+    """The kind of the change, and the changed input. In a text it is mostly a number or a word, which leaves the form of the file."""
     if not is_text(data):
         kind = random.choice(list(BINARY))
         return kind, BINARY[kind](random, data)

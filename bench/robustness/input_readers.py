@@ -1,9 +1,10 @@
 """The inputs that input_study.py changes: for each reader good ones, with the command that reads them."""
 import subprocess
 from dataclasses import dataclass, field
-from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+import kill_study
+
+SOURCE = kill_study.SOURCE
 CORPUS = SOURCE / "tests/fuzz/corpus"
 QUICK = "--engine quasistatic --no-pictures --max-time 300 --out out"
 
@@ -22,6 +23,8 @@ class Case:
         for name, content in self.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(content)
+            if content.startswith(b"#!"):
+                (folder / name).chmod(0o755)
         for words in self.before:
             done = subprocess.run([understudy, *words.split()], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                   check=False)
@@ -38,7 +41,7 @@ def first_lines(path, count):
 
 
 LINE = first_lines("scenarios/song-bottle.gcode", 20)
-MOVE = b"G21\nG90\nM82\nG0 X0 Y0 Z60 F3000\nG1 X2 Y0 Z60 F600\n"
+MOVE = kill_study.MOVE.encode()
 FROM_HOME = b"G21\nG91\nM83\nM109 S210\nG1 X2 F600\nG1 Z-2\nG1 X2 Y1 E0.1 F300\n"  # any machine can
 PLUGIN = b"#!/bin/sh\nexec cat answer.json\n"
 TEXT_BOX = b"""solid box
@@ -129,7 +132,7 @@ def planners():
 
 
 def records():
-    yield Case("a.record", f"rehearse --replay a.record --machine five-axis --as-built nominal --out out", {"line.gcode": MOVE},
+    yield Case("a.record", "rehearse --replay a.record --machine five-axis --as-built nominal --out out", {"line.gcode": MOVE},
                [f"{TABLE} --as-built nominal {QUICK.replace('--out out', '--out first')} --record a.record"])
 
 

@@ -28,9 +28,6 @@ def template_of(understudy, case):
         if id(case) not in templates:
             made = tempfile.TemporaryDirectory(prefix="understudy-inputs-")
             case.make(understudy, Path(made.name))
-            for name in ("plugin.sh",):
-                if (Path(made.name) / name).exists():
-                    (Path(made.name) / name).chmod(0o755)
             templates[id(case)] = made
         return Path(templates[id(case)].name)
 

@@ -192,7 +192,7 @@ void read_axis(YamlMap& map, bool listed, std::size_t index, MachineDescription&
   if (map.complete()) check_apart(map, chain, index);
 }
 
-/// An axis that moves neither the tool nor the work is a slip of the pen in what another one is carried by.
+/// An axis that moves neither the tool nor the work is a mistake in what another one is carried by.
 /// `places`: of each axis in the file.
 void check_all_carry(const Chain& chain, const std::vector<Place>& places) {
   std::vector<bool> carries(chain.axes.size(), false);

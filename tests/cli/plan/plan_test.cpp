@@ -247,6 +247,9 @@ TEST(Plan, EveryKindRefusesBadInputInOneLineAndWritesNothing) {
            {"plan waypoints /nonexistent.txt", "/nonexistent.txt"},
            {"plan waypoints " + kSource + "/README.md --up w", "--up 'w' is not x, y, z, -x, -y or -z"},
            {"plan waypoints " + kSource + "/LICENSE", "LICENSE:2:34: 'Apache' is not a finite number"},
+           {"plan surface slanted_box --svg-at 0,0,18 --svg-width 80 --svg " + kSource +
+                "/scenarios/letters/usc.svg",
+            "usc.svg: the drawing reaches beyond the part"},
            {"plan waypoints " + far + " --machine arm", "far.txt:1:1: 1e300 mm is beyond 100000 mm"},
            {"plan lattice box:20x20 ", "'box:20x20' is not a box of three sides in mm"},
            {"plan lattice box:20x20x20 --strut 4", "strut length is 4 mm, outside 5 to 11 mm"},

@@ -102,7 +102,7 @@ TEST_F(ScenarioRuns, OneThatCannotRunFailsBesideThoseThatCan) {
   yaml.replace(yaml.find("fixture: bottle"), 15, "fixture: botle");
   folder_.write("one.yaml", yaml);
   EXPECT_THAT(run(at("one.yaml") + " " + at("two.yaml") + " --processes 2", 2),
-              HasSubstr("1 passed, 1 failed"));
+              ::testing::AllOf(HasSubstr("1 passed, 1 failed"), HasSubstr("one.yaml: no fixture botle: ")));
 }
 
 TEST_F(ScenarioRuns, ResumeRunsOnlyWhatIsNotThereOrHasOtherInputs) {
