@@ -166,7 +166,12 @@ std::optional<Runs> run_or_find(const RehearsalRequest& request, const TwinSetup
                    runs_before ? &before->setup : nullptr,
                    [&](double share, const std::string& what) { progress(0.05 + 0.85 * share, what); });
   } catch (const MachineError& error) {
-    if (!options.beyond_limits) throw;
+    if (!options.beyond_limits) {
+      const std::string built = sim::file_of(setup.as_built);
+      if (built.empty()) throw;
+      throw MachineError(fmt::format("{}: the machine with these errors cannot be simulated to the end: {}",
+                                     built, error.what()));
+    }
     Finding f;
     f.kind = "unreachable";
     f.unit = "1";

@@ -17,6 +17,7 @@ class Case:
     before: list = field(default_factory=list)  # commands that make further inputs
     then: str = ""  # the command that takes what the first one made, where that ends with status 0 or 1
     results: tuple = ("out",)  # names that the commands may leave
+    describes_truth: bool = False  # what the input describes may fail in the run: status 3, with its name
     reports: bool = False  # a refusal stands in the report of all runs, and is told on standard output
 
     def make(self, understudy, folder):
@@ -170,7 +171,8 @@ READERS = {
                    "p.gcode": FROM_HOME})],
     "material": [Case("m.yaml", f"{HEXAPOD} --material m.yaml", {"line.gcode": LINE, "m.yaml": of(f"models/materials/{name}.yaml")})
                  for name in ("pla", "abs")],
-    "as_built": [Case("b.yaml", f"{HEXAPOD} --as-built b.yaml", {"line.gcode": LINE, "b.yaml": of("examples/as-built-hexapod.yaml")}),
+    "as_built": [Case("b.yaml", f"{HEXAPOD} --as-built b.yaml", {"line.gcode": LINE, "b.yaml": of("examples/as-built-hexapod.yaml")},
+                      describes_truth=True),
                  Case("b.yaml", f"{TABLE} --as-built b.yaml {QUICK}", {"line.gcode": MOVE, "b.yaml": of("examples/as-built-five-axis.yaml")})],
     "fixture": [Case("f.yaml", f"rehearse line.gcode --fixture f.yaml {QUICK}",
                      {"line.gcode": LINE, "f.yaml": b"shape: bottle.stl\nsource: drawing\ntolerances: {position_mm: 0.3, rotation_mrad: 2, "

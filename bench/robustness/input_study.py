@@ -5,7 +5,7 @@ Each input is a good one with a number, a word, lines or bytes changed, or cut o
 command must end within its time, and not by a signal. A refusal (status 2) is one line that names the input, and leaves nothing
 behind. What is accepted can be used: a rehearsal's folder is whole, its figures are numbers, a no-go has its reason, and the
 result of a planner or a calibration goes through a rehearsal or `axes` of its own, which again answers or refuses. No input ends
-a command with status 3.
+a command with status 3, but a built machine that cannot do what the program asks: the line names its file.
 
 usage: input_study.py --understudy PATH [--reader NAME...] [--runs N] [--seed S] [--inputs FOLDER] [--keep FOLDER]
   --inputs FOLDER  take FOLDER/READER/* (or FOLDER/READER/corpus/*) instead of changed inputs

@@ -164,10 +164,11 @@ std::optional<RecordedEntry> read_entry(RecordKind kind, Payload payload) {
 int axes_of(std::ifstream& file, const std::filesystem::path& path) {
   std::string first(kFirstLine, '\0');
   file.getline(first.data(), static_cast<std::streamsize>(first.size()));
+  const std::streamsize line = file.gcount() - 1;  // without its end, which belongs to it
   int axes = 0, used = 0;
   const std::string format = std::string(kRecordMagic) + " %d%n";
-  if (file.fail() || std::sscanf(first.c_str(), format.c_str(), &axes, &used) != 1 ||
-      first[static_cast<std::size_t>(used)] != '\0' || axes < 1 || axes > kMaxAxes)
+  if (file.fail() || file.eof() || std::sscanf(first.c_str(), format.c_str(), &axes, &used) != 1 ||
+      used != line || axes < 1 || axes > kMaxAxes)
     throw InputError({path.string(), 1},
                      fmt::format("it is no record of a port: its first line is not '{} N', "
                                  "N axes from 1 to {}",

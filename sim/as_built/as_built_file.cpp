@@ -145,6 +145,10 @@ MapSchema as_built_schema() {
   return YamlMap::schema([&built](YamlMap& root) { read_built(root, built); });
 }
 
+std::string file_of(const AsBuilt& built) {
+  return std::filesystem::is_regular_file(changed_file(built.source).file) ? built.source : "";
+}
+
 std::string write_as_built(const AsBuilt& built) {
   return fmt::format("# As built: {}, seed {}. Every parameter that the plant uses.\nmachine: {}\n",
                      printable(built.source), built.seed, machine::quoted_text(built.machine)) +

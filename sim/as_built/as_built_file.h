@@ -12,6 +12,9 @@ namespace understudy::sim {
 /// line, key and limit; a name that is no file is answered with the words that are known.
 void read_as_built(const std::string& file, AsBuilt& built);
 
+/// The file, and what is changed of it, that the machine was read from; empty where it was drawn.
+std::string file_of(const AsBuilt& built);
+
 /// What such a file may hold, of any machine.
 MapSchema as_built_schema();
 

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <numbers>
 
 #include "core/error.h"
 #include "core/units.h"
-#include "core/yaml/changed_file.h"
+#include "sim/as_built/as_built_file.h"
 
 namespace understudy::sim {
 
@@ -62,8 +61,8 @@ void check_stands_at_home(const machine::MachineDescription& machine, const AsBu
   try {
     static_cast<void>(assemble_hexapod(machine, as_built, home_displacement(machine, as_described(machine))));
   } catch (const MachineError& error) {
-    const bool file = std::filesystem::is_regular_file(changed_file(as_built.source).file);
-    throw InputError(Place{file ? as_built.source : machine.file.string()},
+    const std::string file = file_of(as_built);
+    throw InputError(Place{file.empty() ? machine.file.string() : file},
                      fmt::format("with its drives where the machine file has them at home, {}; are these the "
                                  "errors of another machine?",
                                  error.what()));
