@@ -9,6 +9,7 @@
 
 #include "core/file/output_folder.h"
 #include "core/file/read_file.h"
+#include "core/text/json_depth.h"
 #include "report/summary_json.h"
 
 namespace understudy::report {
@@ -22,6 +23,8 @@ bool is_json(const std::string& name) { return name.ends_with(".json"); }
 
 /// The places that differ, each with both values.
 std::string json_details(const std::string& a, const std::string& b) {
+  if (nests_deeper(a) || nests_deeper(b))
+    return fmt::format("one of them is nested more than {} deep", kJsonDepthMax);
   const Json recorded = Json::parse(a, nullptr, false), again = Json::parse(b, nullptr, false);
   if (recorded.is_discarded() || again.is_discarded()) return "one of them is no JSON";
   std::vector<std::string> places;

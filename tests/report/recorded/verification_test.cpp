@@ -56,6 +56,13 @@ TEST_F(Verification, TellsWhichValuesAndWhichLineDiffer) {
   EXPECT_EQ(only_difference(), "trace.csv: from byte 10, line 3, on");
 }
 
+TEST_F(Verification, SaysNoMoreOfJsonThatIsNestedTooDeep) {
+  const auto nested = [](char in) { return std::string(200'000, '[') + in + std::string(200'000, ']'); };
+  write("a", "summary.json", nested('1'));
+  write("b", "summary.json", nested('2'));
+  EXPECT_EQ(only_difference(), "summary.json: one of them is nested more than 100 deep");
+}
+
 TEST_F(Verification, TellsOfFilesThatOneOfThemLacks) {
   fs::remove(root / "b" / "frames" / "1.png");
   EXPECT_EQ(only_difference(), "frames/1.png: it is no longer written");
