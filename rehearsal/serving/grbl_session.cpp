@@ -14,7 +14,9 @@ namespace understudy::rehearsal {
 namespace {
 
 constexpr std::size_t kReceiveBuffer = 1024;  // [bytes], grblHAL's
-constexpr std::size_t kLongestLine = 256;     // grblHAL; longer is error:11
+constexpr std::size_t kLongestLine = 256;     // grblHAL; longer is error:11, but for its comment
+// What is kept of a line: the rest of one that has no end may not fill the buffer.
+constexpr std::size_t kKeptOfLine = kReceiveBuffer / 2;
 constexpr char kReset = 0x18;
 
 // Codes of grbl's errors and alarms.
@@ -56,7 +58,7 @@ class GrblSession final : public ControllerSession {
         line_.clear();
       } else {
         after_return_ = false;
-        line_ += c;
+        if (line_.size() < kKeptOfLine) line_ += c;
       }
     }
   }
@@ -128,7 +130,7 @@ class GrblSession final : public ControllerSession {
   }
 
   void answer(const std::string& line) {
-    if (line.size() > kLongestLine) return error(kOverflow);
+    if (std::min(line.find(';'), line.size()) > kLongestLine) return error(kOverflow);
     const auto first = line.find_first_not_of(" \t");
     if (first == std::string::npos) return say("ok");
     if (line[first] == '$') return setting(line.substr(first));

@@ -4,8 +4,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <deque>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -20,7 +22,9 @@ namespace {
 
 constexpr std::size_t kLongestLine = 96;                  // MAX_CMD_SIZE
 constexpr std::size_t kReceiveBuffer = 4 * kLongestLine;  // BUFSIZE lines
-constexpr double kBusyEvery = 2;                          // [s], HOST_KEEPALIVE
+constexpr std::size_t kKeptOfLine = kReceiveBuffer / 2;   // the rest of one without an end may not fill it
+constexpr long kLastLineNumber = std::numeric_limits<std::int32_t>::max() - 1;
+constexpr double kBusyEvery = 2;  // [s], HOST_KEEPALIVE
 
 /// A line as it came, without what guards it.
 struct Command {
@@ -70,7 +74,7 @@ class MarlinSession final : public ControllerSession {
   void receive(std::string_view bytes) override {
     for (const char c : bytes) {
       if (c != '\n' && c != '\r') {
-        line_ += c;
+        if (line_.size() < kKeptOfLine) line_ += c;
         continue;
       }
       const std::string line = std::exchange(line_, {});
@@ -117,7 +121,8 @@ class MarlinSession final : public ControllerSession {
     long number = 0;
     const auto* begin = text.data() + 1;
     const auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
-    if (error != std::errc()) return again("Line Number is not Last Line Number+1");
+    if (error != std::errc() || number > kLastLineNumber)
+      return again("Line Number is not Last Line Number+1");
     const auto star = text.rfind('*');
     const bool renumber = text.find("M110") != std::string::npos;
     if (star == std::string::npos) return again("No Checksum with line number");
@@ -145,7 +150,8 @@ class MarlinSession final : public ControllerSession {
       say("ok");
       return;
     }
-    if (!command.text.empty()) commands_.push_back(std::move(command));
+    // A number alone is a line that its sender waits for, too.
+    if (!command.text.empty() || command.number) commands_.push_back(std::move(command));
   }
 
   void emergency() {
@@ -169,7 +175,8 @@ class MarlinSession final : public ControllerSession {
       renumber(text);
     else if (code == "M400")
       wait_for_rest_ = true;
-    else if (code != "M155" && code != "M113" && code != "M108" && code != "M503" && code != "M31")
+    else if (!code.empty() && code != "M155" && code != "M113" && code != "M108" && code != "M503" &&
+             code != "M31")
       take(text, code);
   }
 
@@ -194,7 +201,8 @@ class MarlinSession final : public ControllerSession {
 
   void renumber(const std::string& text) {
     const auto n = text.find('N', 4);
-    if (n != std::string::npos) last_line_ = std::strtol(text.c_str() + n + 1, nullptr, 10);
+    if (n != std::string::npos)
+      last_line_ = std::clamp(std::strtol(text.c_str() + n + 1, nullptr, 10), -1L, kLastLineNumber);
   }
 
   void say_temperatures() {

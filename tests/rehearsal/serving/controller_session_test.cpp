@@ -122,6 +122,47 @@ TEST(GrblSession, AResetWhileItMovesEndsThePrint) {
   EXPECT_FALSE(sender.served.whole());
 }
 
+// As much as the buffer takes at a time, as the line hands it over.
+std::string send_by_room(Sender& sender, const std::string& bytes) {
+  std::string heard;
+  for (std::size_t sent = 0; sent < bytes.size();) {
+    const std::size_t room = std::min(sender.session->room(), bytes.size() - sent);
+    EXPECT_GT(room, 0u) << "after " << sent << " bytes";
+    if (room == 0) break;
+    heard += sender.send(bytes.substr(sent, room));
+    sent += room;
+  }
+  return heard;
+}
+
+TEST(GrblSession, ALineLongerThanTheBufferIsRefusedAndTheNextOneTaken) {
+  Sender sender("grbl");
+  EXPECT_EQ(send_by_room(sender, std::string(5000, 'X') + "\nG1 X1 F600\n"), "error:11\r\nok\r\n");
+  EXPECT_EQ(send_by_room(sender, "G1 X2 ; " + std::string(5000, '-') + "\n"), "ok\r\n")
+      << "grbl throws comments away as they come";
+}
+
+TEST(MarlinSession, ALineLongerThanTheBufferIsRefusedAndTheNextOneTaken) {
+  Sender sender("marlin");
+  EXPECT_THAT(send_by_room(sender, std::string(5000, 'X') + "\n"),
+              AllOf(StartsWith("echo:Unknown command: \"XXX"), HasSubstr("ok\r\n")));
+  EXPECT_EQ(send_by_room(sender, "G1 X2 F600 ; " + std::string(5000, '-') + "\n"), "ok\r\n");
+  EXPECT_EQ(sender.served.moves(), 1);
+}
+
+TEST(MarlinSession, AnswersANumberAlone) {
+  Sender sender("marlin");
+  EXPECT_EQ(sender.send(with_checksum("N0 M110 N0") + with_checksum("N1 ; a comment")), "ok\r\nok\r\n");
+}
+
+TEST(MarlinSession, TheLastLineNumberHasNoNext) {
+  Sender sender("marlin");
+  EXPECT_EQ(sender.send(with_checksum("N0 M110 N9223372036854775807")), "ok\r\n");
+  EXPECT_THAT(sender.send(with_checksum("N2147483647 G1 X1 F600")),
+              HasSubstr("Error:Line Number is not Last Line Number+1, Last Line: 2147483646\r\n"));
+  EXPECT_THAT(sender.send(with_checksum("N9223372036854775807 M110")), HasSubstr("Resend: 2147483647\r\n"));
+}
+
 TEST(MarlinSession, AnswersQueriesBeforeTheirOk) {
   Sender sender("marlin");
   sender.session->greet();
