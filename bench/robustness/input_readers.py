@@ -184,6 +184,8 @@ READERS = {
     "scenario": [Case("short.yaml", "scenario run short.yaml --out out", {"short.yaml": SCENARIO, "move.gcode": MOVE}, reports=True)],
     "campaign": [Case("c.yaml", "campaign c.yaml --workers 1 --out out",
                       {"c.yaml": CAMPAIGN, "short.yaml": SCENARIO, "move.gcode": MOVE})],
+    "store": [Case("out/runs.sqlite", "campaign c.yaml --workers 1 --out out --resume",
+                   {"c.yaml": CAMPAIGN, "short.yaml": SCENARIO, "move.gcode": MOVE}, ["campaign c.yaml --workers 1 --out out"])],
     **dict(calibrations()),
     **dict(planners()),
     "port_record": list(records()),

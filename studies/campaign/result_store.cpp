@@ -27,7 +27,8 @@ constexpr int kFixed = 8;
       throw InputError(fmt::format("{}: another campaign is writing this result store", path.string()));
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
-      throw InputError(fmt::format("{}: not a result store that can be read: {}", path.string(), why));
+      throw InputError(fmt::format("{}: not a result store that can be read: {}; begin in another folder",
+                                   path.string(), why));
     case SQLITE_CANTOPEN:
       throw InputError(fmt::format("{}: cannot open this result store: {}", path.string(), why));
     default:
@@ -55,7 +56,7 @@ class Statement {
       : path_(path), database_(database) {
     if (const int code = sqlite3_prepare_v2(database, sql.c_str(), -1, &statement_, nullptr);
         code != SQLITE_OK)
-      fail(path, database, code);
+      fail(path, database, code == SQLITE_ERROR ? SQLITE_CORRUPT : code);  // a table or column is not there
   }
   ~Statement() { sqlite3_finalize(statement_); }
   Statement(const Statement&) = delete;
@@ -207,12 +208,21 @@ void check_header(const fs::path& path, const StoreHeader& found, const StoreHea
 /// A file that its writer has left behind has a log, which reading takes in: it needs to be written.
 Database open_existing(const fs::path& path) { return {path, SQLITE_OPEN_READWRITE}; }
 
-RunRow row_of(const Statement& select, std::size_t parameters) {
+RunEnd end_of(const Statement& select, const fs::path& path) {
+  try {
+    return run_end(select.text(3));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: run {} is damaged: {}; begin in another folder", path.string(),
+                                 select.integer(0), error.what()));
+  }
+}
+
+RunRow row_of(const Statement& select, const fs::path& path, std::size_t parameters) {
   RunRow row;
   row.index = select.integer(0);
   row.scenario = select.text(1);
   row.seed = select.integer(2);
-  row.end = run_end(select.text(3));
+  row.end = end_of(select, path);
   row.error = select.text(4);
   row.command = select.text(5);
   row.summary_sha256 = select.text(6);
@@ -318,7 +328,7 @@ std::vector<RunRow> read_rows(const fs::path& path, const StoreHeader& header, s
       database.prepare(fmt::format("SELECT {}, {} FROM runs WHERE run >= {} AND run < {} ORDER BY run",
                                    kFixedColumns, fmt::join(value_columns(header), ", "), begin, end));
   std::vector<RunRow> rows;
-  while (select.step()) rows.push_back(row_of(select, header.parameters.size()));
+  while (select.step()) rows.push_back(row_of(select, path, header.parameters.size()));
   return rows;
 }
 

@@ -16,8 +16,10 @@
 namespace understudy::studies {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 const StoreHeader kHeader{"aim", "abc", "1.2.3", {"machine.gap.aim_mm", "scenario.engine"}};
 
@@ -151,6 +153,23 @@ TEST_F(ResultStoreTest, AnotherSchemaVersionIsRefused) {
   ASSERT_EQ(run_sql(path(), "PRAGMA user_version = 2"), SQLITE_OK);
   EXPECT_THAT(complaint([&] { ResultStore(path(), kHeader); }),
               HasSubstr("a result store of schema version 2; this program reads version 1"));
+}
+
+TEST_F(ResultStoreTest, ADamagedStoreIsRefusedWithItsFile) {
+  ResultStore(path(), kHeader).add(row(1));
+  ASSERT_EQ(
+      run_sql(
+          path(),
+          "INSERT INTO runs(run, scenario, seed, status, command, seconds) VALUES(9, 'b', 1, '', 'c', 1)"),
+      SQLITE_OK);
+  EXPECT_THAT(
+      complaint([&] { read_rows(path(), kHeader); }),
+      AllOf(StartsWith(path().string() + ": "), HasSubstr("run 9 is damaged: '' is no end of a run")));
+  ASSERT_EQ(run_sql(path(), "ALTER TABLE runs RENAME COLUMN \"gap.start_mm\" TO \"gap.stbrt_mm\""),
+            SQLITE_OK);
+  EXPECT_THAT(complaint([&] { ResultStore(path(), kHeader); }),
+              AllOf(StartsWith(path().string() + ": not a result store that can be read: "),
+                    HasSubstr("gap.start_mm")));
 }
 
 TEST_F(ResultStoreTest, WhatIsNoStoreIsRefused) {
