@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <map>
 
 #include <assimp/config.h>
@@ -14,7 +15,9 @@
 #include <assimp/Importer.hpp>
 
 #include "core/error.h"
+#include "core/error_context.h"
 #include "core/file/read_file.h"
+#include "core/process/contained.h"
 #include "core/units.h"
 #include "geometry/mesh.h"
 
@@ -23,6 +26,12 @@ namespace {
 
 constexpr std::size_t kBytesMax = 200'000'000;
 constexpr int kNodesMax = 10'000;
+constexpr std::size_t kPointsMax = 20'000'000;
+
+/// assimp's importers crash, hang and grow on some files: they run in a process of their own.
+ContainedLimits import_limits(std::size_t bytes) {
+  return {2 + 1e-6 * static_cast<double>(bytes), 8'000'000'000, kPointsMax * sizeof(Vec3)};
+}
 
 /// Of the scene's tree of nodes, each with its meshes.
 class PointReader {
@@ -40,6 +49,8 @@ class PointReader {
 
  private:
   void add(const aiMesh& mesh, const aiMatrix4x4& X) {
+    if (points_.size() + mesh.mNumVertices > kPointsMax)
+      throw InputError(Place{file_}, fmt::format("has more than {} vertices", kPointsMax));
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D v = X * mesh.mVertices[i];
       if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
@@ -110,6 +121,32 @@ Hull Quickhull::hull(const std::vector<Vec3>& points) {
   return hull;
 }
 
+std::vector<Vec3> imported_points(const std::string& bytes, const std::string& ending,
+                                  const std::string& file) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as robot viewers have it
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw InputError(Place{file}, std::string("is no mesh: ") + importer.GetErrorString());
+  PointReader reader(*scene, file);
+  reader.add(*scene->mRootNode, aiMatrix4x4());
+  return std::move(reader.points());
+}
+
+std::vector<Vec3> contained_points(const std::string& bytes, const std::string& ending,
+                                   const std::string& file) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  const auto work = [&] {
+    const std::vector<Vec3> points = imported_points(bytes, ending, file);
+    return std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Vec3));
+  };
+  const std::string made =
+      in_context_of(file, [&] { return run_contained("reading it", work, import_limits(bytes.size())); });
+  std::vector<Vec3> points(made.size() / sizeof(Vec3));
+  if (!points.empty()) std::memcpy(points.front().data(), made.data(), points.size() * sizeof(Vec3));
+  return points;
+}
+
 }  // namespace
 
 std::vector<Vec3> read_mesh_points(const std::filesystem::path& path) {
@@ -119,15 +156,11 @@ std::vector<Vec3> read_mesh_points(const std::filesystem::path& path) {
                  [](unsigned char c) { return std::tolower(c); });
   if (ending != ".stl" && ending != ".dae" && ending != ".obj" && ending != ".ply")
     throw InputError(Place{file}, "is no mesh that is read: STL, COLLADA (.dae), OBJ and PLY are");
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as robot viewers have it
-  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    throw InputError(Place{file}, std::string("is no mesh: ") + importer.GetErrorString());
-  PointReader reader(*scene, file);
-  reader.add(*scene->mRootNode, aiMatrix4x4());
-  if (reader.points().size() < 3) throw InputError(Place{file}, "has 0 triangles, at least 1 is needed");
-  return std::move(reader.points());
+  if (ending == ".ply" && bytes.find("end_header") == std::string::npos)
+    throw InputError(Place{file}, "is no PLY, or was cut off: its header has no end");
+  std::vector<Vec3> points = contained_points(bytes, ending, file);
+  if (points.size() < 3) throw InputError(Place{file}, "has 0 triangles, at least 1 is needed");
+  return points;
 }
 
 std::shared_ptr<const Mesh> convex_hull(const std::vector<Vec3>& given, const std::string& what) {

@@ -14,7 +14,8 @@ class Mesh;
 
 /// Vertices of an STL, COLLADA (.dae), OBJ or PLY file, in the unit of the file; of COLLADA, in metres, its
 /// parts placed as its scene has them. Throws InputError naming the file for one that is missing, too large,
-/// no such file, without a triangle, or that holds a number that is not finite.
+/// no such file, without a triangle, or that holds a number that is not finite, and for one on which its
+/// importer crashes or goes beyond the limits of docs/limits.md: it runs contained.
 std::vector<Vec3> read_mesh_points(const std::filesystem::path& path);
 
 /// The hull of the points as a closed mesh. Throws InputError where they lie in a plane or on a line, and for

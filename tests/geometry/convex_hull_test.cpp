@@ -6,17 +6,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/random.h"
 #include "geometry/mesh.h"
+#include "tests/complaint.h"
 #include "tests/geometry/test_solids.h"
 #include "tests/temporary_folder.h"
 
 namespace understudy::geometry {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string complaint(const std::vector<Vec3>& points) {
   try {
@@ -64,10 +66,9 @@ TEST(MeshPoints, OfTextFilesAreInTheFilesUnit) {
   EXPECT_LT((hull->upper() - Vec3(2, 3, 4)).norm(), 1e-12);
 }
 
-// Collada states its unit and places its parts; robots' files are often in inches or millimetres.
-TEST(MeshPoints, OfColladaAreInMetres) {
-  const TemporaryFolder folder;
-  write_file(folder / "a.dae", R"(<?xml version="1.0"?>
+/// A tetrahedron of 0.2 x 0.3 x 0.4 m, in millimetres, with `nodes` under its scene.
+std::string collada(const std::string& nodes) {
+  return R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="millimeter" meter="0.001"/><up_axis>Z_UP</up_axis></asset>
 <library_geometries><geometry id="g"><mesh>
@@ -76,23 +77,48 @@ TEST(MeshPoints, OfColladaAreInMetres) {
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 0 1 3 0 2 3 1 2 3</p></triangles>
 </mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node id="n"><translate>1000 0 0</translate><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<library_visual_scenes><visual_scene id="s">)" +
+         nodes + R"(</visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
-)");
+)";
+}
+
+// Collada states its unit and places its parts; robots' files are often in inches or millimetres.
+TEST(MeshPoints, OfColladaAreInMetres) {
+  const TemporaryFolder folder;
+  write_file(folder / "a.dae",
+             collada(R"(<node id="n"><translate>1000 0 0</translate><instance_geometry url="#g"/></node>)"));
   const auto hull = convex_hull(read_mesh_points(folder / "a.dae"), "a.dae");
   EXPECT_LT((hull->lower() - Vec3(1, 0, 0)).norm(), 1e-6);
   EXPECT_LT((hull->upper() - Vec3(1.2, 0.3, 0.4)).norm(), 1e-6);
 }
 
+// assimp follows nodes in a ring until its stack ends, and gives memory to every vertex that a file promises.
+TEST(MeshPoints, OfFilesOnWhichTheImporterFailsAreRefused) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& name, const std::string& content) {
+    write_file(folder / name, content);
+    return understudy::complaint([&] { read_mesh_points(folder / name); });
+  };
+  EXPECT_THAT(
+      refused("ring.dae",
+              collada(R"(<node id="n"><instance_geometry url="#g"/><instance_node url="#n"/></node>)")),
+      AllOf(HasSubstr("ring.dae: "), Not(HasSubstr("accepted"))));
+  EXPECT_THAT(refused("large.ply",
+                      "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+                      "property float y\nproperty float z\nend_header\n0000"),
+              AllOf(HasSubstr("large.ply: "), Not(HasSubstr("accepted"))));
+  EXPECT_THAT(refused("cut.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty flo"),
+              HasSubstr("cut.ply: is no PLY, or was cut off"));
+  std::string nodes;
+  for (int i = 0; i < 10'001; ++i) nodes += R"(<node><instance_geometry url="#g"/></node>)";
+  EXPECT_THAT(refused("nodes.dae", collada(nodes)), HasSubstr("nodes.dae: has more than 10000 nodes"));
+}
+
 TEST(MeshPoints, OfWhatIsNoMeshAreRefused) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& name) {
-    try {
-      read_mesh_points(folder / name);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("none");
+    return understudy::complaint([&] { read_mesh_points(folder / name); });
   };
   write_file(folder / "a.step", "ISO-10303-21;");
   write_file(folder / "a.obj", "nothing\n");
