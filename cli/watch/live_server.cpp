@@ -129,8 +129,10 @@ void LiveServer::Server::route() {
   http.set_socket_options(only_one);
   http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   http.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-    if (of_this_computer(request)) return httplib::Server::HandlerResponse::Unhandled;
-    response.status = 403;
+    // A body would be read whole, however large; any page may send one here.
+    const bool reads = request.method == "GET" || request.method == "HEAD";
+    if (reads && of_this_computer(request)) return httplib::Server::HandlerResponse::Unhandled;
+    response.status = reads ? 403 : 405;
     return httplib::Server::HandlerResponse::Handled;
   });
   http.Get("/", [this](const httplib::Request&, httplib::Response& response) {

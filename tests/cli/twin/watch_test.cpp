@@ -115,6 +115,11 @@ TEST(WatchCommand, AnswersThisComputersNamesOnly) {
   EXPECT_EQ(answer->status, 403);
   EXPECT_TRUE(answer->body.empty());
 
+  // A body would be read whole, however large.
+  const auto posted = client.Post("/", std::string(1000, 'x'), "text/plain");
+  ASSERT_TRUE(posted);
+  EXPECT_EQ(posted->status, 405);
+
   const Outcome second = understudy(fmt::format("rehearse {} --watch --watch-port {} --out {}", kRehearse,
                                                 watched.port, watched.folder / "b"));
   EXPECT_EQ(second.status, 2);
