@@ -174,6 +174,16 @@ TEST(BadUsage, AnErrorNamesTheHelpOfItsSubCommand) {
   expect_refused("machines --all", folder, {"--all (see understudy machines --help)"});
 }
 
+// A variable of a script that is not set.
+TEST(BadUsage, AnEmptyWordIsNoNumber) {
+  const Folder folder;
+  const std::string out = " -o " + (folder / "a.gcode");
+  expect_refused("plan surface bottle --svg-width ''" + out, folder,
+                 {"--svg-width: an empty word is no number (see understudy plan surface --help)"});
+  expect_refused("plan surface bottle --section 0 0 '' 0 1 0" + out, folder, {"--section: an empty word"});
+  expect_refused("rehearse " + kBottleLine + " --seed ''", folder, {"--seed"});
+}
+
 TEST(BadUsage, JobsAreFrom1To1024) {
   const Folder folder;
   const std::string commands[] = {"sweep " + kSource + "/scenarios/song-bottle.yaml",
