@@ -101,18 +101,19 @@ void GcodeSession::accept() {
   in_flight_ -= std::min(in_flight_, framed(entry).size());
   ++accepted_;
   accepted_at_ = link_.now();
-  resends_ = probes_ = idle_reports_ = 0;
+  probes_ = idle_reports_ = 0;
   if (entry.role == Role::ask) settle_rest();
 }
 
 /// The controller has all lines before that one, and drops what comes until it.
 void GcodeSession::resend_from(int number) {
   skipped_oks_ = 1;
-  if (++resends_ > kResendsMax)
-    return fail(Fault::drive, fmt::format("the controller asks {} times for line {}", kResendsMax, number));
   for (std::size_t i = 0; i <= sent_; ++i) {
     const bool is_next = i == sent_ && i > 0 && entries_[i - 1].number + 1 == number;
     if (!is_next && (i == sent_ || entries_[i].number != number)) continue;
+    // Of one line in all: a controller may accept it, too, and ask for it again.
+    if (++entries_[is_next ? i - 1 : i].resends > kResendsMax)
+      return fail(Fault::drive, fmt::format("the controller asks {} times for line {}", kResendsMax, number));
     sent_ = accepted_ = i;
     in_flight_ = 0;
     outgoing_.clear();

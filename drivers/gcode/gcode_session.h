@@ -57,13 +57,13 @@ class GcodeSession : public LineSession {
   double patience() const;
 
   GcodeWriter writer_;
-  std::size_t sent_ = 0;          ///< of the entries
-  std::size_t in_flight_ = 0;     ///< [bytes], sent and not accepted
-  int numbers_ = 0;               ///< given so far
-  int skipped_oks_ = 0;           ///< that belong to resends
-  int resends_ = 0, probes_ = 0;  ///< since the last line was accepted
-  int idle_reports_ = 0;          ///< in a row, since the last line was accepted
-  double accepted_at_ = 0;        ///< [s], the last line, or since when there is one to be accepted
+  std::size_t sent_ = 0;       ///< of the entries
+  std::size_t in_flight_ = 0;  ///< [bytes], sent and not accepted
+  int numbers_ = 0;            ///< given so far
+  int skipped_oks_ = 0;        ///< that belong to resends
+  int probes_ = 0;             ///< since the last line was accepted
+  int idle_reports_ = 0;       ///< in a row, since the last line was accepted
+  double accepted_at_ = 0;     ///< [s], the last line, or since when there is one to be accepted
   std::vector<double> work_offset_;
   int planner_size_ = 0;  ///< blocks, the most that were ever free
   std::string firmware_;  ///< what it said of itself

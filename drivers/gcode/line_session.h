@@ -49,6 +49,7 @@ class LineSession : public Controller {
     machine::AxisVector expected{};  ///< of ask and rest
     int asked = 0;                   ///< how often the position was asked for
     int number = 0;                  ///< as it was sent; 0: not yet, or such lines have none
+    int resends = 0;                 ///< how often the controller asked for it again
   };
 
   /// Behind the others; with it as many setpoints are done as with the one before.

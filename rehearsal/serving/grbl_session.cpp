@@ -185,6 +185,7 @@ class GrblSession final : public ControllerSession {
   }
 
   void home() {
+    if (machine_.ended()) return say("ok");
     if (!machine_.idle()) return error(kIdleOnly);
     alarm_ = false;
     machine_.take("G28");

@@ -135,6 +135,12 @@ std::string send_by_room(Sender& sender, const std::string& bytes) {
   return heard;
 }
 
+TEST(GrblSession, NothingBehindTheEndIsOfTheProgram) {
+  Sender sender("grbl");
+  EXPECT_EQ(sender.send("G1 X1 F600\nM2\n$H\nG1 X2\n", 2), "ok\r\n[MSG:Pgm End]\r\nok\r\nok\r\nok\r\n");
+  EXPECT_EQ(sender.served.text(), "G1 X1 F600\nM2\n");
+}
+
 TEST(GrblSession, ALineLongerThanTheBufferIsRefusedAndTheNextOneTaken) {
   Sender sender("grbl");
   EXPECT_EQ(send_by_room(sender, std::string(5000, 'X') + "\nG1 X1 F600\n"), "error:11\r\nok\r\n");
