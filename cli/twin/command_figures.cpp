@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 2> kRefused{"--plugin", "--out"};
 
 regression::Metrics command_figures(const regression::Scenario& scenario, const fs::path& folder) {
   const auto fail = [&](const std::string& why) {
-    throw InputError(fmt::format("{}: command: {}", scenario.file.string(), why));
+    throw InputError(Place{scenario.file.string()}, "command: " + why);
   };
   std::vector<std::string> words;
   for (const std::string& word : split_command_line(scenario.command)) {

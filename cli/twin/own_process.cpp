@@ -1,6 +1,7 @@
 #include "cli/twin/own_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/prctl.h>
@@ -8,20 +9,21 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
+#include <cstdio>
 #include <system_error>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "cli/command.h"
 #include "core/error.h"
+#include "core/file/descriptor.h"
 #include "core/interrupt.h"
+#include "core/process/error_output.h"
 
 namespace understudy::cli {
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{20};
+constexpr int kPoll = 20;  // [ms]
 
 /// `streams`: what the child gets as its standard streams.
 pid_t start(const std::vector<std::string>& words, const posix_spawn_file_actions_t& streams) {
@@ -45,6 +47,40 @@ class Streams {
   posix_spawn_file_actions_t actions;
 };
 
+void pass_on(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+/// What has come; waits kPoll for the first of it.
+void read_errors(const Descriptor& errors, ErrorOutput& said) {
+  pollfd look{errors.get(), POLLIN, 0};
+  char bytes[4096];
+  for (int wait = kPoll; ::poll(&look, 1, wait) > 0; wait = 0) {
+    const ssize_t count = ::read(errors.get(), bytes, sizeof bytes);
+    if (count <= 0) {
+      if (wait > 0) ::poll(nullptr, 0, kPoll);  // closed, and the process has not ended
+      return;
+    }
+    pass_on(said.take({bytes, static_cast<std::size_t>(count)}));
+  }
+}
+
+/// Its status, as waitpid() tells it.
+int watched_to_its_end(pid_t child, const Descriptor& errors, ErrorOutput& said) {
+  int status = 0;
+  for (bool told = false;;) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended < 0 && errno != EINTR) throw MachineError("cannot wait for a process");
+    read_errors(errors, said);
+    if (ended == child) return status;
+    if (interrupted() && !told) {
+      kill(child, SIGTERM);
+      told = true;
+    }
+  }
+}
+
 ProcessEnd end_of(int status) {
   if (WIFSIGNALED(status)) return {kFailed, fmt::format("the process ended by signal {}", WTERMSIG(status))};
   return {WEXITSTATUS(status), fmt::format("the process ended with status {}", WEXITSTATUS(status))};
@@ -54,24 +90,27 @@ ProcessEnd end_of(int status) {
 
 ProcessEnd run_own_process(const std::vector<std::string>& words) {
   stop_if_interrupted();
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    throw MachineError("cannot make a pipe: " + std::generic_category().message(errno));
+  const Descriptor errors(ends[0]);
+  Descriptor to(ends[1]);
   Streams streams;
   posix_spawn_file_actions_addopen(&streams.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&streams.actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&streams.actions, to.get(), STDERR_FILENO);
   const pid_t child = start(words, streams.actions);
-  bool told = false;
-  int status = 0;
-  for (;;) {
-    const pid_t ended = waitpid(child, &status, WNOHANG);
-    if (ended == child) break;
-    if (ended < 0 && errno != EINTR) throw MachineError("cannot wait for a process");
-    if (interrupted() && !told) {
-      kill(child, SIGTERM);
-      told = true;
-    }
-    std::this_thread::sleep_for(kPoll);
-  }
+  to.close();
+  ErrorOutput said;
+  const int status = watched_to_its_end(child, errors, said);
   stop_if_interrupted();
-  return end_of(status);
+  ProcessEnd end = end_of(status);
+  const std::string reason = said.reason();
+  if (end.status > kNo && !reason.empty())
+    end.text = reason;
+  else
+    pass_on(said.rest());
+  return end;
 }
 
 pid_t start_own_process(const std::vector<std::string>& words, int input, int output) {

@@ -10,11 +10,11 @@ namespace understudy::cli {
 
 struct ProcessEnd {
   int status = 0;    ///< as exit statuses are; 3 when a signal ended it
-  std::string text;  ///< "the process ended by signal 11"
+  std::string text;  ///< why: the last it said of itself, else "the process ended by signal 11"
 };
 
-/// Runs this program with `words` to its end; its standard output is dropped, its standard error is ours. An
-/// interrupt ends it and throws Interrupted.
+/// Runs this program with `words` to its end; its standard output is dropped, its standard error goes to ours
+/// but for why it failed. An interrupt ends it and throws Interrupted.
 ProcessEnd run_own_process(const std::vector<std::string>& words);
 
 /// Starts this program with `words`, open files as its standard input and output. Throws MachineError.

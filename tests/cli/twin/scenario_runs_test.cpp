@@ -12,6 +12,7 @@ namespace understudy::cli_test {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -102,7 +103,7 @@ TEST_F(ScenarioRuns, OneThatCannotRunFailsBesideThoseThatCan) {
   yaml.replace(yaml.find("fixture: bottle"), 15, "fixture: botle");
   folder_.write("one.yaml", yaml);
   EXPECT_THAT(run(at("one.yaml") + " " + at("two.yaml") + " --processes 2", 2),
-              ::testing::AllOf(HasSubstr("1 passed, 1 failed"), HasSubstr("one.yaml: no fixture botle: ")));
+              AllOf(HasSubstr("1 passed, 1 failed"), HasSubstr("one.yaml: no fixture botle: ")));
 }
 
 TEST_F(ScenarioRuns, ResumeRunsOnlyWhatIsNotThereOrHasOtherInputs) {
@@ -192,8 +193,9 @@ TEST_F(ScenarioRuns, ACommandsFiguresAreHeldToTheirBounds) {
   EXPECT_THAT(run(study(workspace, "metric: workspace.machine, word: hexapod")), HasSubstr("1 passed"));
   EXPECT_THAT(run(study(workspace, "metric: workspace.reachable.friction, min: 0"), 1),
               HasSubstr("workspace.reachable.friction is absent from the result"));
-  EXPECT_THAT(run(study("workspace --tilt 500", reachable + "min: 0.5"), 2),
-              HasSubstr("ended with status 2"));
+  EXPECT_THAT(
+      run(study("workspace --tilt 500", reachable + "min: 0.5"), 2),
+      AllOf(HasSubstr("error: study.yaml: command: --tilt"), HasSubstr("see understudy workspace --help")));
   EXPECT_THAT(run(study("workspace --out elsewhere", reachable + "min: 0.5"), 2), HasSubstr("leave it out"));
   EXPECT_THAT(run(study("calibrate a.csv", reachable + "min: 0.5"), 2),
               HasSubstr("'calibrate' is none of the studies"));
