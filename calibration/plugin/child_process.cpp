@@ -20,23 +20,13 @@
 #include "core/error.h"
 #include "core/file/descriptor.h"
 #include "core/interrupt.h"
+#include "core/process/pipe.h"
 
 namespace understudy::calibration {
 namespace {
 
 constexpr int kTick = 20;  // [ms] between looks at the clock, the user and the child
 constexpr std::size_t kChunk = 1 << 16;
-
-struct Pipe {
-  Descriptor read, write;
-  Pipe() {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0)
-      throw MachineError(fmt::format("no pipe for a plug-in: {}", std::strerror(errno)));
-    read = Descriptor(ends[0]);
-    write = Descriptor(ends[1]);
-  }
-};
 
 void unblock(const Descriptor& end) { ::fcntl(end.get(), F_SETFL, O_NONBLOCK); }
 

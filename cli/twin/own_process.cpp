@@ -19,6 +19,7 @@
 #include "core/file/descriptor.h"
 #include "core/interrupt.h"
 #include "core/process/error_output.h"
+#include "core/process/pipe.h"
 
 namespace understudy::cli {
 namespace {
@@ -90,19 +91,15 @@ ProcessEnd end_of(int status) {
 
 ProcessEnd run_own_process(const std::vector<std::string>& words) {
   stop_if_interrupted();
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw MachineError("cannot make a pipe: " + std::generic_category().message(errno));
-  const Descriptor errors(ends[0]);
-  Descriptor to(ends[1]);
+  Pipe errors;
   Streams streams;
   posix_spawn_file_actions_addopen(&streams.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&streams.actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&streams.actions, to.get(), STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&streams.actions, errors.write.get(), STDERR_FILENO);
   const pid_t child = start(words, streams.actions);
-  to.close();
+  errors.write.close();
   ErrorOutput said;
-  const int status = watched_to_its_end(child, errors, said);
+  const int status = watched_to_its_end(child, errors.read, said);
   stop_if_interrupted();
   ProcessEnd end = end_of(status);
   const std::string reason = said.reason();

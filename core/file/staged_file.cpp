@@ -29,17 +29,6 @@ std::string message_of(const fs::path& path, int error) {
   return "cannot write " + path.string() + ": " + std::generic_category().message(error);
 }
 
-bool write_all(int file, std::string_view content) {
-  std::size_t written = 0;
-  while (written < content.size()) {
-    const ssize_t n = ::write(file, content.data() + written, content.size() - written);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return false;
-    written += static_cast<std::size_t>(n);
-  }
-  return true;
-}
-
 void write_as_it_is(const fs::path& path, const std::string& content) {
   const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.get() < 0 || !write_all(file.get(), content)) failed_to_write(path, errno);
@@ -91,6 +80,17 @@ Descriptor create_beside(const fs::path& target, fs::path& part) {
 }
 
 }  // namespace
+
+bool write_all(int file, std::string_view content) {
+  std::size_t written = 0;
+  while (written < content.size()) {
+    const ssize_t n = ::write(file, content.data() + written, content.size() - written);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return false;
+    written += static_cast<std::size_t>(n);
+  }
+  return true;
+}
 
 void failed_to_write(const fs::path& path, int error) { throw MachineError(message_of(path, error)); }
 

@@ -35,6 +35,9 @@ class StagedFile {
   std::optional<PartialResult> partial_;
 };
 
+/// To an open file; false: errno tells why not.
+bool write_all(int file, std::string_view content);
+
 /// The file that `path` leads to where it is a link to one, or to none that exists.
 std::filesystem::path behind_links(const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -20,9 +21,10 @@
 
 #include "core/error.h"
 #include "core/error_context.h"
-#include "core/file/descriptor.h"
+#include "core/file/staged_file.h"
 #include "core/interrupt.h"
 #include "core/process/memory.h"
+#include "core/process/pipe.h"
 
 namespace understudy {
 namespace {
@@ -33,32 +35,31 @@ constexpr std::size_t kChunk = 1 << 16;
 constexpr double kWallTimes = 5, kWallMore = 5;
 constexpr char kMade = 'm', kRefused = 'r';  // the first byte of an answer
 
-void limit(int resource, std::uint64_t value) {
+using Resource = decltype(RLIMIT_CPU);
+
+void limit(Resource resource, std::uint64_t value) {
   rlimit now{};
-  ::getrlimit(static_cast<__rlimit_resource>(resource), &now);
+  ::getrlimit(resource, &now);
   now.rlim_cur = std::min<rlim_t>(now.rlim_max, value);
-  ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
+  ::setrlimit(resource, &now);
 }
 
-[[maybe_unused]] std::uint64_t mapped_bytes() {  // not under a sanitizer
-  std::FILE* file = std::fopen("/proc/self/statm", "r");
-  unsigned long pages = 0;
-  if (file == nullptr) return 0;
-  if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
-  std::fclose(file);
-  return std::uint64_t{pages} * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+/// Of everything that is open, it needs its answer alone. A pipe of another one would stay open with it.
+void close_others(int answer) {
+  ::close_range(STDERR_FILENO + 1, static_cast<unsigned>(answer) - 1, 0);
+  ::close_range(static_cast<unsigned>(answer) + 1, ~0U, 0);
 }
 
-void contain(const ContainedLimits& limits) {
+void contain(const ContainedLimits& limits, int answer) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int each : {SIGXCPU, SIGPIPE, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) ::signal(each, SIG_DFL);
-  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  ::dup2(nowhere, STDERR_FILENO);
+  ::dup2(::open("/dev/null", O_WRONLY | O_CLOEXEC), STDERR_FILENO);
+  close_others(answer);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.seconds)));
   limit(RLIMIT_FSIZE, 0);
 #ifndef UNDERSTUDY_SANITIZED
-  limit(RLIMIT_AS, mapped_bytes() + limits.memory);
+  limit(RLIMIT_AS, mapped_memory() + limits.memory);
 #endif
   limit(RLIMIT_NOFILE, 0);  // what is open stays so
 }
@@ -74,14 +75,6 @@ std::string answer_of(const std::string& what, const std::function<std::string()
                                   1e-9 * static_cast<double>(limits.memory));
   } catch (const std::exception& error) {
     return kRefused + fmt::format("{} failed: {}", what, error.what());
-  }
-}
-
-void write_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(file, bytes.data(), bytes.size());
-    if (count < 0 && errno != EINTR) return;
-    if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
   }
 }
 
@@ -143,21 +136,17 @@ std::string run_contained(const std::string& what, const std::function<std::stri
                           const ContainedLimits& given) {
   ContainedLimits limits = given;
   if (const std::uint64_t free = available_memory(); free > 0) limits.memory = std::min(limits.memory, free);
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw MachineError(fmt::format("no pipe to a process of its own: {}", std::strerror(errno)));
-  const Descriptor from(ends[0]);
-  Descriptor to(ends[1]);
+  Pipe pipe;
   const pid_t pid = ::fork();
   if (pid < 0) throw MachineError(fmt::format("cannot start a process: {}", std::strerror(errno)));
   if (pid == 0) {
-    contain(limits);
-    write_all(to.get(), answer_of(what, work, limits));
+    contain(limits, pipe.write.get());
+    write_all(pipe.write.get(), answer_of(what, work, limits));
     ::_exit(0);
   }
   Child child(pid);
-  to.close();
-  std::string answer = read_all(what, from.get(), limits);
+  pipe.write.close();
+  std::string answer = read_all(what, pipe.read.get(), limits);
   if (const int status = child.status(); status != 0) throw InputError(told_end(what, status, limits));
   if (answer.empty()) throw InputError(what + " ended without an answer");
   const bool made = answer.front() == kMade;

@@ -40,10 +40,7 @@ std::uint64_t group_free() {
 std::uint64_t own_free() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknown;
-  const std::uint64_t pages = number_in("/proc/self/statm");
-  const std::uint64_t used =
-      pages == kUnknown ? 0 : pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return limit.rlim_cur - std::min<std::uint64_t>(used, limit.rlim_cur);
+  return limit.rlim_cur - std::min<std::uint64_t>(mapped_memory(), limit.rlim_cur);
 }
 
 }  // namespace
@@ -51,6 +48,11 @@ std::uint64_t own_free() {
 std::uint64_t available_memory() {
   const std::uint64_t least = std::min({system_free(), group_free(), own_free()});
   return least == kUnknown ? 0 : least;
+}
+
+std::uint64_t mapped_memory() {
+  const std::uint64_t pages = number_in("/proc/self/statm");
+  return pages == kUnknown ? 0 : pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 void return_free_memory() { ::malloc_trim(0); }

@@ -9,6 +9,9 @@ namespace understudy {
 /// (ulimit -v) and that of its control group, whichever is least. 0 where the system does not tell.
 std::uint64_t available_memory();
 
+/// [bytes] of addresses that this process has mapped, used or not. 0 where the system does not tell.
+std::uint64_t mapped_memory();
+
 /// To the system, what was freed. A stage that has ended leaves hundreds of megabytes in small pieces, and
 /// the allocator keeps those of one thread from the others.
 void return_free_memory();

@@ -26,7 +26,8 @@ TEST(ControllerTalk, IsNotDoneWhereTheControllerDoesNotSaySo) {
 
 // Each answer alone is one that a controller gives; all together they lead nowhere.
 TEST(ControllerTalk, EndsWhereALineIsAcceptedAndAskedForAgainForEver) {
-  std::string text = "\x01\x3f\fok\n\fFIRMWARE_NAME:Marlin 2\nok\n\fX:0 Y:0 Z:0 E:0 Count X:0 Y:0 Z:0\nok\n";
+  std::string text =
+      "\x01\x3f\fok\n\fFIRMWARE_NAME:Marlin 2.1\nok\n\fX:0.00 Y:0.00 Z:0.00 E:0.00 Count X:0 Y:0 Z:0\nok\n";
   for (int i = 0; i < 5000; ++i) text += "\fok\n\fok\n\fResend: 3\nok\n";
   EXPECT_FALSE(talk(text));
 }

@@ -25,6 +25,7 @@
 #include "core/error.h"
 #include "core/file/descriptor.h"
 #include "core/interrupt.h"
+#include "core/process/pipe.h"
 #include "core/thread_limit.h"
 #include "renderer/drawing_threads.h"
 
@@ -40,17 +41,6 @@ constexpr int kPollMilliseconds = 100;
 bool is_crash(int signal) {
   return signal == SIGSEGV || signal == SIGBUS || signal == SIGILL || signal == SIGFPE || signal == SIGABRT;
 }
-
-struct Pipe {
-  Pipe() {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-      throw MachineError("cannot make a pipe: " + std::generic_category().message(errno));
-    read = Descriptor(ends[0]);
-    write = Descriptor(ends[1]);
-  }
-  Descriptor read, write;
-};
 
 class Worker {
  public:

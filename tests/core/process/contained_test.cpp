@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/process/pipe.h"
 #include "tests/complaint.h"
 
 namespace understudy {
@@ -80,6 +81,12 @@ TEST(Contained, MemoryBeyondTheLimitIsARefusal) {
 TEST(Contained, OpensNoFile) {
   EXPECT_EQ(run([] { return std::string(::open("/dev/null", O_RDONLY) < 0 ? "refused" : "opened"); }),
             "refused");
+}
+
+TEST(Contained, HoldsNothingOpenThatIsNotItsOwn) {
+  const Pipe other;
+  EXPECT_EQ(run([&] { return std::string(::fcntl(other.write.get(), F_GETFD) < 0 ? "closed" : "open"); }),
+            "closed");
 }
 
 TEST(Contained, AnInterruptEndsItAtOnce) {

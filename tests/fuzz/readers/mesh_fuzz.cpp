@@ -1,4 +1,5 @@
-// Bytes as a mesh of an arm's link, whose hull is taken: PLY and COLLADA by their first words, STL, else OBJ.
+// Bytes as a mesh of an arm's link, whose hull is taken: PLY and COLLADA and text STL by their first words,
+// else OBJ.
 #include "geometry/convex_hull.h"
 #include "geometry/mesh.h"
 #include "tests/fuzz/reader.h"
@@ -7,10 +8,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace understudy;
   static const fuzz::InputFile ply("m.ply"), dae("m.dae"), stl("m.stl"), obj("m.obj");
   const std::string_view text = fuzz::text_of(data, size);
-  const fuzz::InputFile& input = text.starts_with("ply")                              ? ply
-                                 : text.starts_with("<")                              ? dae
-                                 : text.starts_with("solid") || text.starts_with("*") ? stl
-                                                                                      : obj;
+  const fuzz::InputFile& input = text.starts_with("ply")     ? ply
+                                 : text.starts_with("<")     ? dae
+                                 : text.starts_with("solid") ? stl
+                                                             : obj;
   const std::string file = input.fill(text).string();
   std::vector<Vec3> points;
   if (!fuzz::accepts(size, file, [&] { points = geometry::read_mesh_points(file); })) return 0;
