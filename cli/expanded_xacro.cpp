@@ -7,6 +7,7 @@
 #include "calibration/plugin/child_process.h"
 #include "core/error.h"
 #include "core/file/output_file.h"
+#include "core/text/shell_quoted.h"
 
 namespace understudy::cli {
 namespace fs = std::filesystem;
@@ -14,13 +15,6 @@ namespace {
 
 constexpr double kPatience = 60;  // [s]
 constexpr std::size_t kOutputMax = 64'000'000;
-
-/// For /bin/sh.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
 
 bool is_installed() {
   const char* path = std::getenv("PATH");
@@ -34,13 +28,13 @@ bool is_installed() {
 std::string environment() {
   std::string text;
   for (const char* name : {"ROS_PACKAGE_PATH", "ROS_ROOT", "ROS_DISTRO", "AMENT_PREFIX_PATH"})
-    if (const char* value = std::getenv(name)) text += fmt::format("{}={} ", name, quoted(value));
+    if (const char* value = std::getenv(name)) text += fmt::format("{}={} ", name, shell_quoted(value));
   return text;
 }
 
 std::string expand(const fs::path& file, const std::vector<std::string>& arguments) {
-  std::string command = environment() + "xacro " + quoted(fs::absolute(file).string());
-  for (const std::string& argument : arguments) command += " " + quoted(argument);
+  std::string command = environment() + "xacro " + shell_quoted(fs::absolute(file).string());
+  for (const std::string& argument : arguments) command += " " + shell_quoted(argument);
   calibration::ProcessLimits limits;
   limits.time = kPatience;
   limits.output = kOutputMax;

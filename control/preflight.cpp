@@ -82,7 +82,7 @@ PreflightCheck check_limits(const toolpath::Program& program, const machine::Mac
 
 PreflightCheck check_camera(const machine::MachineDescription& machine, machine::MachinePort& port) {
   machine::Frame frame;
-  const Region all{0, 0, machine.microscope.camera.width, machine.microscope.camera.height};
+  const Region all = machine.microscope.camera.sensor();
   const machine::Status answer = port.capture(all, frame, port.now() + kPatience);
   if (answer != machine::Status::ok)
     return {"camera", false, fmt::format("{}: gap control needs its pictures", to_string(answer))};

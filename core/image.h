@@ -17,6 +17,8 @@ struct Region {
   int height = 0;
   bool operator==(const Region&) const = default;
 };
+/// What of `region` lies in `within`, which has a size; beside it nothing, at its border.
+Region clipped(const Region& region, const Region& within);
 
 /// 8-bit grey, row-major, top row first. `region` says where on the sensor it was read out.
 struct Image {
@@ -40,6 +42,8 @@ struct Camera {
   double k1 = 0, k2 = 0;  ///< radial distortion
   double p1 = 0, p2 = 0;  ///< tangential distortion
 
+  /// All of its pixels.
+  Region sensor() const { return {0, 0, width, height}; }
   /// Pixel of a point in camera coordinates, or nothing when it lies behind the camera.
   std::optional<Vec2> project(const Vec3& p_C) const;
 };

@@ -200,9 +200,7 @@ class ScriptEstimator final : public Estimator {
     try {
       const py::object called =
           py::hasattr(script_, "calibrate") ? py::object(script_.attr("calibrate")) : script_;
-      // By value: a script may keep it, and then it must not be asked any more.
-      const py::object told = py::cast(problem);
-      const py::object returned = called(told);
+      const py::object returned = called(py::cast(problem));
       answer = answer_of(returned, problem.nominal().size());
       problem.residuals(answer.parameters);  // throws for a wrong number of them
       return {};
@@ -240,8 +238,7 @@ py::array_t<double> rows_of(const ScriptProblem& problem, py::ssize_t columns, c
 }  // namespace
 
 void add_script_problem(py::module_& module) {
-  py::class_<ScriptProblem>(module, "Problem",
-                            "What an estimator is given. Valid while calibrate() runs: keep none of it.")
+  py::class_<ScriptProblem>(module, "Problem", "What an estimator is given.")
       .def_property_readonly("is_chain", &ScriptProblem::is_chain)
       .def_property_readonly("names", &ScriptProblem::names, "Of the parameters.")
       .def_property_readonly(

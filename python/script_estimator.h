@@ -10,11 +10,14 @@
 
 namespace understudy::python {
 
-/// A problem as a script sees it: of a hexapod the 42 parameters, of a chain offsets from its description.
+/// A problem as a script sees it: of a hexapod the 42 parameters, of a chain offsets from its description. A
+/// script may keep it, so it has its own copy.
 class ScriptProblem {
  public:
-  explicit ScriptProblem(const calibration::Problem& of) : hexapod_(&of) {}
-  explicit ScriptProblem(const calibration::ChainProblem& of) : chain_(&of) {}
+  explicit ScriptProblem(const calibration::Problem& of)
+      : hexapod_(std::make_shared<const calibration::Problem>(of)) {}
+  explicit ScriptProblem(const calibration::ChainProblem& of)
+      : chain_(std::make_shared<const calibration::ChainProblem>(of)) {}
 
   bool is_chain() const { return chain_ != nullptr; }
   std::vector<std::string> names() const;
@@ -35,8 +38,8 @@ class ScriptProblem {
  private:
   void check(const Eigen::VectorXd& parameters) const;
 
-  const calibration::Problem* hexapod_ = nullptr;
-  const calibration::ChainProblem* chain_ = nullptr;
+  std::shared_ptr<const calibration::Problem> hexapod_;
+  std::shared_ptr<const calibration::ChainProblem> chain_;
 };
 
 /// `script` is called with a ScriptProblem and returns the parameters, or a pair with their covariance; it

@@ -54,6 +54,8 @@ py::dict microscope_of(const Machine& machine) {
   return told;
 }
 
+constexpr py::ssize_t kSideMax = 65'536;
+
 using Pixels = py::array_t<std::uint8_t, py::array::c_style>;
 
 Image image_of(const py::object& object, const std::tuple<int, int>& corner) {
@@ -64,6 +66,9 @@ Image image_of(const py::object& object, const std::tuple<int, int>& corner) {
   if (!array.dtype().equal(py::dtype::of<std::uint8_t>()) || array.ndim() != 2)
     throw InputError(fmt::format("image: {} of {} dimensions, expected uint8 of shape (height, width)",
                                  std::string(py::str(array.dtype())), array.ndim()));
+  for (const py::ssize_t d : {0, 1})
+    if (array.shape(d) > kSideMax)
+      throw InputError(fmt::format("image: {} pixels a side, at most {}", array.shape(d), kSideMax));
   const Pixels pixels(object);  // one after the other, whatever slice it was
   Image image;
   image.region = {std::get<0>(corner), std::get<1>(corner), static_cast<int>(pixels.shape(1)),

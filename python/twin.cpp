@@ -109,7 +109,7 @@ py::tuple capture(const Twin& twin, const std::optional<std::tuple<int, int, int
   if (!known.has_microscope)
     throw InputError(fmt::format("machine {} has no microscope to look through", known.name));
   const Camera& camera = known.microscope.camera;
-  Region wanted{0, 0, camera.width, camera.height};
+  Region wanted = camera.sensor();
   if (region) std::tie(wanted.x, wanted.y, wanted.width, wanted.height) = *region;
   machine::Frame frame;
   const Status status =

@@ -60,13 +60,6 @@ void check(const TargetScene& s) {
     check(c.z() > 2 * s.radius, "target distance [m]", c.z(), "above a diameter");
 }
 
-Region clipped(const Region& r, const Camera& camera) {
-  const int left = std::clamp(r.x, 0, camera.width), top = std::clamp(r.y, 0, camera.height);
-  const int right = std::clamp(r.x + r.width, left, camera.width);
-  const int bottom = std::clamp(r.y + r.height, top, camera.height);
-  return {left, top, right - left, bottom - top};
-}
-
 /// Ray (x, y, 1) of the camera to the board's plane, in squares from the outer corner of the first square.
 Mat3 ray_to_squares(const BoardScene& s) {
   const Mat3 R = s.X_CG.linear() * s.square;
@@ -138,7 +131,7 @@ CalibrationView::~CalibrationView() {
 
 Image CalibrationView::render(const BoardScene& scene, const Region& region) {
   check(scene);
-  const Region read_out = clipped(region, scene.camera);
+  const Region read_out = clipped(region, scene.camera.sensor());
   if (read_out.width == 0 || read_out.height == 0) return Image{{read_out.x, read_out.y, 0, 0}, {}};
   State& s = *state_;
   s.aim(scene.camera, scene.exposure, scene.ink, scene.background, read_out);
@@ -157,7 +150,7 @@ Image CalibrationView::render(const BoardScene& scene, const Region& region) {
 
 Image CalibrationView::render(const TargetScene& scene, const Region& region) {
   check(scene);
-  const Region read_out = clipped(region, scene.camera);
+  const Region read_out = clipped(region, scene.camera.sensor());
   if (read_out.width == 0 || read_out.height == 0) return Image{{read_out.x, read_out.y, 0, 0}, {}};
   State& s = *state_;
   s.aim(scene.camera, scene.exposure, scene.albedo, 1, read_out);

@@ -49,13 +49,6 @@ void check(const LaserScene& s) {
   check(s.X_WT.matrix().allFinite(), "tool pose", s.X_WT.translation().x(), "finite");
 }
 
-Region clipped(const Region& r, const Camera& camera) {
-  const int left = std::clamp(r.x, 0, camera.width), top = std::clamp(r.y, 0, camera.height);
-  const int right = std::clamp(r.x + r.width, left, camera.width);
-  const int bottom = std::clamp(r.y + r.height, top, camera.height);
-  return {left, top, right - left, bottom - top};
-}
-
 /// The beam in some frame: two axes across it, its direction, and the point of its axis nearest to the tip,
 /// so that coordinates near the dot are small.
 struct Beam {
@@ -278,7 +271,7 @@ LaserView::~LaserView() {
 
 Image LaserView::render(const LaserScene& scene, const Region& region) {
   check(scene);
-  const Region read_out = clipped(region, scene.camera);
+  const Region read_out = clipped(region, scene.camera.sensor());
   if (read_out.width == 0 || read_out.height == 0) return Image{{read_out.x, read_out.y, 0, 0}, {}};
   State& s = *state_;
   s.context.make_current();

@@ -99,8 +99,11 @@ void write_planned(const regression::Scenario& scenario, const fs::path& output)
   };
   std::vector<std::string> words{"plan"}, shown = words;
   for (const std::string& word : split_command_line(scenario.plan)) {
-    if (word == "-o" || word.starts_with("--output") || word.starts_with("--machine"))
+    if (word.starts_with("-o") || word.starts_with("--output") || word.starts_with("--machine"))
       fail(fmt::format("'{}' is the scenario's to say: leave it out", word));
+    if (word.starts_with("--stock"))
+      fail(fmt::format("'{}' writes a file: the plan of a scenario writes its program alone, leave it out",
+                       word));
     shown.push_back(word);
     words.push_back(file_beside(scenario, word));
   }

@@ -193,7 +193,7 @@ bool whole(const GapReading& reading, const vision::DotMeasurement& dot) {
 Region region_for_gap(const machine::MachineDescription& machine, const LocalSurface& surface, double gap,
                       double below, double above, int margin_px) {
   const Camera& camera = machine.microscope.camera;
-  const Region sensor{0, 0, camera.width, camera.height};
+  const Region sensor = camera.sensor();
   Eigen::AlignedBox2d box;
   constexpr int kPoints = 5;  // the track bends by less than the margin between them
   for (int i = 0; i < kPoints; ++i) {

@@ -37,7 +37,7 @@ GapSensor::GapSensor(const machine::MachineDescription& machine, const LocalSurf
 
 GapStop GapSensor::take(const std::optional<Expectation>& expected, GapSample& sample) {
   const Camera& camera = machine_.microscope.camera;
-  const Region sensor{0, 0, camera.width, camera.height};
+  const Region sensor = camera.sensor();
   const Region region = expected ? region_around(*expected) : sensor;
   GapStop stop = expose_standing(region, sample);
   if (stop != GapStop::none) return stop;

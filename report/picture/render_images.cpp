@@ -50,8 +50,6 @@ ordered_json camera_value(const Camera& camera) {
           {"distortion", list({camera.k1, camera.k2, camera.p1, camera.p2})}};
 }
 
-Region whole(const Camera& camera) { return {0, 0, camera.width, camera.height}; }
-
 std::string laser(const RenderRequest& request, const MachineDescription& machine, const Pose& X_WT,
                   ordered_json& truth) {
   if (!machine.has_microscope) throw InputError(fmt::format("{} has no laser and microscope", machine.name));
@@ -62,7 +60,7 @@ std::string laser(const RenderRequest& request, const MachineDescription& machin
   // The surface is the table: the gap is the tip's distance from it along the tool's axis.
   const double along = tool_axis(X_WT).z();
   if (along > 0) truth["gap_mm"] = list({to_mm(X_WT.translation().z() / along)})[0];
-  return encode_png(microscope.expose(X_WT, whole(camera), 1));
+  return encode_png(microscope.expose(X_WT, camera.sensor(), 1));
 }
 
 vision::CalibrationRig rig_of(const RenderRequest& request, const MachineDescription& machine) {
@@ -85,7 +83,7 @@ std::string chessboard(const RenderRequest& request, const MachineDescription& m
   truth["corners_px"] = ordered_json::array();
   for (const auto& corner : renderer::true_corners(scene)) truth["corners_px"].push_back(pixel(corner));
   renderer::CalibrationView view;
-  return encode_png(view.render(scene, whole(scene.camera)));
+  return encode_png(view.render(scene, scene.camera.sensor()));
 }
 
 std::string targets(const RenderRequest& request, const MachineDescription& machine, const Pose& X_WT,
@@ -104,7 +102,7 @@ std::string targets(const RenderRequest& request, const MachineDescription& mach
          {"centre_px", pixel(renderer::true_sphere_centre(scene.camera, centre))},
          {"outline_centre_px", pixel(renderer::true_outline_centre(scene.camera, centre, scene.radius))}});
   renderer::CalibrationView view;
-  return encode_png(view.render(scene, whole(scene.camera)));
+  return encode_png(view.render(scene, scene.camera.sensor()));
 }
 
 /// The overview of a rehearsal that stands still at the pose.

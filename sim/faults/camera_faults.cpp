@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/cut_image.h"
 #include "core/error.h"
 #include "core/units.h"
 
@@ -20,19 +21,6 @@ constexpr double kOffsetMaxPx = 1000;   // farther than a picture is wide
 
 std::size_t index(const Image& image, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) + static_cast<std::size_t>(x);
-}
-
-/// Of a picture of the whole sensor what a region shows.
-Image cropped(const Image& whole, const Region& region) {
-  const Region& sensor = whole.region;
-  const int left = std::clamp(region.x, 0, sensor.width), top = std::clamp(region.y, 0, sensor.height);
-  Image image;
-  image.region = {left, top, std::clamp(region.x + region.width, left, sensor.width) - left,
-                  std::clamp(region.y + region.height, top, sensor.height) - top};
-  image.pixels.reserve(static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height()));
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) image.pixels.push_back(whole.at(left + x, top + y));
-  return image;
 }
 
 /// Centre of what the laser adds to a picture [px]; nothing where it adds nothing.
@@ -144,8 +132,8 @@ void check_camera_faults(const std::vector<CameraFaultEvent>& events) {
   }
 }
 
-FaultyCamera::FaultyCamera(const Camera& sensor, std::vector<CameraFaultEvent> events, std::uint64_t seed)
-    : sensor_{0, 0, sensor.width, sensor.height} {
+FaultyCamera::FaultyCamera(const Camera& camera, std::vector<CameraFaultEvent> events, std::uint64_t seed)
+    : sensor_(camera.sensor()) {
   check_camera_faults(events);
   for (std::size_t i = 0; i < events.size(); ++i)
     faults_.push_back({events[i], Random(seed, fmt::format("camera fault {}", i)), false, {}, {}, {}});
@@ -197,7 +185,7 @@ Image FaultyCamera::frozen(Fault& fault, const Shot& shot, const Exposure& expos
     whole.region = sensor_;
     fault.frozen = exposure(whole);
   }
-  return cropped(*fault.frozen, shot.region);
+  return cut(*fault.frozen, shot.region);
 }
 
 /// The dot as the tool had it when the fault began, on a surface whose grain is new in every frame: it

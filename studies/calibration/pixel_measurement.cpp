@@ -20,8 +20,6 @@ constexpr double kDepth = 50e-3;         // [m] from the first layer to the last
 constexpr double kCornerSigma = 0.04;    // [px], of a measured corner in u or v
 constexpr double kPrincipalSigma = 0.1;  // [px]: the lens's axis was found before, on a bench
 
-Region whole(const Camera& camera) { return {0, 0, camera.width, camera.height}; }
-
 /// Measured corners of one board; throws MachineError where there are none.
 vision::SeenBoard photograph_board(renderer::CalibrationView& view, const vision::RigDescription& believed,
                                    const BuiltRig& built, const StandOptions& options, int camera,
@@ -29,7 +27,7 @@ vision::SeenBoard photograph_board(renderer::CalibrationView& view, const vision
   renderer::BoardScene scene = board_scene(believed.rig, built, camera, layer);
   scene.exposure.seed = options.seed;
   scene.exposure.frame = static_cast<std::uint64_t>(100 * camera + layer);
-  const Image picture = view.render(scene, whole(scene.camera));
+  const Image picture = view.render(scene, scene.camera.sensor());
   if (options.keep) options.keep(believed.board_pictures.name({camera, layer}), picture);
   const auto seen = vision::measure_board(picture, believed.rig.board);
   if (seen.status != vision::BoardStatus::ok)
@@ -118,7 +116,7 @@ std::array<vision::TargetsMeasurement, 2> MeasuringStand::see(renderer::Calibrat
     scene.exposure.frame = 2 * number + k + 1000;
     vision::ReadOut read_out = [&](const Region& region) { return view.render(scene, region); };
     if (options_.keep) {
-      const Image picture = view.render(scene, whole(scene.camera));
+      const Image picture = view.render(scene, scene.camera.sensor());
       options_.keep(description_.pose_pictures.name({static_cast<int>(number), camera}), picture);
       read_out = [picture](const Region& region) { return cut(picture, region); };
     }

@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::uint64_t kSeedLast = (std::uint64_t{1} << 63) - 1;  // an integer of SQLite has a sign
 constexpr int kStepsMax = 100'000;
+constexpr std::size_t kParametersMax = 100;  // each may have so many values; docs/limits.md
 
 std::vector<std::string> read_scenarios(YamlMap& map, const fs::path& folder) {
   std::vector<std::string> scenarios;
@@ -131,7 +132,9 @@ void read_campaign(YamlMap& map, const fs::path& folder, Campaign& campaign) {
     campaign.plan = static_cast<SamplingPlan>(std::find(words.begin(), words.end(), word) - words.begin());
   }
   if (map.has("parameters"))
-    map.list("parameters", 0, "what varies besides the built machine", [&](YamlMap& item, std::size_t) {
+    map.list("parameters", 0, "what varies besides the built machine", [&](YamlMap& item, std::size_t i) {
+      if (i == kParametersMax)
+        throw InputError(item.place(), fmt::format("more than {} parameters", kParametersMax));
       campaign.parameters.push_back(read_parameter(item, campaign.plan));
     });
   if (map.has("metrics")) campaign.metrics = map.texts("metrics", "figures whose quantiles are asked for");

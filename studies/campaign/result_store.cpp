@@ -109,6 +109,9 @@ class Database {
       fail(path_, nullptr, code);
     }
     sqlite3_busy_timeout(database_, patience);
+    // Of a file that comes from a stranger, rows are read, and no queries of its own run.
+    sqlite3_db_config(database_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    sqlite3_db_config(database_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   }
   ~Database() { sqlite3_close(database_); }
   Database(const Database&) = delete;

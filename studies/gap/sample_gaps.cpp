@@ -63,7 +63,7 @@ SampledGaps sample_gaps(const SampleGapsRequest& request, const machine::Machine
   options.speckle = request.speckle;
   sim::Microscope microscope(truth, nullptr, request.seed, options);
   const Camera& camera = truth.microscope.camera;
-  const Region sensor{0, 0, camera.width, camera.height};
+  const Region sensor = camera.sensor();
   Random random(request.seed, "heights over flats");
   sample.table = "height_mm,height_sigma_um,picture,gap_mm,gap_sigma_um,tilt_deg,azimuth_deg\n";
   sample.truth = "picture,gap_mm\n";

@@ -1,5 +1,7 @@
 #include "core/image.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace understudy {
@@ -18,6 +20,18 @@ TEST(Image, IsReadRowByRowFromTheTop) {
   EXPECT_EQ(image.at(0, 0), 0);
   EXPECT_EQ(image.at(2, 0), 2);
   EXPECT_EQ(image.at(0, 1), 3) << "the region's place on the sensor takes no part";
+}
+
+TEST(Region, IsClippedWhateverItAsksFor) {
+  const Region sensor = pinhole().sensor();
+  EXPECT_EQ(clipped({10, 20, 30, 40}, sensor), (Region{10, 20, 30, 40}));
+  EXPECT_EQ(clipped({-10, 470, 30, 40}, sensor), (Region{0, 470, 20, 10}));
+  EXPECT_EQ(clipped({700, -50, 30, 40}, sensor), (Region{640, 0, 0, 0}));
+  EXPECT_EQ(clipped({10, 20, -5, 40}, sensor), (Region{10, 20, 0, 40}));
+  constexpr int kLargest = std::numeric_limits<int>::max(), kLeast = std::numeric_limits<int>::min();
+  EXPECT_EQ(clipped({10, 20, kLargest, kLargest}, sensor), (Region{10, 20, 630, 460})) << "beyond an int";
+  EXPECT_EQ(clipped({kLeast, kLargest, kLargest, kLargest}, sensor), (Region{0, 480, 0, 0}));
+  EXPECT_EQ(clipped({0, 0, 12, 22}, {10, 20, 3, 2}), (Region{10, 20, 2, 2}));
 }
 
 TEST(Camera, APinholeIsSimilarTriangles) {

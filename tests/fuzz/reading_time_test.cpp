@@ -34,6 +34,9 @@ std::string gcode_words(int n) {
 std::string gcode_one_line(int n) {
   return repeated(n, [](int) { return "M73 P1 "; });
 }
+std::string gcode_names(int n) {
+  return "G1 X0 F1000\n" + repeated(n, [](int i) { return fmt::format("UNHEARD{}\n", i); });
+}
 std::string krl(int n) {
   return "DEF part( )\n$VEL.CP=0.02\n$OUT[1]=TRUE\n" +
          repeated(n,
@@ -135,6 +138,7 @@ const std::vector<Case>& cases() {
   static const std::vector<Case> all{{"Gcode", "gcode", gcode, 500},
                                      {"GcodeShortLines", "gcode", gcode_words, 500},
                                      {"GcodeOneLine", "gcode", gcode_one_line, 1000},
+                                     {"GcodeNames", "gcode", gcode_names, 300},
                                      {"Krl", "krl", krl, 200},
                                      {"KrlNames", "krl", krl_names, 200},
                                      {"KrlBlocks", "krl", krl_blocks, 500},

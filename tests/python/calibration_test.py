@@ -128,6 +128,20 @@ class WrittenInPython(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(InputError, words):
                 understudy.calibrate(machine, axes, poses, estimator=estimator)
 
+    def test_a_problem_that_is_kept_is_whole(self):
+        for name in ("hexapod", "arm"):
+            machine, kept = Machine(name), []
+            axes, poses = understudy.sample_poses(machine, 24, as_built="manufactured", seed=3)
+
+            def keeps(problem):
+                kept.append((problem, problem.poses, problem.residuals(problem.nominal)))
+                return problem.nominal
+
+            understudy.calibrate(machine, axes, poses, estimator=keeps)
+            for problem, measured, residuals in kept:
+                np.testing.assert_array_equal(problem.poses, measured)
+                np.testing.assert_array_equal(problem.residuals(problem.nominal), residuals)
+
     def test_it_enters_the_benchmark_beside_ours(self):
         entrant = Mine()
         result = understudy.benchmark_calibration(

@@ -85,6 +85,16 @@ class ThePort(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(InputError, words):
                 call()
 
+    def test_a_region_is_clipped_to_the_sensor_whatever_it_asks_for(self):
+        twin = Twin("hexapod", fixture="bottle")
+        _, whole = twin.capture()
+        status, frame = twin.capture((10, 20, 2**31 - 1, 2**31 - 1))
+        self.assertEqual(status, Status.ok)
+        self.assertEqual(frame.region, (10, 20, whole.region[2] - 10, whole.region[3] - 20))
+        wide = np.lib.stride_tricks.as_strided(np.zeros(1, np.uint8), (1, 70000), (0, 0))
+        with self.assertRaisesRegex(InputError, "image: 70000 pixels a side, at most 65536"):
+            understudy.measure_dot(twin.machine, wide)
+
     def test_it_belongs_to_its_thread(self):
         twin, raised = Twin("hexapod"), []
 

@@ -46,7 +46,7 @@ TEST(LiveTwin, SeesWhatItsCameraSees) {
   LiveTwin twin(on_the_bottle());
   machine::Frame frame;
   const Camera& camera = twin.setup().machine.microscope.camera;
-  ASSERT_EQ(twin.port().capture({0, 0, camera.width, camera.height}, frame, 1e9), machine::Status::ok);
+  ASSERT_EQ(twin.port().capture(camera.sensor(), frame, 1e9), machine::Status::ok);
   EXPECT_EQ(frame.image.width(), camera.width);
   EXPECT_GT(frame.received_at, frame.exposed_at);
 }

@@ -126,7 +126,7 @@ def main():
     options = parser.parse_args()
     seeds, work = {"smoke": (10, smoke), "death": (100, death), "cancel": (100, cancel)}[options.trial]
     try:
-        with Cluster() as cluster, tempfile.TemporaryDirectory(prefix="understudy-campaign-") as folder:
+        with Cluster() as cluster, tempfile.TemporaryDirectory(prefix="understudy-campaign-%a-") as folder:
             work(Trial(str(Path(options.understudy).resolve()), Path(folder), cluster, seeds))
     except Unavailable as why:
         print(f"skipped: {why}")

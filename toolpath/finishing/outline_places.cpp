@@ -5,6 +5,7 @@
 
 #include "toolpath/finishing/surface_fit.h"
 #include "toolpath/planners/mesh_section.h"
+#include "toolpath/planners/plan_checks.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -55,7 +56,7 @@ class Walk {
   void add_piece(const std::vector<Vec3>& piece) {
     double length = 0;
     for (std::size_t i = 1; i < piece.size(); ++i) length += (piece[i] - piece[i - 1]).norm();
-    const int parts = std::max(1, static_cast<int>(std::ceil(length / step_)));
+    const int parts = step_count(length, step_);
     const double spacing = length / parts;
     std::size_t k = 1;
     double before = 0;  // from the piece's beginning to point k - 1

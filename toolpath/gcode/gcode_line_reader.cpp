@@ -23,10 +23,8 @@
 namespace understudy::toolpath {
 namespace {
 
-constexpr std::size_t kLineMax = 65'536;  // [bytes]; docs/limits.md
 constexpr std::size_t kDeepestCall = 20;
 constexpr std::size_t kMostSaved = 20;        // names of SAVE_GCODE_STATE
-constexpr int kMostMacroLines = 100'000;      // docs/limits.md
 constexpr double kCold = 100 + kCelsiusZero;  // [K], of a nozzle that does not print
 
 bool is_passed_over(std::string_view line, const GcodeOptions& options) {
@@ -151,9 +149,9 @@ class GcodeLineReader::Lines {
   }
 
   void run(std::string_view words, int line) {
-    if (words.size() > kLineMax)
+    if (words.size() > kGcodeLineMax)
       throw InputError(Place{file_, line},
-                       fmt::format("the line has {} bytes, more than {}", words.size(), kLineMax));
+                       fmt::format("the line has {} bytes, more than {}", words.size(), kGcodeLineMax));
     if (is_passed_over(words, options_)) return heat_in_place_of(words, line);
     try {
       if (keeps_state(words, line)) return;
@@ -176,10 +174,8 @@ class GcodeLineReader::Lines {
     if (!options_.ignored_heat || bead_begun_ || is_line_without_effect(words) ||
         command_in_words(words).empty())
       return;
-    bead_begun_ = std::ranges::any_of(steps_, [](const Step& s) { return s.kind == StepKind::print; });
-    const auto last = std::find_if(steps_.rbegin(), steps_.rend(),
-                                   [](const Step& s) { return s.kind == StepKind::temperature; });
-    if (bead_begun_ || (last != steps_.rend() && last->temperature > kCold)) return;
+    look_at_steps();
+    if (bead_begun_ || nozzle_ > kCold) return;
     Step heat;
     heat.kind = StepKind::temperature;
     heat.X_WT = state_.X_WT();
@@ -187,6 +183,16 @@ class GcodeLineReader::Lines {
     heat.wait = true;
     heat.line = line;
     steps_.push_back(heat);
+  }
+
+  /// At those that came since it was called last.
+  void look_at_steps() {
+    if (looked_at_ > steps_.size()) looked_at_ = 0;  // some were taken back
+    for (; looked_at_ < steps_.size(); ++looked_at_) {
+      const Step& step = steps_[looked_at_];
+      bead_begun_ = bead_begun_ || step.kind == StepKind::print;
+      if (step.kind == StepKind::temperature) nozzle_ = step.temperature;
+    }
   }
 
   /// What an unknown command makes of the rest of its line is not known either; what follows an M without
@@ -232,11 +238,8 @@ class GcodeLineReader::Lines {
     calls_.push_back(command);
     std::string where = options_.macros->file();
     try {
-      for (const MacroLine& macro_line : options_.macros->expand(command, words)) {
+      for (const MacroLine& macro_line : options_.macros->expand(command, words, macros_left_)) {
         where = to_string(Place{options_.macros->files()[macro_line.file], macro_line.number});
-        if (++macro_lines_ > kMostMacroLines)
-          throw InputError(Place{file_, line},
-                           fmt::format("macros make more than {} lines", kMostMacroLines));
         run(macro_line.text, line);
       }
     } catch (const InputError& error) {
@@ -259,10 +262,12 @@ class GcodeLineReader::Lines {
   std::optional<LinesPassedOver> over_;  // nothing: such lines are errors
   std::set<std::string> saved_names_;
   std::vector<std::string> calls_;  // of macros, the outermost first
-  int macro_lines_ = 0;
+  MacroBudget macros_left_;
   bool said_place_ = false;
   bool of_kisslicer_ = false;
+  std::size_t looked_at_ = 0;  // steps
   bool bead_begun_ = false;
+  double nozzle_ = 0;  // [K], of the last of them that says it
   RefusedLines refused_;
   std::optional<std::pair<GcodeState, std::size_t>> undo_;  // before the last line; number of steps
   bool at_once_ = false;  // unknown words are told by the line that has them

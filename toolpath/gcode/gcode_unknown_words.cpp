@@ -1,6 +1,5 @@
 #include "toolpath/gcode/gcode_unknown_words.h"
 
-#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
@@ -14,11 +13,11 @@ constexpr std::size_t kWordsShown = 20;
 
 void UnknownWords::add(const UnknownWord& error) {
   if (!first_) first_.emplace(error);
-  const auto known = std::ranges::find(counts_, error.word(), &UnknownWordCount::word);
-  if (known != counts_.end())
-    ++known->lines;
-  else
+  const auto [known, fresh] = index_.try_emplace(error.word(), counts_.size());
+  if (fresh)
     counts_.push_back({error.word(), 1, error.place().line});
+  else
+    ++counts_[known->second].lines;
 }
 
 void UnknownWords::fail_if_any() const {

@@ -1,7 +1,10 @@
 // Words that the dialect does not know, told together.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "toolpath/gcode/gcode.h"
@@ -20,6 +23,7 @@ class UnknownWords {
  private:
   std::optional<UnknownWord> first_;
   std::vector<UnknownWordCount> counts_;
+  std::unordered_map<std::string, std::size_t> index_;  // of a word in counts_
 };
 
 }  // namespace understudy::toolpath

@@ -73,8 +73,7 @@ class Summary {
 
  private:
   void add_temperature(double kelvin) {
-    auto& known = result_.temperatures;
-    if (std::find(known.begin(), known.end(), kelvin) == known.end()) known.push_back(kelvin);
+    if (temperatures_.insert(kelvin).second) result_.temperatures.push_back(kelvin);
   }
 
   void print(const Step& step, double length, double fresh) {
@@ -120,6 +119,7 @@ class Summary {
 
   const LayerComments& layers_;
   ProgramSummary result_;
+  std::set<double> temperatures_;
   bool fed_any_ = false;
   Vec3 tip_W_;
   double filament_area_;

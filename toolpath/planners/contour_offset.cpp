@@ -7,6 +7,7 @@
 #include <clipper.hpp>
 
 #include "core/units.h"
+#include "toolpath/planners/plan_checks.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -89,7 +90,7 @@ class Cutter {
 
  private:
   void add_side(const Vec2& a, const Vec2& b) {
-    const int parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing_)));
+    const int parts = step_count((b - a).norm(), spacing_);
     if (first_) {
       first_ = false;
       begun_inside_ = open_ = keep_(a);

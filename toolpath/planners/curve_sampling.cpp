@@ -82,7 +82,7 @@ class Sampler {
   Sampler(const geometry::Mesh& mesh, const SamplingLimits& limits) : mesh_(mesh), limits_(limits) {}
 
   void add(const Stretch& stretch) {
-    const int parts = std::max(1, static_cast<int>(std::ceil(stretch.length() / limits_.step * (1 - 1e-9))));
+    const int parts = step_count(stretch.length() * (1 - 1e-9), limits_.step);
     SurfacePoint from = project(stretch.at(0));
     append(from);
     for (int i = 0; i < parts; ++i) {

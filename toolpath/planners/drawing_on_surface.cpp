@@ -74,7 +74,7 @@ std::vector<std::vector<Vec3>> drawing_on_surface(const geometry::Mesh& mesh,
     std::vector<Vec3> curve{project(stroke.front())};
     for (std::size_t i = 1; i < stroke.size(); ++i) {
       const Vec2 way = stroke[i] - stroke[i - 1];
-      const int parts = std::max(1, static_cast<int>(std::ceil(scale * way.norm() / kStep)));
+      const int parts = step_count(scale * way.norm(), kStep);
       for (int k = 1; k <= parts; ++k) curve.push_back(project(stroke[i - 1] + way * k / parts));
     }
     curves.push_back(std::move(curve));

@@ -1,5 +1,6 @@
 #include "toolpath/planners/plan_checks.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -8,6 +9,11 @@
 #include "core/units.h"
 
 namespace understudy::toolpath {
+namespace {
+
+constexpr double kStepsMax = 1e7;  // of one path; docs/limits.md
+
+}  // namespace
 
 void check_positive(const char* name, double value, const char* unit) {
   if (!(value > 0 && std::isfinite(value)))
@@ -32,6 +38,15 @@ void check_nozzle(double temperature, double fan) {
   if (!(fan >= 0 && fan <= 1)) throw InputError(fmt::format("fan is {:g}, outside 0 to 1", fan));
   if (!(temperature >= 0 && std::isfinite(temperature)))
     throw InputError(fmt::format("temperature is {:g} K, it must not be below 0 K", temperature));
+}
+
+int step_count(double length, double step) {
+  const double steps = std::ceil(length / step);
+  if (!(steps <= kStepsMax))
+    throw InputError(fmt::format(
+        "a path of {:.3g} steps, more than {:g}: choose longer steps, or is the part in another unit?", steps,
+        kStepsMax));
+  return std::max(1, static_cast<int>(steps));
 }
 
 std::string in_mm(const Vec3& p) {

@@ -118,10 +118,17 @@ void KrlReader::count_line(int line) {
     throw InputError(Place{file_, line}, fmt::format("calls run more than {} lines", kMostLinesOfCalls));
 }
 
+void KrlReader::check_variables(const Place& place) const {
+  if (variables_.bytes() > options_.variables_max)
+    throw InputError(
+        place, fmt::format("variables up to here need more than {} MB", options_.variables_max / 1'000'000));
+}
+
 /// The index of the line to run next.
 std::size_t KrlReader::run_line(std::size_t index) {
   const int line = static_cast<int>(index) + 1;
   count_line(line);
+  check_variables({file_, line});
   const std::string_view statement = lines_[index];
   if (statement.empty() || statement.front() == '&') return index + 1;
   path_.set_line(line);
@@ -184,6 +191,7 @@ void KrlReader::read_data(std::string_view text) {
   const std::vector<std::string_view> lines = statements_of(text, file);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     StatementScanner scanner(lines[i], {file, static_cast<int>(i) + 1});
+    check_variables(scanner.place());
     try {
       const std::string word = scanner.name();
       if (word.empty() || word == "DEFDAT" || word == "ENDDAT" || word == "EXT" || word == "EXTFCT" ||

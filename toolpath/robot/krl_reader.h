@@ -40,6 +40,7 @@ class KrlReader {
   void run_statement(const std::string& word, Scanner& scanner);
   bool is_ignored(const std::string& word) const;
   void count_line(int line);
+  void check_variables(const Place& place) const;
 
   void declare(const std::string& word, Scanner& scanner);
   void move(const std::string& word, Scanner& scanner);

@@ -53,8 +53,6 @@ bool KrlReader::is_without_effect(const std::string& name) {
   return std::find(std::begin(kWithoutEffect), std::end(kWithoutEffect), bare) != std::end(kWithoutEffect);
 }
 
-namespace {}  // namespace
-
 const std::unordered_map<std::string_view, KrlReader::Handler>& KrlReader::handlers() {
   using R = KrlReader;
   static const std::unordered_map<std::string_view, Handler> all{{"DECL", &R::declare},

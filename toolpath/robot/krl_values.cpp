@@ -112,6 +112,15 @@ KrlValue sum(Scanner& scanner, const KrlVariables& variables) {
       scanner, "+-", [&] { return product(scanner, variables); }, calculated);
 }
 
+std::size_t bytes_of(const KrlValue& value) {
+  if (const auto* unknown = std::get_if<KrlUnknown>(&value)) return unknown->name.size();
+  if (const auto* text = std::get_if<std::string>(&value)) return text->size();
+  std::size_t bytes = 0;
+  if (const auto* structure = std::get_if<KrlStructure>(&value))
+    for (const auto& field : structure->fields) bytes += sizeof field + field.first.size();
+  return bytes;
+}
+
 }  // namespace
 
 std::optional<double> KrlStructure::find(std::string_view name) const {
@@ -143,15 +152,24 @@ const KrlValue* KrlVariables::find(const std::string& name) const {
   return found == values_.end() ? nullptr : &found->second;
 }
 
+void KrlVariables::set(const std::string& name, KrlValue value) {
+  KrlValue& variable = values_[name];
+  bytes_ += bytes_of(value);
+  bytes_ -= bytes_of(variable);
+  variable = std::move(value);
+}
+
 void KrlVariables::set_component(const std::string& name, const std::string& component,
                                  const KrlValue& value) {
   KrlValue& whole = values_.try_emplace(name, KrlStructure{}).first->second;
+  bytes_ -= bytes_of(whole);
   if (!std::holds_alternative<KrlStructure>(whole)) whole = KrlStructure{};
   const auto* number = std::get_if<double>(&value);
   if (number != nullptr)
     std::get<KrlStructure>(whole).set(component, *number);
   else
     whole = KrlUnknown{name + "." + component};
+  bytes_ += bytes_of(whole);
 }
 
 std::string krl_indexed(std::string name, StatementScanner& scanner, const KrlVariables& variables) {

@@ -37,10 +37,13 @@ class KrlVariables {
  public:
   /// Null: not set. "NAME", or "NAME[3]" of a field.
   const KrlValue* find(const std::string& name) const;
-  void set(const std::string& name, KrlValue value) { values_.insert_or_assign(name, std::move(value)); }
+  void set(const std::string& name, KrlValue value);
   void set_component(const std::string& name, const std::string& component, const KrlValue& value);
+  /// What they need, but for their names: a line of few characters can copy a large one.
+  std::size_t bytes() const { return bytes_; }
 
  private:
+  std::size_t bytes_ = 0;
   std::unordered_map<std::string, KrlValue> values_;
 };
 

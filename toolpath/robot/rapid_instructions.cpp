@@ -86,7 +86,7 @@ void RapidReader::declare(const std::string& word, Scanner& scanner) {
   }
   if (!scanner.take(':')) return;
   scanner.expect('=');
-  variables_.set(name, rapid_expression(scanner, variables_));
+  variables_.set(name, rapid_expression(scanner, variables_), scanner.place());
 }
 
 RapidArguments RapidReader::arguments(Scanner& scanner, std::size_t at_least) {
@@ -247,8 +247,8 @@ void RapidReader::assign_or_call(const std::string& word, Scanner& scanner) {
   scanner.expect('=');
   RapidValue value = rapid_expression(scanner, variables_);
   const RapidValue* known = variables_.find(word);
-  if (components.empty() || known == nullptr) return variables_.set(word, std::move(value));
-  variables_.set(word, with_part(*known, components, std::move(value), scanner.place()));
+  if (components.empty() || known == nullptr) return variables_.set(word, std::move(value), scanner.place());
+  variables_.set(word, with_part(*known, components, std::move(value), scanner.place()), scanner.place());
 }
 
 }  // namespace understudy::toolpath

@@ -20,8 +20,8 @@ constexpr BlockWords kBlocks[] = {
     {"IF", "ENDIF"}, {"FOR", "ENDFOR"}, {"WHILE", "ENDWHILE"}, {"TEST", "ENDTEST"}, {"RECORD", "ENDRECORD"}};
 
 /// The name of PROC NAME(...), and whether it takes parameters.
-std::pair<std::string, bool> routine_head(std::string_view text) {
-  StatementScanner scanner(text, {});
+std::pair<std::string, bool> routine_head(std::string_view text, const Place& place) {
+  StatementScanner scanner(text, place);
   std::string name = scanner.name();
   if (name == "LOCAL") name = scanner.name();
   name = scanner.name();
@@ -40,8 +40,10 @@ RapidReader::RapidReader(const std::string& text, const std::string& file, const
   path_.facts.language = RobotLanguage::rapid;
   variables_.present = [this] { return rapid_target(path_.X_UN().value_or(Pose::Identity())); };
   const RapidValue frame = rapid_target(Pose::Identity());
-  variables_.set("WOBJ0", RapidValue::list(
-                              {RapidValue::of(0), RapidValue::of(1), RapidValue::of_name(""), frame, frame}));
+  variables_.set(
+      "WOBJ0",
+      RapidValue::list({RapidValue::of(0), RapidValue::of(1), RapidValue::of_name(""), frame, frame}),
+      Place{file_});
   find_routines();
 }
 
@@ -55,7 +57,7 @@ void RapidReader::find_routines() {
     if (begins) {
       if (!open.empty())
         throw InputError(Place{file_, statement.line}, fmt::format("the routine {} has no end", open));
-      const auto [name, parameters] = routine_head(statement.text);
+      const auto [name, parameters] = routine_head(statement.text, {file_, statement.line});
       if (name.empty()) throw InputError(Place{file_, statement.line}, "a routine without a name");
       open = name;
       routines_.insert_or_assign(name,

@@ -17,6 +17,7 @@ using Kind = RapidValue::Kind;
 constexpr double kMostElements = 1e9;
 constexpr std::size_t kMostText = 100;  // of which nothing is read
 constexpr double kUnitLength = 1e-2;    // by which a quaternion of few digits may differ
+constexpr int kDeepestList = 20;        // docs/limits.md
 
 RapidValue sum(Scanner& scanner, const RapidVariables& variables);
 
@@ -175,6 +176,8 @@ RapidValue RapidValue::of_name(std::string name) {
 RapidValue RapidValue::list(std::vector<RapidValue> parts) {
   RapidValue value;
   value.kind = Kind::list;
+  for (const RapidValue& part : parts) value.depth_ = std::max(value.depth_, part.depth_);
+  ++value.depth_;
   value.parts_ = std::make_shared<const std::vector<RapidValue>>(std::move(parts));
   return value;
 }
@@ -193,6 +196,12 @@ const RapidValue* RapidArguments::find(std::string_view name) const {
 const RapidValue* RapidVariables::find(const std::string& name) const {
   const auto found = values_.find(name);
   return found == values_.end() ? nullptr : &found->second;
+}
+
+void RapidVariables::set(const std::string& name, RapidValue value, const Place& place) {
+  if (value.depth() > kDeepestList)
+    throw InputError(place, fmt::format("lists nest more than {} deep", kDeepestList));
+  values_.insert_or_assign(name, std::move(value));
 }
 
 std::optional<std::size_t> RapidVariables::part_of(std::string_view component) {

@@ -29,8 +29,11 @@ struct RapidValue {
   /// Of a list; else none.
   const std::vector<RapidValue>& parts() const;
   bool is_list(std::size_t size) const { return kind == Kind::list && parts().size() >= size; }
+  /// Of lists within each other; 0 of what is no list.
+  int depth() const { return depth_; }
 
  private:
+  int depth_ = 0;
   std::shared_ptr<const std::vector<RapidValue>> parts_;  // a copy costs the same whatever its length
 };
 
@@ -45,7 +48,9 @@ struct RapidArguments {
 class RapidVariables {
  public:
   const RapidValue* find(const std::string& name) const;
-  void set(const std::string& name, RapidValue value) { values_.insert_or_assign(name, std::move(value)); }
+  /// Throws InputError at `place` for lists that nest deeper than brackets may, as `a := [a]` again and
+  /// again.
+  void set(const std::string& name, RapidValue value, const Place& place);
   /// The present robtarget, which CRobT gives.
   std::function<RapidValue()> present;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "core/file/read_file.h"
 #include "toolpath/robot/statement_scanner.h"
@@ -11,6 +13,7 @@ namespace understudy::toolpath {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr std::size_t kProgramMax = 200'000'000;  // [bytes]; docs/limits.md
 
 std::optional<RobotLanguage> by_ending(const fs::path& path) {
   const std::string ending = upper_case(path.extension().string());
@@ -64,8 +67,13 @@ std::optional<RobotLanguage> robot_language(const fs::path& path, std::string_vi
 Program read_robot_program(const fs::path& path, const std::string& text, const RobotOptions& options) {
   const auto language = robot_language(path, text);
   if (!language) throw InputError(path.string() + ": neither KRL (.src, DEF) nor RAPID (.mod, .prg, MODULE)");
+  const std::string data = *language == RobotLanguage::krl ? data_beside(path) : "";
+  if (text.size() + data.size() > kProgramMax)
+    throw InputError(Place{path.string()},
+                     fmt::format("{} MB, a program of a robot has at most {}",
+                                 (text.size() + data.size()) / 1'000'000, kProgramMax / 1'000'000));
   if (*language == RobotLanguage::rapid) return parse_rapid(text, path.string(), options);
-  return parse_krl(text, data_beside(path), path.string(), options);
+  return parse_krl(text, data, path.string(), options);
 }
 
 }  // namespace understudy::toolpath

@@ -67,7 +67,8 @@ struct RobotOptions {
   /// Axis of N that points out of the nozzle, one of x -x y -y z -z; empty: the one that points down, on
   /// average over what is printed.
   std::string tool_points;
-  std::size_t chords_max = kMostChords;  ///< of all arcs; a program with more is refused
+  std::size_t chords_max = kMostChords;       ///< of all arcs; a program with more is refused
+  std::size_t variables_max = 1'000'000'000;  ///< [bytes], of what variables of KRL hold (docs/limits.md)
   /// Statements to pass over, upper case: "WAIT_FOR", "IF" (to its end), "$FLAG".
   std::vector<std::string> ignored;
   /// Where unknown statements are counted, which are then passed over; null: they are errors. With it, an

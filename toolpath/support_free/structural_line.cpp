@@ -119,7 +119,7 @@ class LineFinder {
     const StructuralLine line(even(points_));
     std::vector<Vec3> better{line.points().front()};
     SectionFrame frame;
-    const auto count = static_cast<int>(std::ceil(line.length() / step_));
+    const int count = step_count(line.length(), step_);
     for (int i = 1; i < count; ++i) {
       tell(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(count), "smoothing the line");
       const double s = line.length() * i / count;

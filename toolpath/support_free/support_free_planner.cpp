@@ -171,7 +171,7 @@ class SupportFreePrint {
   /// Over the section all the way, where nothing stands higher than the tip.
   bool runs_inside(const Vec3& from_W, const Vec3& to_W) const {
     const Vec2 a = layer_->middle.in(from_W), b = layer_->middle.in(to_W);
-    const int parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / (0.5 * plan_.bead_width))));
+    const int parts = step_count((b - a).norm(), 0.5 * plan_.bead_width);
     for (int k = 0; k <= parts; ++k)
       if (!layer_->section.holds(a + (b - a) * k / parts)) return false;
     return true;

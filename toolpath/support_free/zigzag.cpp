@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/units.h"
+#include "toolpath/planners/plan_checks.h"
 
 namespace understudy::toolpath {
 namespace {
@@ -111,7 +112,7 @@ std::vector<FlatPath> zigzag(const std::vector<Contour>& region, const Vec2& alo
   const double low = scan.low() + kInside, high = scan.high() - kInside;
   spacing = pitch;
   if (!(high > low)) return {};
-  const int gaps = std::max(1, static_cast<int>(std::ceil((high - low) / pitch - 1e-6)));
+  const int gaps = step_count(high - low - 1e-6 * pitch, pitch);
   spacing = (high - low) / gaps;
   const bool forwards = scan.turned(from).x() - low < high - scan.turned(from).x();
   std::vector<double> places;

@@ -38,6 +38,13 @@ std::string script_of(const std::vector<std::string>& words, const std::string& 
   return script + " " + last + "\n";
 }
 
+/// Of sbatch, which puts a number in place of each %a, and % in place of %%.
+std::string output_option(const fs::path& folder, const std::string& pattern) {
+  std::string path;
+  for (const char c : folder.string()) path += c == '%' ? std::string("%%") : std::string(1, c);
+  return fmt::format("--output={}/{}", path, pattern);
+}
+
 std::string last_line(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return "";
@@ -119,17 +126,15 @@ class Stage {
         fmt::format("--mem={}M", static_cast<int>(std::ceil(memory_of_a_run(open_) / kMega)));
     std::vector<std::string> array = call_.sbatch;
     array.insert(array.end(), {name, memory, "--requeue", "--open-mode=append", "--ntasks=1",
-                               fmt::format("--array=0-{}", tasks_ - 1),
-                               fmt::format("--output={}", (folder_ / "task-%a.out").string()),
+                               fmt::format("--array=0-{}", tasks_ - 1), output_option(folder_, "task-%a.out"),
                                (folder_ / "task.sh").string()});
     const std::string job = slurm_.submit(array);
     jobs_ = {job};
     write_file(jobs_file(), job + "\n");
     std::vector<std::string> merge = call_.sbatch;
-    merge.insert(
-        merge.end(),
-        {name, memory, "--requeue", "--open-mode=append", "--ntasks=1", "--dependency=afterany:" + job,
-         fmt::format("--output={}", (folder_ / "merge.out").string()), (folder_ / "merge.sh").string()});
+    merge.insert(merge.end(), {name, memory, "--requeue", "--open-mode=append", "--ntasks=1",
+                               "--dependency=afterany:" + job, output_option(folder_, "merge.out"),
+                               (folder_ / "merge.sh").string()});
     jobs_.push_back(slurm_.submit(merge));
     write_file(jobs_file(), fmt::format("{}\n", fmt::join(jobs_, "\n")));
     if (!call_.told.quiet)

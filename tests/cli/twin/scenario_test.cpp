@@ -124,11 +124,30 @@ TEST(ScenarioRun, APlanThatIsRefusedIsARunWithStatusTwo) {
   EXPECT_THAT(outcome.out, HasSubstr("b.yaml: plan: "));
   EXPECT_THAT(outcome.out, HasSubstr("none.stl"));
   for (const std::string words :
-       {"spiral -o x.gcode", "spiral --machine arm", "spirale", "spiral --radiuss 3"}) {
+       {"spiral -o x.gcode", "spiral -ox.gcode", "spiral --machine arm", "spirale", "spiral --radiuss 3"}) {
     const Outcome wrong =
         understudy("scenario run " + bent(folder, "c.yaml", "plan: " + words, "metric: verdict, equals: go"));
     EXPECT_EQ(wrong.status, 2) << words;
     EXPECT_THAT(wrong.out, HasSubstr("c.yaml: plan: ")) << words;
+  }
+}
+
+// A scenario may come from a stranger: it shall not overwrite a file of the user.
+TEST(ScenarioRun, APlanWritesItsProgramAlone) {
+  const Folder folder;
+  const std::string others = folder.write("others.stl", "mine");
+  for (const std::string option : {"--stock ", "--stock="}) {
+    const auto file = folder.write(
+        "mill.yaml",
+        "name: mill\ndescription: a cross\nsource: none\nmachine: finishing\nplan: finishing cross_90 "
+        "--from 22 " +
+            option + others +
+            "\nas_built: nominal\nseed: 1\ngap_control: \"off\"\nengine: quasistatic\nexpect:\n"
+            "  - {metric: verdict, equals: go, source: a test}\n");
+    const Outcome outcome = understudy("scenario run " + file);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.out, HasSubstr("writes a file")) << option;
+    EXPECT_EQ(read_file(others), "mine");
   }
 }
 

@@ -64,6 +64,14 @@ TEST_F(CampaignFile, WhatDoesNotGoTogetherIsRefusedWithItsLine) {
               HasSubstr("the grid has 9899901 points, more than 100000"));
 }
 
+// Of few bytes each makes a list of 100 000 values: a file of 300 kB would need 20 GB.
+TEST_F(CampaignFile, MoreThanAHundredParametersAreRefused) {
+  std::string text = "parameters:\n";
+  for (int i = 0; i < 101; ++i)
+    text += "  - {key: machine.a" + std::to_string(i) + ", from: 0, to: 1, steps: 2}\n";
+  EXPECT_THAT(error(text), HasSubstr("c.yaml:105:5: more than 100 parameters"));
+}
+
 TEST_F(CampaignFile, SeedsAreARange) {
   for (const char* seeds : {"5", "9-3", "a-b", "1-"}) {
     std::ofstream(folder_ / "c.yaml") << "name: c\nscenarios: [s.yaml]\nseeds: " << seeds << "\n";

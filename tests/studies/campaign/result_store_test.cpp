@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -170,6 +171,17 @@ TEST_F(ResultStoreTest, ADamagedStoreIsRefusedWithItsFile) {
   EXPECT_THAT(complaint([&] { ResultStore(path(), kHeader); }),
               AllOf(StartsWith(path().string() + ": not a result store that can be read: "),
                     HasSubstr("gap.start_mm")));
+}
+
+TEST_F(ResultStoreTest, AQueryWithoutEndInPlaceOfTheRowsIsRefused) {
+  ResultStore(path(), kHeader).add(row(1));
+  ASSERT_EQ(run_sql(path(),
+                    "ALTER TABLE runs RENAME TO kept; CREATE VIEW runs AS WITH RECURSIVE forever(n) AS "
+                    "(SELECT 1 UNION ALL SELECT n + 1 FROM forever) SELECT kept.* FROM kept, forever"),
+            SQLITE_OK);
+  for (const auto& read : {std::function<void()>([&] { stored_runs(path(), kHeader); }),
+                           std::function<void()>([&] { read_rows(path(), kHeader); })})
+    EXPECT_THAT(complaint(read), AllOf(StartsWith(path().string() + ": "), HasSubstr("view")));
 }
 
 TEST_F(ResultStoreTest, WhatIsNoStoreIsRefused) {

@@ -31,8 +31,7 @@ double reading(const machine::MachineDescription& believed, const machine::Machi
                double gap) {
   sim::Microscope microscope(truth, nullptr, 11);
   const Camera& camera = truth.microscope.camera;
-  const Image image =
-      microscope.expose(make_pose(Quat::Identity(), Vec3(0, 0, gap)), {0, 0, camera.width, camera.height}, 1);
+  const Image image = microscope.expose(make_pose(Quat::Identity(), Vec3(0, 0, gap)), camera.sensor(), 1);
   control::GapReading reading;
   const auto dot = vision::measure_dot(image, control::dot_options(believed));
   EXPECT_TRUE(control::read_gap(believed, {}, dot, reading));

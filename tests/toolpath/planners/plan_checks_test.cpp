@@ -38,6 +38,18 @@ TEST(PlanChecks, TheFanIsAShareAndTheHeaterNotBelowAbsoluteZero) {
   EXPECT_NE(complaint([] { check_nozzle(-1, 0.5); }), "accepted");
 }
 
+TEST(PlanChecks, StepsAreCountedUpToALimit) {
+  EXPECT_EQ(step_count(1, 0.3), 4);
+  EXPECT_EQ(step_count(0.9, 0.3), 3);
+  EXPECT_EQ(step_count(0, 0.3), 1);
+  EXPECT_EQ(step_count(10, 1e-6), 10'000'000);
+  // Beyond an int, a cast would make any number of it.
+  for (const double step : {0.9e-6, 1e-12, 1e-300, 0.0, std::nan("")})
+    EXPECT_NE(complaint([&] { step_count(10, step); }), "accepted") << step;
+  EXPECT_EQ(complaint([] { step_count(0.05, 1e-12); }),
+            "a path of 5e+10 steps, more than 1e+07: choose longer steps, or is the part in another unit?");
+}
+
 TEST(PlanChecks, PlacesAreShownInMillimetres) {
   EXPECT_EQ(in_mm(Vec3(1e-3, -2.5e-3, 0.0300004)), "(1.000, -2.500, 30.000) mm");
 }

@@ -220,6 +220,23 @@ TEST(KrlReader, WhatItCannotKnowIsAnErrorWithItsLine) {
   }
 }
 
+// Few characters copy a large structure: a program of 8 MB would need 20 GB.
+TEST(KrlReader, VariablesThatNeedTooMuchMemoryAreRefused) {
+  std::string body = "A={X 0";
+  for (int i = 0; i < 60; ++i) body += ",N" + std::string(190, 'N') + std::to_string(i) + " 0";
+  body += "}\n";
+  for (int i = 0; i < 200; ++i) body += "B" + std::to_string(i) + "=A\n";
+  auto few = options();
+  few.variables_max = 2'000'000;
+  EXPECT_THAT(rejection(body, few),
+              testing::MatchesRegex("part.src:1[0-9]+: variables up to here need more than 2 MB"));
+  few.variables_max = 4'000'000;
+  EXPECT_THAT(rejection(body, few), HasSubstr("0 moves, at least 1 is needed"));
+  std::string again = body.substr(0, body.find('\n') + 1);
+  for (int i = 0; i < 1000; ++i) again += "B=A\nB=0\nB.X=1\n";
+  EXPECT_THAT(rejection(again, few), HasSubstr("0 moves")) << "what they held before does not count";
+}
+
 // 2^20 lines of calls that call each other twice.
 TEST(KrlReader, CallsThatMultiplyAreStopped) {
   std::string text = "DEF r0( )\nr1( )\nr1( )\nEND\n";

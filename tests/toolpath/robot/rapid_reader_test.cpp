@@ -211,6 +211,22 @@ TEST(RapidReader, WhatItCannotKnowIsAnErrorWithItsLine) {
   }
 }
 
+// Each takes a step of the stack when it ends.
+TEST(RapidReader, ListsThatGrowDeeperWithEachLineAreRefused) {
+  std::string body, parts = "a:=[0];\n";
+  for (int i = 0; i < 100'000; ++i) {
+    body += "a:=[a];\n";
+    parts += "a.x:=a;\n";
+  }
+  EXPECT_EQ(rejection(body), "part.mod:23: lists nest more than 20 deep");
+  EXPECT_EQ(rejection(parts), "part.mod:23: lists nest more than 20 deep");
+}
+
+TEST(RapidReader, ALongNameOfARoutineIsAnErrorWithItsLine) {
+  EXPECT_EQ(rejection("ENDPROC\nPROC " + std::string(201, 'n') + "()\n"),
+            "part.mod:4: a name of 201 characters");
+}
+
 TEST(RapidReader, WhichRoutineRunsIsMainOrTheOnlyOne) {
   const std::string move = "MoveL " + at(1, 0, 5) + ",v20,z1,tool0;\n";
   EXPECT_EQ(parse_rapid("MODULE M\nPROC Path_10()\n" + move + "ENDPROC\nENDMODULE\n", "a.mod", options())

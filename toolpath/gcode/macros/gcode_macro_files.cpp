@@ -42,7 +42,12 @@ class MacroFiles {
     if (macros_.files_.size() == kMostFiles)
       throw InputError(Place{path.string()}, fmt::format("more than {} files are included", kMostFiles));
     open_.push_back(fs::weakly_canonical(path));
-    parse(read_file(path), path.string());
+    const std::string text = read_file(path);
+    if (text.size() > bytes_left_)
+      throw InputError(Place{path.string()},
+                       fmt::format("more than {} bytes in all that is included", kMacroFilesMax));
+    bytes_left_ -= text.size();
+    parse(text, path.string());
     open_.pop_back();
   }
 
@@ -132,6 +137,7 @@ class MacroFiles {
 
   GcodeMacros& macros_;
   bool includes_;
+  std::size_t bytes_left_ = kMacroFilesMax;
   std::vector<fs::path> open_;                  // files that are being read, the outermost first
   std::map<std::string, std::size_t> file_of_;  // of macros
   Section at_;

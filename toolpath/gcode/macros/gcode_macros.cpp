@@ -145,6 +145,9 @@ class Template {
     while (true) {
       const std::size_t open = rest.find('{');
       result += rest.substr(0, open);
+      if (result.size() > kGcodeLineMax)
+        throw InputError(place,
+                         fmt::format("with its values, the line has more than {} bytes", kGcodeLineMax));
       if (open == std::string_view::npos) return result;
       rest.remove_prefix(open);
       const bool statement = rest.starts_with("{%");
@@ -180,6 +183,18 @@ class Template {
   const std::vector<std::string>& files_;
 };
 
+/// A line of so many bytes.
+void take(MacroBudget& left, std::size_t bytes, const Place& place) {
+  if (left.lines == 0)
+    throw InputError(place,
+                     fmt::format("macros make more than {} lines of one program", MacroBudget().lines));
+  if (left.bytes < bytes)
+    throw InputError(place,
+                     fmt::format("macros make more than {} bytes of one program", MacroBudget().bytes));
+  --left.lines;
+  left.bytes -= bytes;
+}
+
 }  // namespace
 
 Values call_parameters(const std::string& command, std::string_view call, const Place& place) {
@@ -205,15 +220,18 @@ Values call_parameters(const std::string& command, std::string_view call, const 
   return values;
 }
 
-std::vector<MacroLine> GcodeMacros::expand(const std::string& command, std::string_view call) const {
+std::vector<MacroLine> GcodeMacros::expand(const std::string& command, std::string_view call,
+                                           MacroBudget& left) const {
   const std::vector<MacroLine>& lines = macros_.at(command);
   if (lines.empty()) return {};
   const Place place{files_[lines.front().file], lines.front().number};
   Template filled(call_parameters(command, call, place), files_);
   std::vector<MacroLine> result;
-  for (const MacroLine& line : lines)
-    if (std::string text = filled.fill(line); !trimmed(text).empty())
-      result.push_back({std::move(text), line.number, line.file});
+  for (const MacroLine& line : lines) {
+    std::string text = filled.fill(line);
+    take(left, text.size(), {files_[line.file], line.number});
+    if (!trimmed(text).empty()) result.push_back({std::move(text), line.number, line.file});
+  }
   return result;
 }
 

@@ -17,6 +17,15 @@
 
 namespace understudy::toolpath {
 
+constexpr std::size_t kGcodeLineMax = 65'536;       ///< [bytes], of G-code; docs/limits.md
+constexpr std::size_t kMacroFilesMax = 16'000'000;  ///< [bytes], of all files; docs/limits.md
+
+/// What the macros of one program may yet make; docs/limits.md.
+struct MacroBudget {
+  std::size_t lines = 100'000;
+  std::size_t bytes = 64'000'000;
+};
+
 struct MacroLine {
   std::string text;
   int number = 0;        ///< of its file, from 1
@@ -31,15 +40,17 @@ class GcodeMacros {
   /// Whether a line that begins with this command, upper case, calls a macro.
   bool has(const std::string& command) const { return macros_.contains(command); }
   /// The lines of the macro `command`, which has(), with the parameters of `call` ("START_PRINT BED=60",
-  /// "M600 X1") in place. Throws InputError with the place in the macros' file.
-  std::vector<MacroLine> expand(const std::string& command, std::string_view call) const;
+  /// "M600 X1") in place; they are taken from `left`. Throws InputError with the place in the macros' file,
+  /// also where too little is left, or a line has more than kGcodeLineMax with its values.
+  std::vector<MacroLine> expand(const std::string& command, std::string_view call, MacroBudget& left) const;
 
   /// Throws InputError with file and line for a section that is none, or a macro that is there twice. What
   /// the text includes is left out.
   static GcodeMacros parse(const std::string& text, const std::string& file);
   /// With [include FILE], whose name may have * and ?, counted from the folder of the file that names it. Of
   /// a macro in several files the last counts, as in Klipper. Throws InputError for a file that is not there,
-  /// that includes itself, or that lies neither in the folder of `path` nor below (core/file/outside.h).
+  /// that includes itself, or that lies neither in the folder of `path` nor below (core/file/outside.h), and
+  /// for files of more than kMacroFilesMax together.
   static GcodeMacros read(const std::filesystem::path& path);
 
  private:

@@ -46,17 +46,27 @@ TEST_F(IncludedMacros, IncludedFilesAreReadAndTheLastOfAMacroCounts) {
       GcodeMacros::read(write("printer.cfg",
                               "[include macros/*.cfg]\n[include none/*.cfg]\n[gcode_macro C]\nvariable_x: 1\n"
                               "[gcode_macro D]\ngcode: G0 X5\n"));
-  EXPECT_THAT(texts(macros.expand("A", "A")), ElementsAre("G0 X1"));
-  EXPECT_THAT(texts(macros.expand("B", "B")), ElementsAre("G0 X2"));
-  EXPECT_THAT(texts(macros.expand("C", "C")), ElementsAre("G0 X3")) << "the later section says no gcode";
-  EXPECT_THAT(texts(macros.expand("D", "D")), ElementsAre("G0 X5"));
+  MacroBudget left;
+  EXPECT_THAT(texts(macros.expand("A", "A", left)), ElementsAre("G0 X1"));
+  EXPECT_THAT(texts(macros.expand("B", "B", left)), ElementsAre("G0 X2"));
+  EXPECT_THAT(texts(macros.expand("C", "C", left)), ElementsAre("G0 X3"))
+      << "the later section says no gcode";
+  EXPECT_THAT(texts(macros.expand("D", "D", left)), ElementsAre("G0 X5"));
   ASSERT_EQ(macros.files().size(), 4u);
-  EXPECT_THAT(macros.files()[macros.expand("C", "C")[0].file], HasSubstr("c.cfg"));
+  EXPECT_THAT(macros.files()[macros.expand("C", "C", left)[0].file], HasSubstr("c.cfg"));
   GcodeOptions options;
   write("c.cfg", "[gcode_macro C]\ngcode:\n G0 X- \n");
   options.macros = std::make_shared<GcodeMacros>(GcodeMacros::read(folder_ / "printer.cfg"));
   EXPECT_THAT(complaint([&] { parse_gcode("C\n", "p.gcode", options); }),
               testing::ContainsRegex("p.gcode:1: in C \\(.*c.cfg:3\\): 'X-'"));
+}
+
+TEST_F(IncludedMacros, AreRefusedWhereTheyAreLargerThanAnyConfiguration) {
+  const std::string half(kMacroFilesMax / 2, '#');
+  write("a.cfg", half);
+  EXPECT_EQ(complaint_of("[include a.cfg]\n"), "accepted");
+  EXPECT_THAT(complaint_of("[include a.cfg]\n" + half),
+              HasSubstr("a.cfg: more than 16000000 bytes in all that"));
 }
 
 TEST_F(IncludedMacros, FilesThatAreNotThereLieOutsideOrIncludeThemselvesAreRefused) {

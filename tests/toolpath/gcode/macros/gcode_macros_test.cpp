@@ -48,7 +48,8 @@ std::vector<std::string> texts(const std::vector<MacroLine>& lines) {
 
 std::vector<std::string> expand(const std::string& file, const std::string& command,
                                 const std::string& call) {
-  return texts(GcodeMacros::parse(file, "m.cfg").expand(command, call));
+  MacroBudget left;
+  return texts(GcodeMacros::parse(file, "m.cfg").expand(command, call, left));
 }
 
 Program parse(const std::string& text, const std::string& macros) {
@@ -69,7 +70,8 @@ TEST(GcodeMacros, ParametersOfTheCallOrTheirDefaultsTakeTheirPlaces) {
               ElementsAre("M140 S55.5", "G90", "SET_GCODE_OFFSET Z=0.0", "G28", "G1 Z5 F3000", "M109 S215"));
   const std::string old = "[gcode_macro M600]\ngcode:\n G0 X{params.X} Y{params.Y}\n";
   EXPECT_THAT(expand(old, "M600", "M600 X5Y6"), ElementsAre("G0 X5 Y6")) << "letters, as of old";
-  EXPECT_EQ(GcodeMacros::parse(kStart, "m.cfg").expand("PARK", "PARK").front().number, 16);
+  MacroBudget left;
+  EXPECT_EQ(GcodeMacros::parse(kStart, "m.cfg").expand("PARK", "PARK", left).front().number, 16);
 }
 
 TEST(GcodeMacros, AProgramRunsTheirLinesAtTheLineOfTheCall) {
@@ -102,6 +104,28 @@ TEST(GcodeMacros, AMacroThatCallsItselfIsRefused) {
                 (i == 1 ? " G0 X1\n G0 X2\n"
                         : " B_" + std::to_string(i - 1) + "\n B_" + std::to_string(i - 1) + "\n");
   EXPECT_THAT(rejection("B_19\n", doubling), HasSubstr("macros make more than 100000 lines"));
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string result;
+  for (int i = 0; i < times; ++i) result += text;
+  return result;
+}
+
+// A value that stands in a line many times, and so on in the macro that this line calls, would fill any
+// memory.
+TEST(GcodeMacros, LinesThatGrowWithoutEndAreRefused) {
+  const std::string set = "  {% set a = \"" + repeated("x", 30'000) + "\" %}\n";
+  EXPECT_THAT(rejection("A\n", macro(set + "  M117 {a}{a}{a}\n")),
+              HasSubstr("m.cfg:5: with its values, the line has more than 65536 bytes"));
+  EXPECT_THAT(rejection("A\n", macro(set + repeated("  M117 {a}{a}\n", 1'100))),
+              HasSubstr("macros make more than 64000000 bytes of one program"));
+  EXPECT_THAT(rejection(repeated("A\n", 34), macro(set + repeated("  M117 {a}\n", 66))),
+              HasSubstr("macros make more than 64000000 bytes"))
+      << "of all calls";
+  EXPECT_THAT(rejection(repeated("A\n", 200), macro(repeated("  {% set a = 1 %}\n", 1'000))),
+              HasSubstr("macros make more than 100000 lines"))
+      << "of nothing, but each of them is read";
 }
 
 TEST(GcodeMacros, WhatElseJinjaHasIsRefusedByNameWithFileAndLine) {
