@@ -129,7 +129,7 @@ void read_tools(YamlMap& root, const std::string& wanted, MachineFile& file) {
                 Tool tool;
                 std::optional<Cure> cure;
                 std::optional<GapLimits> gap;
-                const std::string name = map.text("name", "behind the machine's name and a +");
+                const std::string name = map.name("name", "behind the machine's name and a +");
                 if (!map.recording() && std::ranges::find(names, name) != names.end())
                   throw InputError(map.place("name"), fmt::format("two tools are named '{}'", name));
                 names.push_back(name);
@@ -154,7 +154,7 @@ void read_tools(YamlMap& root, const std::string& wanted, MachineFile& file) {
 
 void read_machine(YamlMap& root, MachineFile& file, const std::string& wanted_tool = {}) {
   MachineDescription& m = file.description;
-  m.name = root.text("name", "shown in reports");
+  m.name = root.name("name", "shown in reports");
   m.mechanism = root.word("mechanism", mechanism_words(), "what the machine is");
   root.require("mechanism");
   if (root.has("assumed")) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/file/read_file.h"
+#include "core/text/printable.h"
 #include "core/yaml/yaml_map.h"
 #include "core/yaml/yaml_quoted.h"
 #include "regression/expectation_keys.h"
@@ -79,7 +80,7 @@ std::string golden_text(const Scenario& scenario, const Metrics& run,
       "# The figures of {}, as `understudy scenario run --update-golden` wrote them. Tolerances are yours "
       "to\n"
       "# change, and entries to take out: both stay when the file is written again.\ngolden: {}\nexpect:\n",
-      scenario.file.filename().string(), kVersion);
+      printable(scenario.file.filename().string()), kVersion);
   for (const auto& [metric, value] : run) {
     const auto known = std::ranges::find(before, metric, &Expectation::metric);
     if (const auto* word = std::get_if<std::string>(&value); word && word->empty()) continue;

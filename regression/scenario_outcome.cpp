@@ -8,6 +8,7 @@
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file/read_file.h"
+#include "core/text/printable.h"
 #include "core/yaml/yaml_map.h"
 #include "core/yaml/yaml_quoted.h"
 #include "regression/run_scenario.h"
@@ -101,7 +102,7 @@ std::string outcome_text(const Scenario& scenario, const ScenarioOutcome& outcom
   std::string text = fmt::format(
       "# What came of {}, for `understudy scenario run --resume` and `--baseline`.\noutcome: {}\nseconds: "
       "{:.3f}\n",
-      scenario.file.filename().string(), kVersion, outcome.seconds);
+      printable(scenario.file.filename().string()), kVersion, outcome.seconds);
   if (!inputs.empty()) text += fmt::format("inputs_sha256: {}\n", inputs);
   if (!outcome.error.empty())
     text += fmt::format("error: {}\nerror_status: {}\n", yaml_quoted(outcome.error), outcome.error_status);

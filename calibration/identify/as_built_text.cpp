@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "calibration/identify/identify.h"
+#include "core/text/printable.h"
 #include "core/units.h"
 #include "machine/file/section_text.h"
 
@@ -48,7 +49,7 @@ std::string drive_text(const IdentifiedAxis& axis, std::size_t i) {
 }  // namespace
 
 std::string as_built_text(const Identification& found) {
-  std::string out = fmt::format("# As built, identified from {}.\nmachine: {}\n", found.record,
+  std::string out = fmt::format("# As built, identified from {}.\nmachine: {}\n", printable(found.record),
                                 machine::quoted_text(found.machine.name));
   const bool chain = found.machine.is_chain();
   out += chain ? "axes:\n" : "struts:\n";

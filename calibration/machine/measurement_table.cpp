@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/file/number_table.h"
 #include "core/file/read_file.h"
+#include "core/text/printable.h"
 #include "core/units.h"
 
 namespace understudy::calibration {
@@ -201,7 +202,7 @@ std::string measurements_csv(const Measurements& measurements, const machine::Ma
   if (measurements.approach_told)
     header.insert(header.end(), approach_columns().begin(), approach_columns().end());
   if (measurements.frame) header.insert(header.end(), frame_columns().begin(), frame_columns().end());
-  std::string out = fmt::format("# {}\n{}\n", comment, fmt::join(header, ","));
+  std::string out = fmt::format("# {}\n{}\n", printable(comment, std::string::npos), fmt::join(header, ","));
   for (const MeasuredPose& pose : measurements.poses) {
     Quat q(pose.X_WT.linear());
     if (q.w() < 0) q.coeffs() *= -1;

@@ -11,6 +11,7 @@
 #include "cli/options/seed_option.h"
 #include "core/file/output_file.h"
 #include "core/file/output_folder.h"
+#include "core/text/printable.h"
 #include "core/units.h"
 #include "machine/default_machine.h"
 #include "report/picture/png.h"
@@ -42,7 +43,8 @@ int run_sample_gaps(const SampleGapsCall& call) {
         write_file(folder.path() / name, report::encode_png(picture));
       });
   std::filesystem::create_directories(folder.path() / "truth");
-  write_file(folder.path() / "table.csv", "# by: " + command_line() + "\n" + sample.table);
+  write_file(folder.path() / "table.csv",
+             "# by: " + printable(command_line(), std::string::npos) + "\n" + sample.table);
   write_file(folder.path() / "truth/gaps.csv", sample.truth);
   write_file(folder.path() / "truth/as-built.yaml", sample.as_built);
   folder.commit();

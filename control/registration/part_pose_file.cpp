@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/file/read_file.h"
+#include "core/text/printable.h"
 #include "core/units.h"
 #include "core/yaml/yaml_map.h"
 #include "machine/file/covariance_key.h"
@@ -68,8 +69,9 @@ void read(YamlMap& map, PartPose& pose) {
 }  // namespace
 
 std::string write_part_pose(const PartPose& pose, const std::string& command) {
-  std::string text = fmt::format(
-      "# Where the part stands: a point p of the drawn part is at R p + part, in W. By: {}\n", command);
+  std::string text =
+      fmt::format("# Where the part stands: a point p of the drawn part is at R p + part, in W. By: {}\n",
+                  printable(command, std::string::npos));
   const auto add = [&text](const char* key, const std::string& value) {
     if (!value.empty()) text += fmt::format("{}: {}\n", key, machine::quoted_text(value));
   };

@@ -48,6 +48,8 @@ class YamlMap {
   int integer(const std::string& key, int low, int high, const char* about);
   std::uint64_t seed(const std::string& key, const char* about);  ///< any whole number from 0
   std::string text(const std::string& key, const char* about);
+  /// A text of one line, which may go into files of other programs.
+  std::string name(const std::string& key, const char* about);
   /// A list of words or numbers as they are written; one of them may stand without brackets.
   std::vector<std::string> texts(const std::string& key, const char* about);
   /// One of `allowed`; of an empty list, any text.

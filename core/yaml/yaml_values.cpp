@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/text/printable.h"
 #include "core/yaml/key_unit.h"
 #include "core/yaml/schema_recording.h"
 #include "core/yaml/yaml_map.h"
@@ -32,6 +33,12 @@ Parse parse(const std::string& text, Value& value) {
   if constexpr (std::is_floating_point_v<Value>)
     if (!std::isfinite(value)) return Parse::not_finite;
   return Parse::number;
+}
+
+/// But for line breaks and tabs. A file has none, but its escapes can make them.
+bool has_control_characters(const std::string& text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](unsigned char c) { return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f; });
 }
 
 KeySchema number_schema(const std::string& key, KeySchema::Type type, Bounds bounds, const char* about) {
@@ -139,6 +146,13 @@ std::uint64_t YamlMap::seed(const std::string& key, const char* about) {
   return value;
 }
 
+std::string YamlMap::name(const std::string& key, const char* about) {
+  std::string name = text(key, about);
+  if (name.find_first_of("\n\t") != std::string::npos)
+    fail(key, fmt::format("{} is '{}': a name is one line without tabs", path(key), printable(name)));
+  return name;
+}
+
 std::string YamlMap::text(const std::string& key, const char* about) { return word(key, {}, about); }
 
 std::vector<std::string> YamlMap::texts(const std::string& key, const char* about) {
@@ -156,6 +170,9 @@ std::vector<std::string> YamlMap::texts(const std::string& key, const char* abou
   for (const auto& item : *node) {
     if (!item.IsScalar())
       fail(key, fmt::format("{} holds {}, where a word is expected", path(key), kind_of(item)));
+    if (has_control_characters(item.Scalar()))
+      fail(key, fmt::format("{} holds '{}': it may have no control characters", path(key),
+                            printable(item.Scalar())));
     words.push_back(item.Scalar());
   }
   return words;
@@ -174,6 +191,9 @@ std::string YamlMap::word(const std::string& key, const std::vector<std::string>
   if (!node->IsScalar() || node->Scalar().empty())
     fail(key, fmt::format("{} is {}, where text is expected", path(key), kind_of(*node)));
   if (!allowed.empty()) check_word(key, node->Scalar(), allowed);
+  if (has_control_characters(node->Scalar()))
+    fail(key,
+         fmt::format("{} is '{}': it may have no control characters", path(key), printable(node->Scalar())));
   return node->Scalar();
 }
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "core/digest.h"
 #include "core/error.h"
+#include "core/text/printable.h"
 #include "core/units.h"
 #include "machine/load_encoders.h"
 
@@ -32,6 +34,8 @@ constexpr double kFollowingSteps = 10;  // beside what it is behind in time
 // An axis that must stop within no distance overshoots by v^2 / 2a and comes back: (1 + sqrt 2) v / a.
 constexpr double kStopAndReturn = 2.5;
 constexpr double kLeastBrakeTime = 0.1;  // [s]
+constexpr std::size_t kNameMost =
+    21;  // "zero.NAME.update-feedback.time" is the longest; HAL's have 47 characters
 
 HalAxis machine_axis(const machine::MachineDescription& machine, int index, double home) {
   const auto mechanism = machine.make_mechanism();
@@ -63,6 +67,22 @@ HalAxis filament_axis(double cycle) {
   axis.acceleration = kFilamentAcceleration;
   axis.jump = kFilamentVelocity / cycle;  // a feeder takes its speed at once: beads begin so
   return axis;
+}
+
+/// As HAL takes them: a blank would end the word.
+void name_for_hal(const machine::MachineDescription& machine, std::vector<HalAxis>& axes) {
+  std::set<std::string> taken;
+  for (HalAxis& axis : axes) {
+    if (axis.name.size() > kNameMost)
+      throw InputError({machine.file.string()},
+                       fmt::format("axis '{}' has a name of {} characters; HAL takes {}: shorten it",
+                                   axis.name, axis.name.size(), kNameMost));
+    std::replace(axis.name.begin(), axis.name.end(), ' ', '-');
+    if (!taken.insert(axis.name).second)
+      throw InputError(
+          {machine.file.string()},
+          fmt::format("two axes, or an axis and the filament, would be '{}' in HAL: rename one", axis.name));
+  }
 }
 
 void check(const HalOptions& options, double cycle) {
@@ -118,7 +138,7 @@ HalSettings hal_settings(const machine::MachineDescription& machine, const HalOp
   if (mechanism->inverse(machine.X_BT_home, home_axes, home_axes) != kinematics::SolveStatus::ok)
     throw InputError(fmt::format("{}: the machine does not reach its own home", machine.file.string()));
   HalSettings settings;
-  settings.machine = machine.name;
+  settings.machine = printable(machine.name);  // on one line: what follows it is run
   settings.cycle = machine.cycle_time;
   settings.options = options;
   settings.brake_time = kLeastBrakeTime;
@@ -129,6 +149,7 @@ HalSettings hal_settings(const machine::MachineDescription& machine, const HalOp
   }
   settings.machine_axes = settings.axes.size();
   if (machine.tool.prints()) settings.axes.push_back(filament_axis(machine.cycle_time));
+  name_for_hal(machine, settings.axes);
   for (HalAxis& axis : settings.axes)
     axis.following = options.following * axis.velocity + kFollowingSteps / axis.scale;
   add_load_encoders(machine, settings);

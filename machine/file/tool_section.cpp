@@ -11,7 +11,7 @@ constexpr Bounds kBodySize{0.01, 1000};
 
 geometry::Shape read_body(YamlMap& map) {
   geometry::Shape body;
-  body.name = map.text("name", "shown in findings");
+  body.name = map.name("name", "shown in findings");
   const std::string shape = map.word("shape", {"frustum", "cylinder", "box", "capsule"}, "which keys follow");
   if (shape == "capsule") {
     const Vec3 from = map.vector("from_mm", {-5000, 5000}, "one end of its axis"),

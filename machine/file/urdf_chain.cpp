@@ -199,6 +199,8 @@ void UrdfReader::add_shapes(const urdf::Link& link, int axis) {
       if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
         fail(fmt::format("{}: collision mesh has the scale {:g} {:g} {:g}", place, scale.x(), scale.y(),
                          scale.z()));
+      if (mesh.filename.empty() || mesh.filename.back() == '/')
+        fail(fmt::format("{}: collision mesh '{}' names no file", place, mesh.filename));
       shape.form = UrdfMesh{mesh.filename, scale};
     }
     arm_.shapes.push_back(std::move(shape));

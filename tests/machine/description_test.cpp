@@ -171,6 +171,12 @@ TEST_F(MachineFile, AKeyGivenTwiceIsRefused) {
   EXPECT_THAT(error, AllOf(HasSubstr("drive.lead_mm is given twice"), HasSubstr(at_line(1))));
 }
 
+// It goes into files of HAL, where a line of its own is run.
+TEST_F(MachineFile, ANameOfTwoLinesIsRefused) {
+  EXPECT_THAT(error_of("name: hexapod", "name: \"x\\nloadusr touch /tmp/x\""),
+              AllOf(HasSubstr(at_line()), HasSubstr("a name is one line")));
+}
+
 TEST_F(MachineFile, MetresUnderAMillimetreKeyAreOutsideItsRange) {
   const std::string error = error_of("lead_mm: 1.5875", "lead_mm: 1.5875e-3");
   EXPECT_THAT(error,

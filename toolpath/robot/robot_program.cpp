@@ -70,8 +70,7 @@ Program read_robot_program(const fs::path& path, const std::string& text, const 
   const std::string data = *language == RobotLanguage::krl ? data_beside(path) : "";
   if (text.size() + data.size() > kProgramMax)
     throw InputError(Place{path.string()},
-                     fmt::format("{} MB, a program of a robot has at most {}",
-                                 (text.size() + data.size()) / 1'000'000, kProgramMax / 1'000'000));
+                     fmt::format("larger than {} MB, as no program of a robot is", kProgramMax / 1'000'000));
   if (*language == RobotLanguage::rapid) return parse_rapid(text, path.string(), options);
   return parse_krl(text, data, path.string(), options);
 }

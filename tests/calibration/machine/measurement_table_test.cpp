@@ -89,7 +89,7 @@ TEST_F(MeasurementTable, ComesBackAsItWasWritten) {
   Mat6 root = Mat6::Identity();
   root(3, 0) = 0.4;
   for (MeasuredPose& pose : m.poses) pose.covariance = (root * pose.covariance * root.transpose()).eval();
-  const Measurements back = read(measurements_csv(m, machine_, "test"));
+  const Measurements back = read(measurements_csv(m, machine_, "a comment 'of two\nlines'"));
   ASSERT_EQ(back.poses.size(), m.poses.size());
   EXPECT_TRUE(back.noise_given && back.approach_told);
   ASSERT_TRUE(back.frame);

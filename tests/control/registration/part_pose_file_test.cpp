@@ -69,6 +69,10 @@ TEST_F(PartPoseFile, ReadsBackWhatWasWritten) {
   EXPECT_TRUE(got.covariance.isApprox(wrote.covariance, 1e-9));
 }
 
+TEST_F(PartPoseFile, TheCommandIsACommentWhateverItsWords) {
+  EXPECT_EQ(error_of(write_part_pose(some_pose(), "understudy register 'a\nunseen: [all]'")), "");
+}
+
 TEST_F(PartPoseFile, APoseByHandNeedsNoNames) {
   std::string text = write_part_pose(some_pose(), "by hand");
   text = text.substr(text.find("pose:"));

@@ -101,6 +101,21 @@ TEST(YamlMap, WordsNameTheAllowedOnesAndTheNearest) {
   EXPECT_EQ(refusal("plant: x\n", read), "f.yaml:1:1: plant is 'x', not one of mujoco, bullet");
 }
 
+// Escapes make what the file itself may not have.
+TEST(YamlMap, TextHasNoControlCharactersAndANameIsOneLine) {
+  const auto text = [](YamlMap& map) { map.text("about", ""); };
+  const auto texts = [](YamlMap& map) { map.texts("about", ""); };
+  const auto name = [](YamlMap& map) { map.name("about", ""); };
+  EXPECT_EQ(refusal("about: \"two\\nlines\"\n", text), "accepted");
+  EXPECT_EQ(refusal("about: \"\\e[31m\"\n", text),
+            "f.yaml:1:1: about is '\\x1b[31m': it may have no control characters");
+  EXPECT_EQ(refusal("about: [a, \"\\x7f\"]\n", texts),
+            "f.yaml:1:1: about holds '\\x7f': it may have no control characters");
+  EXPECT_EQ(refusal("about: \"two\\nlines\"\n", name),
+            "f.yaml:1:1: about is 'two\\nlines': a name is one line without tabs");
+  EXPECT_EQ(refusal("about: a name\n", name), "accepted");
+}
+
 TEST(YamlMap, ListsNumberTheirEntries) {
   const auto read = [](YamlMap& map) {
     map.list("axes", 0, "", [](YamlMap& axis, std::size_t) { axis.text("name", ""); });

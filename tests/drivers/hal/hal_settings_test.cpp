@@ -5,9 +5,12 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "tests/complaint.h"
 
 namespace understudy::drivers {
 namespace {
+
+using ::testing::HasSubstr;
 
 TEST(HalSettings, TakesScaleRangeAndLimitsFromTheMachineFile) {
   const HalSettings s = hal_settings(machine::load_machine("hexapod"));
@@ -44,6 +47,25 @@ TEST(HalSettings, CountsTurningAxesInDegrees) {
   EXPECT_NEAR(s.axes[1].home, 20, 1e-6);
   EXPECT_NEAR(s.axes[1].units(from_deg(30)), 30, 1e-12);
   EXPECT_NEAR(s.axes[1].si(30), from_deg(30), 1e-12);
+}
+
+TEST(HalSettings, NamesAxesAsHalTakesThem) {
+  const auto of = [](const std::string& names) {
+    return hal_settings(machine::load_machine("arm{" + names + "}"));
+  };
+  EXPECT_EQ(of("axes.2.name: upper arm").axes[1].name, "upper-arm");
+  EXPECT_EQ(complaint([&] { of("axes.2.name: " + std::string(21, 'a')); }), "accepted");
+  EXPECT_THAT(complaint([&] { of("axes.2.name: " + std::string(22, 'a')); }),
+              HasSubstr("has a name of 22 characters; HAL takes 21"));
+  for (const std::string names : {"axes.2.name: a b, axes.3.name: a-b", "axes.2.name: filament"})
+    EXPECT_THAT(complaint([&] { of(names); }), HasSubstr("in HAL: rename one")) << names;
+}
+
+// What stands in a line of its own is run by HAL, as the user.
+TEST(HalSettings, TheMachinesNameBreaksNoLine) {
+  auto machine = machine::load_machine("hexapod");
+  machine.name = "x\nloadusr touch /tmp/x";
+  EXPECT_EQ(hal_settings(machine).machine, "x\\nloadusr touch /tmp/x");
 }
 
 TEST(HalSettings, AssumesAndSaysSoWhereTheMachineFileHasNoDrive) {

@@ -118,6 +118,9 @@ TEST(UrdfBodies, ImpossibleShapesAreRefused) {
               HasSubstr("link 'upper': collision box has a size of -1 m"));
   EXPECT_THAT(with("scale=\"0.001 0.001 0.001\"", "scale=\"0.001 0 0.001\""),
               HasSubstr("link 'fore': collision mesh has the scale 0.001 0 0.001"));
+  for (const std::string name : {"", "package://", "meshes/"})
+    EXPECT_THAT(with("package://arms/meshes/fore.obj", name),
+                HasSubstr("link 'fore': collision mesh '" + name + "' names no file"));
 }
 
 TEST(Srdf, ItsPairsAreThoseOfBodies) {

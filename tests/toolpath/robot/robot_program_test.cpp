@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "tests/complaint.h"
 #include "tests/temporary_folder.h"
 
 namespace understudy::toolpath {
@@ -21,6 +22,11 @@ TEST(RobotProgram, ItsLanguageIsToldByItsEndingAndElseByItsText) {
   EXPECT_EQ(robot_language("a.txt", "! generated\nMODULE m\n"), RobotLanguage::rapid);
   EXPECT_FALSE(robot_language("a.gcode", "; MODULE m\nG1 X1\n"));
   EXPECT_FALSE(robot_language("a.gcode", ""));
+}
+
+TEST(RobotProgram, OneThatIsLargerThanAnyIsRefused) {
+  EXPECT_EQ(complaint([] { read_robot_program("a.mod", std::string(200'000'001, ' '), {}); }),
+            "a.mod: larger than 200 MB, as no program of a robot is");
 }
 
 TEST(RobotProgram, TheDataListBesideAProgramIsReadWithIt) {
