@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <filesystem>
 #include <memory>
 
@@ -13,6 +11,7 @@
 #include "core/error.h"
 #include "core/file/output_folder.h"
 #include "core/file/read_file.h"
+#include "core/file/scratch_folder.h"
 #include "core/version.h"
 #include "machine/description.h"
 #include "rehearsal/request/input_digest.h"
@@ -51,7 +50,7 @@ int verify(const std::string& folder) {
   if (const std::string why = changed_inputs(options.request, recorded); !why.empty())
     return differs(folder, why);
 
-  OutputFolder out(fs::temp_directory_path() / fmt::format("understudy-verify-{}", ::getpid()));
+  const ScratchFolder out("verify");
   const fs::path again = out.path() / "again";
   fs::create_directory(again);
   std::string& as_printed = options.request.surface.as_printed;

@@ -35,12 +35,6 @@ Parse parse(const std::string& text, Value& value) {
   return Parse::number;
 }
 
-/// But for line breaks and tabs. A file has none, but its escapes can make them.
-bool has_control_characters(const std::string& text) {
-  return std::any_of(text.begin(), text.end(),
-                     [](unsigned char c) { return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f; });
-}
-
 KeySchema number_schema(const std::string& key, KeySchema::Type type, Bounds bounds, const char* about) {
   KeySchema schema = key_schema(key, type, about);
   schema.bounds = bounds;
@@ -148,8 +142,10 @@ std::uint64_t YamlMap::seed(const std::string& key, const char* about) {
 
 std::string YamlMap::name(const std::string& key, const char* about) {
   std::string name = text(key, about);
-  if (name.find_first_of("\n\t") != std::string::npos)
-    fail(key, fmt::format("{} is '{}': a name is one line without tabs", path(key), printable(name)));
+  // A file has none, but its escapes can make them.
+  if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+    fail(key, fmt::format("{} is '{}': a name is one line without control characters", path(key),
+                          printable(name)));
   return name;
 }
 
@@ -170,9 +166,6 @@ std::vector<std::string> YamlMap::texts(const std::string& key, const char* abou
   for (const auto& item : *node) {
     if (!item.IsScalar())
       fail(key, fmt::format("{} holds {}, where a word is expected", path(key), kind_of(item)));
-    if (has_control_characters(item.Scalar()))
-      fail(key, fmt::format("{} holds '{}': it may have no control characters", path(key),
-                            printable(item.Scalar())));
     words.push_back(item.Scalar());
   }
   return words;
@@ -191,9 +184,6 @@ std::string YamlMap::word(const std::string& key, const std::vector<std::string>
   if (!node->IsScalar() || node->Scalar().empty())
     fail(key, fmt::format("{} is {}, where text is expected", path(key), kind_of(*node)));
   if (!allowed.empty()) check_word(key, node->Scalar(), allowed);
-  if (has_control_characters(node->Scalar()))
-    fail(key,
-         fmt::format("{} is '{}': it may have no control characters", path(key), printable(node->Scalar())));
   return node->Scalar();
 }
 

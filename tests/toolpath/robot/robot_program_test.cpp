@@ -25,7 +25,7 @@ TEST(RobotProgram, ItsLanguageIsToldByItsEndingAndElseByItsText) {
 }
 
 TEST(RobotProgram, OneThatIsLargerThanAnyIsRefused) {
-  EXPECT_EQ(complaint([] { read_robot_program("a.mod", std::string(200'000'001, ' '), {}); }),
+  EXPECT_EQ(understudy::complaint([] { read_robot_program("a.mod", std::string(200'000'001, ' '), {}); }),
             "a.mod: larger than 200 MB, as no program of a robot is");
 }
 
