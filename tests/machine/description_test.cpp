@@ -173,8 +173,8 @@ TEST_F(MachineFile, AKeyGivenTwiceIsRefused) {
 
 // It goes into files of HAL, where a line of its own is run.
 TEST_F(MachineFile, ANameOfTwoLinesIsRefused) {
-  EXPECT_THAT(error_of("name: hexapod", "name: \"x\\nloadusr touch /tmp/x\""),
-              AllOf(HasSubstr(at_line()), HasSubstr("a name is one line")));
+  const std::string error = error_of("name: hexapod", "name: \"x\\nloadusr touch /tmp/x\"");
+  EXPECT_THAT(error, AllOf(HasSubstr(at_line()), HasSubstr("a name is one line")));
 }
 
 TEST_F(MachineFile, MetresUnderAMillimetreKeyAreOutsideItsRange) {

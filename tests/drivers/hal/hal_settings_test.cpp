@@ -50,15 +50,17 @@ TEST(HalSettings, CountsTurningAxesInDegrees) {
 }
 
 TEST(HalSettings, NamesAxesAsHalTakesThem) {
-  const auto of = [](const std::string& names) {
-    return hal_settings(machine::load_machine("arm{" + names + "}"));
+  const auto of = [](const std::string& z, const std::string& x = "x") {
+    return hal_settings(machine::load_machine("corexy{axes.2.name: " + x +
+                                              ", geometry.tool_carried_by: " + x + ", axes.3.name: " + z +
+                                              ", geometry.work_carried_by: " + z + "}"));
   };
-  EXPECT_EQ(of("axes.2.name: upper arm").axes[1].name, "upper-arm");
-  EXPECT_EQ(complaint([&] { of("axes.2.name: " + std::string(21, 'a')); }), "accepted");
-  EXPECT_THAT(complaint([&] { of("axes.2.name: " + std::string(22, 'a')); }),
+  EXPECT_EQ(of("the bed").axes[2].name, "the-bed");
+  EXPECT_EQ(complaint([&] { of(std::string(21, 'a')); }), "accepted");
+  EXPECT_THAT(complaint([&] { of(std::string(22, 'a')); }),
               HasSubstr("has a name of 22 characters; HAL takes 21"));
-  for (const std::string names : {"axes.2.name: a b, axes.3.name: a-b", "axes.2.name: filament"})
-    EXPECT_THAT(complaint([&] { of(names); }), HasSubstr("in HAL: rename one")) << names;
+  EXPECT_THAT(complaint([&] { of("a b", "a-b"); }), HasSubstr("in HAL: rename one"));
+  EXPECT_THAT(complaint([&] { of("filament"); }), HasSubstr("in HAL: rename one"));
 }
 
 // What stands in a line of its own is run by HAL, as the user.

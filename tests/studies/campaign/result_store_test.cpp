@@ -181,7 +181,8 @@ TEST_F(ResultStoreTest, AQueryWithoutEndInPlaceOfTheRowsIsRefused) {
             SQLITE_OK);
   for (const auto& read : {std::function<void()>([&] { stored_runs(path(), kHeader); }),
                            std::function<void()>([&] { read_rows(path(), kHeader); })})
-    EXPECT_THAT(complaint(read), AllOf(StartsWith(path().string() + ": "), HasSubstr("view")));
+    EXPECT_THAT(complaint(read),
+                AllOf(StartsWith(path().string() + ": "), HasSubstr("not a result store that can be read")));
 }
 
 TEST_F(ResultStoreTest, WhatIsNoStoreIsRefused) {
