@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSigmaLeast = 1e-12, kSigmaMost = 1;  // [m] or [rad]; docs/limits.md
 constexpr double kOffRotation = 1e-3;  // of a quaternion's length, of a matrix' entries: digits of an export
 
 using Numbers = std::vector<std::vector<double>>;
@@ -104,12 +105,17 @@ std::vector<std::string> names(const DelimitedText& text, const std::string& col
   return words;
 }
 
-/// Squares of 1 sigma on three axes.
-Vec3 variances(const std::vector<double>& told, double unit, double all) {
+/// Squares of 1 sigma on three axes. Throws InputError at `place`.
+Vec3 variances(const std::vector<double>& told, double unit, double all, const Place& place) {
   if (told.empty()) return Vec3::Constant(all * all);
   Vec3 v;
-  for (Eigen::Index k = 0; k < 3; ++k)
-    v[k] = std::pow(unit * told[told.size() == 3 ? static_cast<std::size_t>(k) : 0], 2);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double sigma = unit * told[told.size() == 3 ? static_cast<std::size_t>(k) : 0];
+    if (sigma != 0 && !(sigma >= kSigmaLeast && sigma <= kSigmaMost))
+      throw InputError(
+          place, fmt::format("a sigma is {:g} m or rad, outside {:g}..{:g}", sigma, kSigmaLeast, kSigmaMost));
+    v[k] = sigma * sigma;
+  }
   return v;
 }
 
@@ -176,10 +182,11 @@ class RowMaker {
     };
     const double unit = sigma_unit(map.position ? map.position : map.distance);
     const auto none = std::vector<double>();
-    row.covariance.diagonal().head<3>() =
-        variances(raw_.sigma_position.empty() ? none : raw_.sigma_position[j], unit, map.sigma_position);
+    const Place place{raw_.file, row.line, 0};
+    row.covariance.diagonal().head<3>() = variances(
+        raw_.sigma_position.empty() ? none : raw_.sigma_position[j], unit, map.sigma_position, place);
     row.covariance.diagonal().tail<3>() = variances(raw_.sigma_turn.empty() ? none : raw_.sigma_turn[j],
-                                                    sigma_unit(map.orientation), map.sigma_turn);
+                                                    sigma_unit(map.orientation), map.sigma_turn, place);
     const auto diagonal = row.covariance.diagonal();
     row.noise_told =
         (!lengths || diagonal.head<3>().minCoeff() > 0) && (!turns || diagonal.tail<3>().minCoeff() > 0);

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/file/output_file.h"
 #include "core/units.h"
+#include "tests/complaint.h"
 #include "tests/temporary_folder.h"
 
 namespace understudy::calibration {
@@ -63,6 +64,18 @@ TEST_F(RawTableTest, ASigmaOfZeroIsTheLeastOfTheOthers) {
   ASSERT_EQ(raw.notes.size(), 1u);
   EXPECT_THAT(raw.notes[0], HasSubstr("sigmas of 0 are taken as 0.01, the least of the others: lines 3"));
   EXPECT_THAT(error("x,y,z,s,j1,j2\n1,2,3,-0.1,10,20\n"), HasSubstr(":2: a sigma is -0.1"));
+}
+
+// Its square would be infinite, or none.
+TEST_F(RawTableTest, ASigmaThatNoDeviceHasIsRefusedWithItsLine) {
+  map_.joints.columns = std::vector<std::string>(6, "j1");
+  const auto machine = machine::load_machine("arm");
+  const auto error_of = [&](const std::string& sigma) {
+    return complaint([&] { rows_of(read("x,y,z,s,j1\n1,2,3,0.1,10\n1,2,3," + sigma + ",11\n"), machine); });
+  };
+  EXPECT_EQ(error_of("1000"), "accepted");
+  for (const std::string sigma : {"1001", "1e200", "1e-10", "1e-200"})
+    EXPECT_THAT(error_of(sigma), HasSubstr("rows.csv:3: a sigma is ")) << sigma;
 }
 
 TEST_F(RawTableTest, SignsAndOffsetsMakeTheMachinesReadings) {

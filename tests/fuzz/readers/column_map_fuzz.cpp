@@ -8,6 +8,10 @@
 namespace understudy::fuzz {
 namespace {
 
+constexpr std::ptrdiff_t kMostRows = 20;
+// What fits no machine is read in some 50 other ways, each of which is fitted, to tell which one would fit.
+constexpr std::size_t kFits = 10'000;
+
 void check(const calibration::MeasuredRows& read) {
   require(!read.problem.rows.empty(), "a table without rows");
   for (const calibration::MeasurementRow& row : read.problem.rows) {
@@ -31,12 +35,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string file = map_file.fill(text.substr(0, end)).string();
   table.fill(text.substr(std::min(end + mark.size(), text.size())));
   calibration::ColumnMap map;
+  if (std::count(text.begin() + static_cast<std::ptrdiff_t>(end), text.end(), '\n') > fuzz::kMostRows)
+    return 0;
   if (!fuzz::accepts(size, file, [&] { map = calibration::read_column_map(file); })) return 0;
   for (const machine::MachineDescription& machine : machines) {
     calibration::MeasuredRows rows;
     const auto read = [&] { rows = calibration::read_measured_rows(map, {table.path().string()}, machine); };
     // What is refused lies in the map, in its table, or in a file that the map names.
-    if (fuzz::accepts(size, "", read)) fuzz::check(rows);
+    if (fuzz::accepts(size, "", read, [] { return fuzz::kFits; })) fuzz::check(rows);
   }
   return 0;
 }
