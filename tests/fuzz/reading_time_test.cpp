@@ -85,7 +85,10 @@ std::string curve(int n) {
   return "x_mm,y_mm,z_mm\n" + repeated(n, [](int i) { return fmt::format("{},{},1\n", 0.1 * i, i % 7); });
 }
 std::string waypoints(int n) {
-  return repeated(n, [](int i) { return fmt::format("{} {} 1 0 0 1\n", 0.1 * (i % 500), 0.1 * (i / 500)); });
+  return repeated(n, [](int i) {
+    const int row = i / 500;
+    return fmt::format("{} {} 1 0 0 1\n", 0.1 * (i % 500), 0.1 * row);
+  });
 }
 std::string lattice(int n) {
   std::string nodes = R"({"X":0,"Y":0,"Z":0})", text = R"({"unit":"millimeter","node_list":[)";

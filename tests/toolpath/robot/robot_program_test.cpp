@@ -25,7 +25,9 @@ TEST(RobotProgram, ItsLanguageIsToldByItsEndingAndElseByItsText) {
 }
 
 TEST(RobotProgram, OneThatIsLargerThanAnyIsRefused) {
-  EXPECT_EQ(understudy::complaint([] { read_robot_program("a.mod", std::string(200'000'001, ' '), {}); }),
+  std::string text;
+  text.resize(200'000'001, ' ');
+  EXPECT_EQ(understudy::complaint([&] { read_robot_program("a.mod", text, {}); }),
             "a.mod: larger than 200 MB, as no program of a robot is");
 }
 
