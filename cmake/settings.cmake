@@ -51,10 +51,14 @@ endif()
 # A program loads only the libraries of the sources that it takes from an archive: OpenCV's pictures alone are 130 more.
 add_link_options(LINKER:--as-needed)
 if(UNDERSTUDY_SANITIZE)
-  # A double that no int holds becomes any int: behaviour that is undefined, but that group leaves it out.
-  string(REPLACE undefined undefined,float-cast-overflow sanitizers "${UNDERSTUDY_SANITIZE}")
+  set(sanitizers ${UNDERSTUDY_SANITIZE})
+  set(undefined undefined)
+  if(UNDERSTUDY_FUZZ)  # a double that no int holds becomes any int: undefined behaviour that the group leaves out
+    string(APPEND sanitizers ,float-cast-overflow)
+    string(APPEND undefined ,float-cast-overflow)
+  endif()
   add_compile_options(
-    -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=undefined,float-cast-overflow
+    -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=${undefined}
     $<$<CXX_COMPILER_ID:Clang>:-fsanitize-ignorelist=${UNDERSTUDY_IGNORELIST}>)
   add_link_options(-fsanitize=${sanitizers})
   add_compile_definitions(UNDERSTUDY_SANITIZED _GLIBCXX_ASSERTIONS)
