@@ -12,6 +12,8 @@ using toolpath::StepKind;
 
 namespace {
 
+constexpr double kLongestMove = 86400;  // [s]; docs/limits.md
+
 std::unique_ptr<control::MotionPlanner> planner_from(const kinematics::Mechanism& mechanism,
                                                      const machine::MachineDescription& machine,
                                                      const control::MotionStart& start) {
@@ -75,6 +77,9 @@ void ServedMachine::check(const std::vector<toolpath::Step>& steps) {
   for (const toolpath::Step& step : steps) {
     if (!toolpath::moves(step)) continue;
     control::PathSegment segment = path_.segment(step, X_WT_taken_, axes_taken_, limits_);
+    if (segment.length > kLongestMove * segment.speed)
+      throw InputError(fmt::format("the move takes {:.3g} s, more than {:g} s",
+                                   segment.length / segment.speed, kLongestMove));
     if (const auto first = path_.self_motion_before(segment, axes_taken_))
       axes_taken_ = first->self_motion->to;
     path_.require_reachable(segment, control::PoseCheck::limits, axes_taken_);

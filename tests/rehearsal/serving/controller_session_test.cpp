@@ -103,6 +103,13 @@ TEST(GrblSession, AMoveBeyondALimitIsAnAlarmThatLocks) {
   EXPECT_THAT(sender.served.text(), AllOf(HasSubstr("; refused: G1 X500"), HasSubstr("\nG1 X1 F600\n")));
 }
 
+TEST(GrblSession, AMoveThatTakesForEverIsRefused) {
+  Sender sender("grbl");
+  EXPECT_THAT(sender.send("G1 X1 F1e-180\n"), AllOf(HasSubstr("more than 86400 s"), HasSubstr("ALARM:2")));
+  EXPECT_THAT(sender.send("$X\nG1 X1 F0.001\n"), HasSubstr("ok\r\nok\r\n")) << "1000 minutes";
+  EXPECT_EQ(sender.served.moves(), 1);
+}
+
 TEST(GrblSession, HoldStopsTheClockAndResumeGoesOn) {
   Sender sender("grbl");
   sender.send("G1 X6 F600\n", 0.3);
