@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/text/printable.h"
 #include "rehearsal/serving/served_machine.h"
 
 namespace understudy::rehearsal {
@@ -29,7 +30,8 @@ class ControllerSession {
   std::string take_output();
 
  protected:
-  void say(const std::string& line) { out_ += line + "\r\n"; }
+  /// One line, whatever of the sender's own words it repeats.
+  void say(const std::string& line) { out_ += printable(line) + "\r\n"; }
 
  private:
   std::string out_;

@@ -40,7 +40,10 @@ class GrblSession final : public ControllerSession {
  public:
   explicit GrblSession(ServedMachine& machine) : machine_(machine) {}
 
-  void greet() override { say("\r\nGrblHAL 1.1f ['$' or '$HELP' for help]"); }
+  void greet() override {
+    say("");
+    say("GrblHAL 1.1f ['$' or '$HELP' for help]");
+  }
 
   std::size_t room() const override { return kReceiveBuffer - std::min(kReceiveBuffer, buffered()); }
 

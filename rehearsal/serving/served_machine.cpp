@@ -62,7 +62,7 @@ void ServedMachine::take(const std::string& line) {
     X_WT_taken_ = X_WT_before;
     axes_taken_ = axes_before;
     ++refused_;
-    text_ += fmt::format("; refused: {} ({})\n", printable(line), without_place(error));
+    text_ += fmt::format("; refused: {} ({})\n", printable(line), printable(without_place(error)));
     throw;
   }
   text_ += line + "\n";

@@ -103,6 +103,11 @@ TEST(GrblSession, AMoveBeyondALimitIsAnAlarmThatLocks) {
   EXPECT_THAT(sender.served.text(), AllOf(HasSubstr("; refused: G1 X500"), HasSubstr("\nG1 X1 F600\n")));
 }
 
+TEST(GrblSession, WordsThatItRepeatsAreText) {
+  Sender sender("grbl");
+  EXPECT_THAT(sender.send("G1 X1 F\t\t-180\n"), AllOf(HasSubstr("[MSG:"), Not(HasSubstr("\t"))));
+}
+
 TEST(GrblSession, AMoveThatTakesForEverIsRefused) {
   Sender sender("grbl");
   EXPECT_THAT(sender.send("G1 X1 F1e-180\n"), AllOf(HasSubstr("more than 86400 s"), HasSubstr("ALARM:2")));
