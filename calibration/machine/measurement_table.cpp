@@ -10,6 +10,7 @@
 
 #include "calibration/machine/measurement_columns.h"
 #include "calibration/machine/plausibility.h"
+#include "calibration/noise_bounds.h"
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file/number_table.h"
@@ -22,8 +23,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr double kLeastNoise = 1e-12, kLargestNoise = 1;  // [m] or [rad]
-constexpr double kUnitTolerance = 1e-4;                   // of a quaternion, as in G-code
+constexpr double kUnitTolerance = 1e-4;  // of a quaternion, as in G-code
 
 /// Words of the first line that is neither empty nor a comment.
 struct Header {

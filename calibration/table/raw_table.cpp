@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "calibration/noise_bounds.h"
 #include "calibration/table/header_units.h"
 #include "core/cross_matrix.h"
 #include "core/error.h"
@@ -18,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSigmaLeast = 1e-12, kSigmaMost = 1;  // [m] or [rad]; docs/limits.md
 constexpr double kOffRotation = 1e-3;  // of a quaternion's length, of a matrix' entries: digits of an export
 
 using Numbers = std::vector<std::vector<double>>;
@@ -111,9 +111,9 @@ Vec3 variances(const std::vector<double>& told, double unit, double all, const P
   Vec3 v;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double sigma = unit * told[told.size() == 3 ? static_cast<std::size_t>(k) : 0];
-    if (sigma != 0 && !(sigma >= kSigmaLeast && sigma <= kSigmaMost))
-      throw InputError(
-          place, fmt::format("a sigma is {:g} m or rad, outside {:g}..{:g}", sigma, kSigmaLeast, kSigmaMost));
+    if (sigma != 0 && !(sigma >= kLeastNoise && sigma <= kLargestNoise))
+      throw InputError(place, fmt::format("a sigma is {:g} m or rad, outside {:g}..{:g}", sigma, kLeastNoise,
+                                          kLargestNoise));
     v[k] = sigma * sigma;
   }
   return v;
