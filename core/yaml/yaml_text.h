@@ -9,7 +9,8 @@
 
 namespace understudy {
 
-/// Throws InputError for a text that is too long or has control characters, and unless it is one document.
+/// Throws InputError for a text that is too long, has control characters or more values than memory should
+/// hold, and unless it is one document.
 void check_yaml_text(const std::string& text, const std::string& file);
 
 Place place_of(const YAML::Mark& mark, const std::string& file);

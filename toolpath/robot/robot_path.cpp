@@ -32,6 +32,7 @@ void RobotPath::set_base(const RobotBase& base) {
   const auto known = std::find_if(bases_.begin(), bases_.end(), same);
   const int next = static_cast<int>(known - bases_.begin());
   if (known == bases_.end()) {
+    if (base.X) require_place(*base.X, fmt::format(" of base '{}'", base.name));
     if (bases_.size() == kMostBases) fail(fmt::format("more than {} bases", kMostBases));
     bases_.push_back(base);
   }
@@ -67,10 +68,10 @@ void RobotPath::finish_move() {
   after_next_.clear();
 }
 
-void RobotPath::require_place(const Pose& X_UN) const {
-  const double farthest = X_UN.translation().cwiseAbs().maxCoeff();
-  if (!(farthest <= kLargestCoordinate) || !X_UN.matrix().allFinite())
-    fail(fmt::format("a coordinate of {:.6g} mm is beyond {:.6g} mm", to_mm(farthest),
+void RobotPath::require_place(const Pose& X, const std::string& whose) const {
+  const double farthest = X.translation().cwiseAbs().maxCoeff();
+  if (!(farthest <= kLargestCoordinate) || !X.matrix().allFinite())
+    fail(fmt::format("a coordinate{} of {:.6g} mm is beyond {:.6g} mm", whose, to_mm(farthest),
                      to_mm(kLargestCoordinate)));
 }
 

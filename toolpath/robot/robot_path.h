@@ -78,7 +78,7 @@ class RobotPath {
   void line(const Pose& X_UN, double feed, double duration);
   void count_move(double feed);
   void finish_move();
-  void require_place(const Pose& X_UN) const;
+  void require_place(const Pose& X, const std::string& whose = "") const;
   int output_index(const std::string& name, bool analogue);
 
   std::string file_, tool_;

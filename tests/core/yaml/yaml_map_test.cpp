@@ -21,6 +21,12 @@ std::string refusal(const std::string& text, const YamlMap::Read& read) {
   return "accepted";
 }
 
+std::string repeated(const std::string& text, int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
 void read_lead(YamlMap& map) { map.quantity("lead_mm", {0.1, 100}, ""); }
 
 TEST(YamlMap, QuantitiesAreSiByTheSuffixOfTheirKey) {
@@ -161,6 +167,27 @@ TEST(YamlMap, AFileThatHoldsNoMapIsRefused) {
   EXPECT_THAT(refusal("a: 1\n---\na: 1\n", read), HasSubstr("2 documents, 1 is allowed"));
   EXPECT_THAT(refusal("a: [1, 2\n", read), AllOf(HasSubstr("f.yaml:2:1"), HasSubstr("not YAML")));
   EXPECT_THAT(refusal(", 0]\na: 1\n", read), HasSubstr("closed twice"));
+}
+
+TEST(YamlMap, WhatAliasesRepeatIsCounted) {
+  // 100 words, 100 times each, and so on: a million in 1 kB, each of which a reader may copy.
+  std::string text = "a: &a [" + repeated("x, ", 99) + "x]\nb: &b [" + repeated("*a, ", 99) + "*a]\n";
+  EXPECT_THAT(refusal(text, [](YamlMap& map) { EXPECT_EQ(map.texts("a", "").size(), 100u); }),
+              HasSubstr("unknown key 'b'"));
+  text += "c: [" + repeated("*b, ", 99) + "*b]\n";
+  EXPECT_THAT(refusal(text, [](YamlMap&) {}),
+              AllOf(HasSubstr("f.yaml:3:"), HasSubstr("more than 1000000 values")));
+}
+
+TEST(YamlMap, WhatAliasesRepeatOfALongWordIsCounted) {
+  const std::string text = "a: &a " + std::string(640'000, 'x') + "\nb: [" + repeated("*a, ", 99) + "*a]\n";
+  EXPECT_THAT(refusal(text, [](YamlMap&) {}),
+              AllOf(HasSubstr("f.yaml:2:"), HasSubstr("more than 1000000 values")));
+}
+
+TEST(YamlMap, AnAliasWithinItsOwnValueIsRefused) {
+  EXPECT_THAT(refusal("a: &a [1, *a]\n", [](YamlMap&) {}),
+              AllOf(HasSubstr("f.yaml:1:11: "), HasSubstr("an alias stands within the value that it names")));
 }
 
 TEST(YamlMap, LookingBelowDoesNotAddOrAskForTheKey) {

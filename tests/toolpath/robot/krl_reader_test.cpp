@@ -192,6 +192,8 @@ TEST(KrlReader, WhatItCannotKnowIsAnErrorWithItsLine) {
               HasSubstr("part.src:3: a straight move before any speed"));
   EXPECT_THAT(rejection("$VEL.CP=1\nLIN {X 1,Y 0,Z 5}\n"), HasSubstr("part.src:4: A is left out, and where"));
   EXPECT_THAT(rejection("$VEL.CP=1\nLIN {X 1,Y 0,Z 5e9,A 0,B 0,C 0}\n"), HasSubstr("beyond 100000 mm"));
+  EXPECT_THAT(rejection("$BASE={X 0,Y 2e5,Z 0,A 0,B 0,C 0}\nLIN {X 1,Y 0,Z 5,A 0,B 0,C 180}\n"),
+              HasSubstr("a coordinate of base '$BASE' of 200000 mm is beyond 100000 mm"));
   EXPECT_THAT(rejection("$VEL.CP=1\nLIN {X 1,,Z 5}\n"), HasSubstr("the name of a component is expected"));
   EXPECT_THAT(rejection("$VEL.CP=1\nLIN {X 1.2.3}\n"), HasSubstr("the end of a number is expected"));
   EXPECT_THAT(rejection("$VEL.CP=0\nLIN {X 1,Y 0,Z 5,A 0,B 0,C 180}\n"), HasSubstr("before any speed"));

@@ -100,6 +100,14 @@ TEST(RapidReader, WorkObjectsStandWhereTheirFramesPutThem) {
               HasSubstr("base 'three' is used beside 'one', but where they stand"));
 }
 
+TEST(RapidReader, AWorkObjectThatIsNowhereIsRefused) {
+  // Each frame alone is a number; the place of the target is none.
+  const std::string said =
+      rejection("MoveL " + at(0, 0, 5) + ",v20,z1,tool0\\WObj:=far;\n",
+                "PERS wobjdata far:=[FALSE,TRUE,\"\",[[500,0,200],[1,0,0,0]],[[0,1e300,0],[1,0,0,0]]];\n");
+  EXPECT_THAT(said, HasSubstr("part.mod:4: a coordinate of base 'far' of 1e+300 mm is beyond 100000 mm"));
+}
+
 TEST(RapidReader, TargetsAreNamedMovedAndReckonedWith) {
   const std::string data = "CONST robtarget p10:=" + at(1, 2, 3) + ";\nVAR robtarget row{2}:=[" +
                            at(5, 0, 5) + "," + at(6, 0, 5) +
