@@ -10,6 +10,9 @@
 namespace understudy::machine {
 namespace {
 
+// A picture is drawn with four samples a pixel, of 160 bytes together (sim/sensors): 2.6 GB at most.
+constexpr int kMostInARow = 8000, kMostPixels = 16'000'000;
+
 /// Pose in T of a device that looks from azimuth and angle (from the tool's axis) at `target`. z is its line
 /// of sight, x the horizontal to its right, y the image's down.
 Pose aimed(double azimuth, double angle, const Vec3& target, double distance) {
@@ -46,8 +49,12 @@ void read_microscope(YamlMap& map, Microscope& microscope) {
   microscope.X_TC = aimed(azimuth, angle, target, distance);
 
   Camera& camera = microscope.camera;
-  camera.width = map.integer("width_px", 16, 10000, "of the sensor");
-  camera.height = map.integer("height_px", 16, 10000, "of the sensor");
+  camera.width = map.integer("width_px", 16, kMostInARow, "of the sensor");
+  camera.height = map.integer("height_px", 16, kMostInARow, "of the sensor");
+  if (camera.width * camera.height > kMostPixels)
+    map.fail("width_px",
+             fmt::format("the sensor of the microscope has {} x {} px, more than {} (docs/limits.md)",
+                         camera.width, camera.height, kMostPixels));
   camera.focal_px = map.quantity("scale_px_per_mm", {0.1, 10000}, "at the point looked at") * distance;
   const std::vector<double> centre = map.quantities("centre_px", 2, {-10000, 20000}, "principal point");
   camera.centre_px = {centre[0], centre[1]};
@@ -59,7 +66,7 @@ void read_microscope(YamlMap& map, Microscope& microscope) {
   microscope.transfer =
       map.quantity("transfer_ms", {0, 10000}, "from the end of exposure until the controller has the frame");
   microscope.aperture_sine =
-      map.quantity("aperture_sine", {0.001, 1}, "sin u on the object side: speckle and depth noise");
+      map.quantity("aperture_sine", {0.002, 0.999}, "sin u on the object side: speckle and depth noise");
   microscope.blur_px = map.quantity("blur_px", {0, 50}, "of the optics, 1 sigma");
   microscope.full_well = map.quantity("full_well_electrons", {100, 1e7}, "at 255 grey levels");
   microscope.read_noise = map.quantity("read_noise_electrons", {0, 1e4}, "1 sigma");

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/process/memory.h"
+#include "machine/description.h"
 #include "machine/fixture_file.h"
 
 namespace understudy::rehearsal {
@@ -20,6 +21,7 @@ constexpr double kBase = 150e6, kBaseOfRun = 60e6;
 constexpr double kLine = 300, kLineOfRun = 900;
 constexpr double kTriangle = 300, kTriangleOfRun = 700;
 constexpr double kMilled = 250e6;  // as many samples of the surface as there may be (sim/removal)
+constexpr double kPixel = 160;     // of the gap sensor's microscope
 constexpr double kGiga = 1e9;
 
 /// Of a triangle in an STL file, at least: binary, and text without indentation.
@@ -47,6 +49,13 @@ double triangles_in(const std::string& fixture) {
   return static_cast<double>(fs::file_size(path, ignored)) / (text ? kTextTriangle : kBinaryTriangle);
 }
 
+/// Of the sensor that takes pictures of the gap, if any does.
+double pixels_of(const RehearsalRequest& request) {
+  if (request.gap_control == "off") return 0;
+  const Camera camera = machine::load_machine(request.machine).microscope.camera;
+  return 1.0 * camera.width * camera.height;
+}
+
 }  // namespace
 
 double memory_need(const RehearsalRequest& request, int runs) {
@@ -54,7 +63,7 @@ double memory_need(const RehearsalRequest& request, int runs) {
   const double triangles = triangles_in(request.fixture) + triangles_in(request.surface.intended) +
                            triangles_in(request.surface.stock);
   const bool mills = request.surface.depth_of_cut_mm || !request.surface.stock.empty();
-  return kBase + (mills ? kMilled : 0) + kLine * lines + kTriangle * triangles +
+  return kBase + (mills ? kMilled : 0) + kPixel * pixels_of(request) + kLine * lines + kTriangle * triangles +
          runs * (kBaseOfRun + kLineOfRun * lines + kTriangleOfRun * triangles);
 }
 
@@ -70,7 +79,7 @@ void check_memory(const RehearsalRequest& request) {
     throw InputError(
         {request.program},
         fmt::format("needs about {:.1f} GB of memory, and {:.1f} GB are free: divide the program, or "
-                    "take a coarser fixture",
+                    "take a coarser fixture or camera",
                     need / kGiga, available / kGiga));
 }
 

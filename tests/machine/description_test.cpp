@@ -274,6 +274,12 @@ TEST_F(MachineFile, AMicroscopeThatLooksBesideTheDotIsRefused) {
               HasSubstr("the microscope does not see the dot at the gap aimed at, 0.13 mm"));
 }
 
+TEST_F(MachineFile, AMicroscopeWithMorePixelsThanCanBeDrawnIsRefused) {
+  EXPECT_THAT(error_of("width_px: 640", "width_px: 8001"), HasSubstr("outside 16 to 8000 px"));
+  EXPECT_THAT(error_of("width_px: 640\n  height_px: 480", "width_px: 8000\n  height_px: 2001"),
+              HasSubstr("the sensor of the microscope has 8000 x 2001 px, more than 16000000"));
+}
+
 TEST_F(MachineFile, ANozzleWithoutAFlatIsRefused) {
   EXPECT_THAT(error_of("flat_diameter_mm: 1.0", "flat_diameter_mm: 0.4"),
               HasSubstr("tool.flat_diameter_mm is 0.4 mm, not wider than the bore of 0.4 mm"));

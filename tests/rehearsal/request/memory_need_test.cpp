@@ -79,6 +79,15 @@ TEST_F(SlowMemoryNeed, OfALongProgramIsNotBelowThePeakNorFarAboveIt) {
   expect_covered(lines(200'000, "many.gcode"));
 }
 
+TEST_F(MemoryNeed, OfALargeMicroscopeIsNotBelowThePeakNorFarAboveIt) {
+  RehearsalRequest request = lines(10, "some.gcode");
+  const double bare = memory_need(request, 1);
+  request.machine = "hexapod{microscope.width_px: 1600, microscope.height_px: 1200}";
+  EXPECT_EQ(memory_need(request, 1), bare) << "without gap control it takes no picture";
+  request.gap_control = "start";
+  expect_covered(request);
+}
+
 TEST_F(MemoryNeed, GrowsWithTheFixtureAndTheRuns) {
   RehearsalRequest request = lines(10, "a.gcode");
   const double bare = memory_need(request, 1);
