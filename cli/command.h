@@ -64,4 +64,9 @@ const std::string& command_line();
 /// The words again.
 std::vector<std::string> split_command_line(const std::string& line);
 
+/// After app.parse(): throws CLI::ConversionError for a number of the words that is an empty word, as of a
+/// variable of a script that is not set, which CLI11 takes for 0; and for one that is not finite, which is
+/// within any CLI::Range.
+void check_numbers(const CLI::App& app);
+
 }  // namespace understudy::cli

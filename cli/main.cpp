@@ -72,18 +72,6 @@ std::string command_read(const CLI::App& app) {
   return words;
 }
 
-/// CLI11 takes an empty word, as of a variable of a script that is not set, for 0.
-void check_numbers(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string type = option->get_type_name();
-    const bool number = type.starts_with("FLOAT") || type.starts_with("INT") || type.starts_with("UINT");
-    const std::vector<std::string>& words = option->results();
-    if (number && std::find(words.begin(), words.end(), "") != words.end())
-      throw CLI::ConversionError(fmt::format("{}: an empty word is no number", option->get_name()));
-  }
-  for (const CLI::App* command : app.get_subcommands()) check_numbers(*command);
-}
-
 std::string footer() {
   const std::string status =
       "Exit status: 0 good, 1 the answer is no, 2 bad input or usage, 3 the machine or the engine failed; "
@@ -116,7 +104,7 @@ int run(int argc, char** argv) {
   check_commands(app, argc, argv);
   try {
     app.parse(argc, argv);
-    check_numbers(app);
+    cli::check_numbers(app);
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {

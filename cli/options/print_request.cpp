@@ -46,6 +46,7 @@ std::vector<std::string> read_words(const std::string& command_line, PrintReques
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
     app.parse(words);
+    check_numbers(app);
   } catch (const CLI::Error& error) {
     throw InputError("'" + command_line + "': " + error.what());
   }

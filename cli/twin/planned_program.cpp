@@ -38,6 +38,7 @@ int run_plan(std::vector<std::string> words) {
   add_plan(app, action);
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   app.parse(words);
+  check_numbers(app);
   return action();
 }
 

@@ -150,6 +150,7 @@ void parse_command(CLI::App& app, const std::string& command_line) {
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
     app.parse(words);
+    check_numbers(app);
   } catch (const CLI::Error& error) {
     throw InputError("'" + command_line + "': " + error.what());
   }

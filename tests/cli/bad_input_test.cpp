@@ -184,6 +184,16 @@ TEST(BadUsage, AnEmptyWordIsNoNumber) {
   expect_refused("rehearse " + kBottleLine + " --seed ''", folder, {"--seed"});
 }
 
+// CLI11 finds `nan` within any range.
+TEST(BadUsage, ANumberThatIsNotFiniteIsRefused) {
+  const Folder folder;
+  for (const std::string option : {"--spin", "--nozzle", "--tip-tolerance", "--max-time"})
+    expect_refused("rehearse " + kBottleLine + " " + option + " nan --out " + (folder / "out"), folder,
+                   {option + ": 'nan' is not finite (see understudy rehearse --help)"});
+  expect_refused("plan surface bottle --section 0 0 inf 0 1 0 -o " + (folder / "a.gcode"), folder,
+                 {"--section: 'inf' is not finite"});
+}
+
 TEST(BadUsage, JobsAreFrom1To1024) {
   const Folder folder;
   const std::string commands[] = {"sweep " + kSource + "/scenarios/song-bottle.yaml",
