@@ -1,6 +1,7 @@
 #include "calibration/machine/measurement_table.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -24,6 +25,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 constexpr double kUnitTolerance = 1e-4;  // of a quaternion, as in G-code
+constexpr double kFarthest = 100;        // [m], of a tip, as in G-code
 
 /// Words of the first line that is neither empty nor a comment.
 struct Header {
@@ -65,6 +67,10 @@ Pose pose_of(const Row& row) {
   if (std::abs(q.norm() - 1) > kUnitTolerance)
     throw InputError(row.place(), fmt::format("the quaternion's length is {:.6f}, not 1 within {:g}",
                                               q.norm(), kUnitTolerance));
+  for (const char* column : {"x_mm", "y_mm", "z_mm"})
+    if (!(std::abs(row.at(column)) <= to_mm(kFarthest)))
+      throw InputError(row.place(),
+                       fmt::format("{} is {:g}, beyond {:g}", column, row.at(column), to_mm(kFarthest)));
   return make_pose(q.normalized(), from_mm(1) * Vec3(row.at("x_mm"), row.at("y_mm"), row.at("z_mm")));
 }
 
@@ -119,6 +125,11 @@ void read_frame(const Row& row, std::optional<MeasuringFrame>& frame) {
       throw InputError(row.place(), fmt::format("{} is {:g}, below 0", column, row.at(column)));
   const MeasuringFrame here{kMicrometre * row.at("frame_um"), 1e-3 * row.at("frame_mrad"),
                             kPerMille * row.at("frame_permille")};
+  if (!(std::max({here.position, here.rotation, here.strain}) <= kLargestNoise))
+    throw InputError(
+        row.place(),
+        fmt::format("frame_um, frame_mrad or frame_permille is more than {:g} m, {:g} rad or 1000 permille",
+                    kLargestNoise, kLargestNoise));
   if (frame && !(*frame == here))
     throw InputError(row.place(),
                      "frame_um, frame_mrad and frame_permille are not those of the first row: the device's "

@@ -126,6 +126,8 @@ TEST_F(MeasurementTable, ADevicesFrameIsTheSameInEveryRow) {
   const std::size_t column = 7 + 6 + 6;  // after pose, struts and noise
   EXPECT_THAT(refusal(with_cell(text, column, "-1")),
               AllOf(HasSubstr(".csv:3"), HasSubstr("frame_um is -1, below 0")));
+  EXPECT_THAT(refusal(with_cell(text, column, "1e200")),
+              AllOf(HasSubstr(".csv:3"), HasSubstr("more than 1 m")));
   EXPECT_THAT(refusal(with_cell(text, column, "7")), AllOf(HasSubstr(".csv:4"), HasSubstr("first row")));
 }
 
@@ -146,6 +148,8 @@ TEST_F(MeasurementTable, NamesMissingAndUnknownColumns) {
 
 TEST_F(MeasurementTable, RefusesNumbersThatAreNone) {
   EXPECT_THAT(refusal(with_cell(csv(), 1, "nan")), AllOf(HasSubstr(".csv:3"), HasSubstr("y_mm is 'nan'")));
+  EXPECT_THAT(refusal(with_cell(csv(), 2, "-1e12")),
+              AllOf(HasSubstr(".csv:3"), HasSubstr("z_mm is -1e+12, beyond 100000")));
   EXPECT_THAT(refusal(with_cell(csv(), 8, "")), HasSubstr("l2_mm is ''"));
   EXPECT_THAT(refusal(with_cell(csv(), 3, "0.9")),
               AllOf(HasSubstr(".csv:3"), HasSubstr("quaternion's length")));
