@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/file/is_file.h"
 #include "core/file/read_file.h"
 #include "core/yaml/yaml_map.h"
 #include "machine/description.h"
@@ -37,9 +38,9 @@ void read_fixture_keys(YamlMap& map, const fs::path& folder, Fixture& fixture) {
   const std::string shape = map.text("shape", "its STL, coordinates in W: a path, or a name of models/parts");
   if (!shape.empty()) {
     const fs::path beside = (folder / shape).lexically_normal(), named = named_shape(shape);
-    if (fs::is_regular_file(beside) && beside.extension() != ".yaml")
+    if (is_file(beside) && beside.extension() != ".yaml")
       fixture.shape = beside.string();
-    else if (fs::is_regular_file(named))
+    else if (is_file(named))
       fixture.shape = named.string();
     else
       map.fail("shape", fmt::format("shape {} is neither a file nor one of {}", beside.string(),
@@ -62,13 +63,13 @@ Fixture read_fixture_file(const std::string& file, const BuiltTolerances& otherw
 
 std::string fixture_file_of(const std::string& fixture) {
   const fs::path path(fixture);
-  return path.extension() == ".yaml" && fs::is_regular_file(path) ? fixture : "";
+  return path.extension() == ".yaml" && is_file(path) ? fixture : "";
 }
 
 std::string find_fixture(const std::string& fixture) {
   if (const std::string file = fixture_file_of(fixture); !file.empty()) return read_fixture_file(file).shape;
-  if (fs::is_regular_file(fixture)) return fixture;
-  if (const fs::path named = named_shape(fixture); fs::is_regular_file(named)) return named.string();
+  if (is_file(fixture)) return fixture;
+  if (const fs::path named = named_shape(fixture); is_file(named)) return named.string();
   throw InputError(
       fmt::format("no fixture {}: neither a file nor one of {}", fixture, fmt::join(known_names(), ", ")));
 }

@@ -22,6 +22,7 @@
 #include "core/counted_interrupts.h"
 #include "core/digest.h"
 #include "core/error.h"
+#include "core/file/is_file.h"
 #include "core/units.h"
 #include "core/version.h"
 #include "drivers/camera/camera_port.h"
@@ -205,7 +206,7 @@ int drive(const DriveOptions& options) {
   PreparedPrint print = prepare_print(asked);
   if (run) require_rehearsal(options.rehearsal, *run, rehearsed, asked, print);
 
-  if (std::filesystem::is_regular_file(options.record))  // before the machine is woken up
+  if (is_file(options.record))  // before the machine is woken up
     throw InputError({options.record},
                      "it is there already, and nothing is written over it: name another by --record");
   std::optional<control::Restart> restart;

@@ -15,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
+#include "core/file/is_file.h"
 #include "vision/formats/formats.h"
 #include "vision/picture/picture_file.h"
 
@@ -64,7 +65,7 @@ class FolderSource : public drivers::FrameSource {
     return newest;
   }
   std::string ended() const override {
-    return fs::is_directory(folder_) ? "" : folder_.string() + ": the folder is gone";
+    return is_folder(folder_) ? "" : folder_.string() + ": the folder is gone";
   }
 
  private:
@@ -145,11 +146,11 @@ std::unique_ptr<drivers::FrameSource> open_camera(const std::string& word) {
     return word.starts_with(begin) ? word.substr(std::string(begin).size()) : std::string();
   };
   if (const std::string folder = after("folder:"); !folder.empty()) {
-    if (!fs::is_directory(folder)) throw InputError(fmt::format("--camera {}: no such folder", word));
+    if (!is_folder(folder)) throw InputError(fmt::format("--camera {}: no such folder", word));
     return std::make_unique<FolderSource>(folder);
   }
   if (const std::string device = after("v4l2:"); !device.empty()) {
-    if (!fs::exists(device)) throw InputError(fmt::format("--camera {}: no such device", word));
+    if (!is_there(device)) throw InputError(fmt::format("--camera {}: no such device", word));
     return std::make_unique<VideoSource>(word, vision::formats().open_device(device), true);
   }
   if (word.starts_with("http://") || word.starts_with("https://"))

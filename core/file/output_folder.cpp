@@ -18,6 +18,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
+#include "core/file/is_file.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
 #include "core/file/staged_file.h"
@@ -190,11 +191,11 @@ int move_new(const fs::path& working, const fs::path& target) {
 }  // namespace
 
 std::string why_not_as_written(const fs::path& folder) {
-  if (!fs::is_directory(folder)) throw InputError(fmt::format("{} is no folder of results", folder.string()));
+  if (!is_folder(folder)) throw InputError(fmt::format("{} is no folder of results", folder.string()));
   const Digests ours = read_manifest(folder);
   if (ours.empty()) return fmt::format("it has no {}", kManifest);
   for (const auto& [name, digest] : ours)
-    if (!fs::is_regular_file(folder / name)) return fmt::format("{} is missing", name);
+    if (!is_file(folder / name)) return fmt::format("{} is missing", name);
   return foreign_in(folder);
 }
 

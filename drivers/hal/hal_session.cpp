@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/file/is_file.h"
 
 namespace understudy::drivers {
 namespace {
@@ -39,7 +40,7 @@ std::string text_of(const std::filesystem::path& file) {
 
 void check_folder(const HalSettings& settings, const std::string& folder) {
   const auto file = std::filesystem::path(folder) / "machine.hal";
-  if (!std::filesystem::is_regular_file(file))
+  if (!is_file(file))
     throw InputError(
         fmt::format("hal://{}: no machine.hal in it; write it by: understudy export hal --machine {} -o {}",
                     folder, settings.machine, folder));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/file/is_file.h"
 #include "core/file/output_file.h"
 #include "core/file/read_file.h"
 #include "core/yaml/changed_file.h"
@@ -40,7 +41,7 @@ namespace {
 
 /// Throws where another file has the place.
 bool is_there(const fs::path& from, const fs::path& to, const fs::path& original) {
-  if (!fs::exists(to)) return false;
+  if (!understudy::is_there(to)) return false;
   if (read_file(to) == read_file(from)) return true;
   throw InputError(fmt::format("{} is not that of {}: write the machine to another folder", to.string(),
                                original.string()));

@@ -8,6 +8,7 @@
 
 #include "core/digest.h"
 #include "core/file/file_cache.h"
+#include "core/file/is_file.h"
 #include "core/version.h"
 #include "core/yaml/changed_file.h"
 #include "machine/description.h"
@@ -60,7 +61,7 @@ void add_faults(const RehearsalRequest& request, Inputs& inputs) {
 void add_world(const RehearsalRequest& request, Inputs& inputs) {
   const ChangedFile as_built = changed_file(request.as_built);
   if (!as_built.changes.empty()) inputs.word("as-built's changes", as_built.braces());
-  if (std::filesystem::is_regular_file(as_built.file))
+  if (is_file(as_built.file))
     inputs.bytes_of("as-built file", as_built.file);
   else
     inputs.word("as-built", request.as_built);

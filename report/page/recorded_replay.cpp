@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/file/is_file.h"
 #include "core/file/read_file.h"
 #include "core/text/json_depth.h"
 #include "core/units.h"
@@ -281,7 +282,7 @@ Json parsed(const std::string& text) {
 
 RecordedReplay read_recorded_replay(const fs::path& folder) {
   const fs::path file = folder / "report.html";
-  if (!fs::exists(file))
+  if (!is_file(file))
     throw InputError({file.string()}, "it is not there: name a folder that understudy rehearse wrote");
   const std::string page = read_file(file);
   try {

@@ -7,6 +7,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
+#include "core/file/is_file.h"
 #include "core/file/read_file.h"
 #include "report/json_figures.h"
 #include "report/recorded/recorded_trace.h"
@@ -82,7 +83,7 @@ std::map<std::string, std::string> inputs_of(const Json& summary, const fs::path
       inputs[input_name(key)] = plain(value);
   }
   if (summary.contains("engine")) inputs["engine"] = plain(summary.at("engine").at("name"));
-  if (fs::exists(folder / kAsBuiltFile)) inputs[kAsBuiltFile] = sha256_hex(read_file(folder / kAsBuiltFile));
+  if (is_file(folder / kAsBuiltFile)) inputs[kAsBuiltFile] = sha256_hex(read_file(folder / kAsBuiltFile));
   return inputs;
 }
 
@@ -101,7 +102,7 @@ regression::Metrics figures_of(const std::string& text, const std::string& file)
 RecordedRehearsal read_recorded_rehearsal(const fs::path& folder) {
   RecordedRehearsal read;
   read.folder = folder;
-  if (!fs::is_directory(folder))
+  if (!is_folder(folder))
     throw InputError(
         fmt::format("{} is no folder: name one that understudy rehearse wrote", folder.string()));
   read.run = read_recorded_run(folder);
@@ -123,7 +124,7 @@ RecordedRehearsal read_recorded_rehearsal(const fs::path& folder) {
   }
   read.figures = figures_of(text, file.string());
   if (!simulated) return read;
-  if (!fs::exists(folder / kTraceFile))
+  if (!is_file(folder / kTraceFile))
     throw InputError(Place{(folder / kTraceFile).string()}, "it is missing: the result is not whole");
   check_as_written(folder, kTraceFile);
   read.trace = read_recorded_trace(folder / kTraceFile);

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "core/file/is_file.h"
 #include "core/file/output_folder.h"
 #include "core/file/read_file.h"
 #include "core/text/json_depth.h"
@@ -70,9 +71,9 @@ std::vector<ResultsDifference> compare_results(const fs::path& recorded, const f
     for (const std::string& name : compared_files(folder)) names.insert(name);
   std::vector<ResultsDifference> differences;
   for (const std::string& name : names) {
-    if (!fs::exists(again / name))
+    if (!is_file(again / name))
       differences.push_back({name, "it is no longer written"});
-    else if (!fs::exists(recorded / name))
+    else if (!is_file(recorded / name))
       differences.push_back({name, "it was not written then"});
     else if (const auto a = read_file(recorded / name), b = read_file(again / name); a != b)
       differences.push_back({name, is_json(name) ? json_details(a, b) : text_details(a, b)});

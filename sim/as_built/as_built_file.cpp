@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/file/is_file.h"
 #include "core/file/read_file.h"
 #include "core/text/printable.h"
 #include "core/units.h"
@@ -132,7 +133,7 @@ std::string geometry_text(const AsBuilt& built) {
 
 void read_as_built(const std::string& file, AsBuilt& built) {
   const std::string path = changed_file(file).file;
-  if (!std::filesystem::is_regular_file(path))
+  if (!is_file(path))
     throw InputError(fmt::format(
         "as-built \"{}\" is not one of nominal, sampled, manufactured, calibrated, nor a file", file));
   YamlMap::read_text(read_file(path), file, [&built](YamlMap& root) { read_built(root, built); });
@@ -146,7 +147,7 @@ MapSchema as_built_schema() {
 }
 
 std::string file_of(const AsBuilt& built) {
-  return std::filesystem::is_regular_file(changed_file(built.source).file) ? built.source : "";
+  return is_file(changed_file(built.source).file) ? built.source : "";
 }
 
 std::string write_as_built(const AsBuilt& built) {

@@ -10,6 +10,7 @@
 
 #include "core/digest.h"
 #include "core/file/file_cache.h"
+#include "core/file/is_file.h"
 #include "core/file/read_file.h"
 #include "core/version.h"
 #include "core/yaml/changed_file.h"
@@ -120,7 +121,7 @@ void RunInputs::change(const CampaignParameter& parameter, const std::string& va
     scenario.material = with_change(scenario.material, key, value);
   }
   if (target == "as_built") {
-    if (!fs::is_regular_file(changed_file(scenario.as_built).file))
+    if (!is_file(changed_file(scenario.as_built).file))
       refuse(fmt::format("is as-built '{}', which is no file whose values could vary", scenario.as_built));
     scenario.as_built = with_change(scenario.as_built, key, value);
   }
@@ -173,7 +174,7 @@ void RunInputs::check_point(const CampaignRun& run, const CampaignParameter& par
     const regression::Scenario scenario = scenario_of(run);
     const machine::MachineDescription machine = machine::load_machine(scenario.machine);
     if (!scenario.material.empty()) machine::load_material(scenario.material);
-    if (fs::is_regular_file(changed_file(scenario.as_built).file))
+    if (is_file(changed_file(scenario.as_built).file))
       sim::make_as_built(machine, scenario.as_built, sim::TruthSeeds(run.seed));
     if (target_of(parameter).first == "plan") planned(scenario);
   } catch (const InputError& error) {

@@ -194,6 +194,16 @@ TEST(BadUsage, ANumberThatIsNotFiniteIsRefused) {
                  {"--section: 'inf' is not finite"});
 }
 
+TEST(BadUsage, ANameThatIsTooLongForAFileIsRefusedAsAnyOther) {
+  const Folder folder;
+  const std::string name(300, 'a'), out = " --out " + (folder / "out");
+  for (const std::string option : {"--fixture ", "--as-built ", "--intended ", "--macros ", "--material "})
+    expect_refused("rehearse " + kBottleLine + " " + option + name + out, folder, {name.substr(0, 50)});
+  expect_refused("compare " + name + " " + name, folder, {name.substr(0, 50)});
+  expect_refused("export glb " + name + " -o " + (folder / "a.glb"), folder, {name.substr(0, 50)});
+  expect_refused("plan surface " + name + " -o " + (folder / "a.gcode"), folder, {name.substr(0, 50)});
+}
+
 TEST(BadUsage, JobsAreFrom1To1024) {
   const Folder folder;
   const std::string commands[] = {"sweep " + kSource + "/scenarios/song-bottle.yaml",

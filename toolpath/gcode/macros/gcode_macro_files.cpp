@@ -41,8 +41,8 @@ class MacroFiles {
   void read(const fs::path& path) {
     if (macros_.files_.size() == kMostFiles)
       throw InputError(Place{path.string()}, fmt::format("more than {} files are included", kMostFiles));
-    open_.push_back(fs::weakly_canonical(path));
     const std::string text = read_file(path);
+    open_.push_back(fs::weakly_canonical(path));
     if (text.size() > bytes_left_)
       throw InputError(Place{path.string()},
                        fmt::format("more than {} bytes in all that is included", kMacroFilesMax));
