@@ -34,9 +34,7 @@ SharedRecord rehearse(const std::string& program, const py::dict& options, const
 void write(const SharedRecord& record, const std::string& folder) {
   run_long([&] {
     OutputFolder out(folder);
-    const auto pictures =
-        record->scene ? report::draw_scene(*record->scene) : std::vector<report::Illustration>();
-    report::write_results(*record, pictures, out.path());
+    report::write_results(*record, report::pictures_of(*record), out.path());
     out.commit();
   });
 }

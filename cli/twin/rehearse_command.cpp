@@ -211,19 +211,14 @@ int rehearse(const RehearseOptions& asked) {
 
 rehearsal::Record rehearse_into(const rehearsal::RehearsalRequest& request,
                                 const std::filesystem::path& folder, bool quiet, report::LiveRecord* live) {
-  rehearsal::Record record;
-  std::vector<report::Illustration> pictures;
-  {
-    ProgressLine line(!quiet);
-    const auto show = [&](double share, const std::string& what) {
-      line.show(share, what);
-      if (live) live->progress(share, what);
-    };
-    record = rehearsal::rehearse(request, show, live);
-    show(1, "drawing");
-    if (record.scene) pictures = report::draw_scene(*record.scene);
-  }
-  report::write_results(record, pictures, folder);
+  ProgressLine line(!quiet);
+  const auto show = [&](double share, const std::string& what) {
+    line.show(share, what);
+    if (live) live->progress(share, what);
+  };
+  rehearsal::Record record = rehearsal::rehearse(request, show, live);
+  show(1, "drawing");
+  report::write_results(record, report::pictures_of(record), folder);
   return record;
 }
 

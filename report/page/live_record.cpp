@@ -68,7 +68,8 @@ std::string LiveRecord::json() const {
     live = live_value();
     motion_alone = motion_alone_;
   }
-  Json report = report_data(record, {});
+  Json report = report_data(record);
+  report["pictures"] = Json::array();
   if (motion_alone && report.contains("trace"))
     for (const char* column : kTruth) report["trace"]["columns"].erase(column);
   report["live"] = std::move(live);

@@ -169,7 +169,7 @@ Json profile_value(const Record& record) {
 
 }  // namespace
 
-Json report_data(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
+Json report_data(const rehearsal::Record& record) {
   Json report;
   report["schema"] = "understudy.report/1";
   report["title"] = record.title;
@@ -199,9 +199,13 @@ Json report_data(const rehearsal::Record& record, const std::vector<Illustration
   const bool all_frames = record.frames.size() <= kFramesShown;
   for (const FrameRecord& frame : record.frames)
     if (all_frames || !frame.look.frame.image.pixels.empty()) report["frames"].push_back(frame_value(frame));
-  report["pictures"] = Json::array();
-  for (const Illustration& picture : pictures) report["pictures"].push_back(picture_value(picture));
   return report;
+}
+
+Json pictures_value(const std::vector<Illustration>& pictures) {
+  Json values = Json::array();
+  for (const Illustration& picture : pictures) values.push_back(picture_value(picture));
+  return values;
 }
 
 }  // namespace understudy::report

@@ -10,7 +10,9 @@
 
 namespace understudy::report {
 
-nlohmann::ordered_json report_data(const rehearsal::Record& record,
-                                   const std::vector<Illustration>& pictures);
+/// Without its pictures.
+nlohmann::ordered_json report_data(const rehearsal::Record& record);
+/// Its "pictures".
+nlohmann::ordered_json pictures_value(const std::vector<Illustration>& pictures);
 
 }  // namespace understudy::report

@@ -68,9 +68,15 @@ std::string page_of(const Words& words, const std::string& json) {
 }  // namespace
 
 std::string report_html(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
+  nlohmann::ordered_json data = report_data(record);
+  data["pictures"] = pictures_value(pictures);
+  return report_page(record, data);
+}
+
+std::string report_page(const rehearsal::Record& record, const nlohmann::ordered_json& data) {
   const std::string verdict = rehearsal::headline(rehearsal::grade_of(record));
   return page_of({verdict + ": " + record.title, verdict, rehearsal::verdict_sentence(record), ""},
-                 to_text(report_data(record, pictures), -1));
+                 to_text(data, -1));
 }
 
 std::string live_html(const std::string& title, const std::string& json) {

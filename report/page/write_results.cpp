@@ -3,9 +3,12 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "core/file/output_file.h"
+#include "core/parallel.h"
 #include "core/units.h"
+#include "report/page/report_data.h"
 #include "report/page/report_html.h"
 #include "report/picture/png.h"
 #include "report/summary_json.h"
@@ -53,13 +56,9 @@ void write_frames(const std::vector<rehearsal::FrameRecord>& frames, const fs::p
   }
 }
 
-}  // namespace
-
-void write_results(const rehearsal::Record& record, const std::vector<Illustration>& pictures,
-                   const fs::path& folder) {
+void write_tables(const rehearsal::Record& record, const fs::path& folder) {
   write_file(folder / "summary.json", summary_json(record));
   if (record.timing) write_file(folder / kTimingFile, timing_json(record));
-  write_file(folder / "report.html", report_html(record, pictures));
   if (!record.as_built.empty()) write_file(folder / "as-built.yaml", record.as_built);
   if (!record.trace.empty()) {
     write_file(folder / "trace.csv", [&](const AppendPiece& append) { make_trace_csv(record, append); });
@@ -70,6 +69,28 @@ void write_results(const rehearsal::Record& record, const std::vector<Illustrati
     write_file(folder / "surface-after.ply", sim::surface_ply(samples, after, "surface as milled"));
   }
   if (!record.frames.empty()) write_frames(record.frames, folder / "frames");
+}
+
+}  // namespace
+
+DrawPictures pictures_of(const rehearsal::Record& record) {
+  if (!record.scene) return {};
+  return [&scene = *record.scene] { return draw_scene(scene); };
+}
+
+void write_results(const rehearsal::Record& record, const DrawPictures& draw, const fs::path& folder) {
+  std::vector<Illustration> pictures;
+  nlohmann::ordered_json data;
+  in_parallel(2, 2, [&](std::size_t job) {
+    if (job == 0) {
+      if (draw) pictures = draw();
+      return;
+    }
+    write_tables(record, folder);
+    data = report_data(record);
+  });
+  data["pictures"] = pictures_value(pictures);
+  write_file(folder / "report.html", report_page(record, data));
   if (pictures.empty()) return;
   fs::create_directory(folder / "pictures");
   int number = 0;

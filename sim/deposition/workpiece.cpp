@@ -96,7 +96,6 @@ std::optional<Hit> Workpiece::top_of_heap(const Vec3& tip_W, const Vec3& axis_W,
 std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before, std::size_t likely) const {
   require_finite(X_WT.matrix().allFinite());
   const Vec3 tip = X_WT.translation(), axis = tool_axis(X_WT);
-  if (const auto top = top_of_heap(tip, axis, before)) return top;
   std::optional<Hit> best;
   if (insert_) {
     const SurfaceGap part = part_gap(*insert_, tip, axis);
@@ -105,11 +104,17 @@ std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before, std::s
   const SurfaceGap table = table_gap(table_, tip, axis);
   if (std::isfinite(table.gap))
     keep_nearer(best, {Body::table, table.gap, tip - table.gap * axis, table.normal_W, 0});
-  // Beads last: they are many, and what lies below the others is of no interest.
-  const double reach = best ? std::min(kGapReach, best->distance + kBeyondTies) : kGapReach;
-  if (const auto hit = beads_.ray_hit(tip, -axis, reach, before, likely);
-      hit && (!best || hit->distance <= best->distance))
-    best = of_bead(*hit);
+  bool inside = best && best->distance < 0;
+  if (!inside) {
+    // Beads last: they are many, and what lies below the others is of no interest.
+    const double reach = best ? std::min(kGapReach, best->distance + kBeyondTies) : kGapReach;
+    const auto hit = beads_.ray_hit(tip, -axis, reach, before, likely);
+    if (hit && (!best || hit->distance <= best->distance)) best = of_bead(*hit);
+    inside = hit && hit->distance == 0;
+  }
+  if (inside) {
+    if (const auto top = top_of_heap(tip, axis, before)) return top;
+  }
   return best;
 }
 

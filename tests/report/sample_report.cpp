@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = std::filesystem::path(argv[1]) / name;
     std::filesystem::create_directories(folder);
     const bool ran = !record.trace.empty();
-    write_results(record, ran ? sample_pictures() : std::vector<Illustration>(), folder);
+    write_results(record, ran ? sample_pictures : DrawPictures(), folder);
     std::cout << (folder / "report.html").string() << "\n";
   }
   for (const auto& [a, b] : {std::pair("go", "no-go"), {"hostile", "go"}, {"stopped", "go"}, {"go", "go"}})

@@ -39,9 +39,8 @@ using regression::ScenarioOutcome;
 regression::RecordSink results_in(const fs::path& folder, bool pictures, const std::string& planned) {
   return [folder, pictures, &planned](const rehearsal::Record& record) {
     OutputFolder out(folder);
-    std::vector<report::Illustration> drawn;
-    if (pictures) drawn = report::draw_scene(*record.scene);
-    report::write_results(record, drawn, out.path());
+    report::write_results(record, pictures ? report::pictures_of(record) : report::DrawPictures(),
+                          out.path());
     if (!planned.empty()) write_file(out.path() / regression::kPlannedProgram, planned);
     out.commit();
   };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace understudy::sim {
 
@@ -17,6 +16,9 @@ constexpr double kSubstep = 0.25e-3;  // [s]
 // a play is known to.
 constexpr double kSweepTolerance = 1e-10;  // [m] or [rad]
 constexpr int kMaxSweeps = 100;
+
+constexpr double kFlight = 0.02e-3;  // [s]: what flies shorter is in touch with an edge
+constexpr double kRounding = 1e-6;   // of an interval
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -38,13 +40,6 @@ struct BacklashDynamics::Row {
   }
 };
 
-/// What all steps of an interval share.
-struct BacklashDynamics::Interval {
-  const AxisMatrix& mass;
-  double h;      // [s], of a step
-  AxisMatrix A;  // of the implicit step: mass / h^2, and the damping / h on the diagonal
-};
-
 BacklashDynamics::BacklashDynamics(int axes) : axes_(axes) {}
 
 void BacklashDynamics::set_play(int axis, const SeriesPlay& play) {
@@ -62,12 +57,9 @@ void BacklashDynamics::place(int axis, double gap) {
 
 BacklashDynamics::Row BacklashDynamics::row(int axis, double between, double gap) const {
   const SeriesPlay& p = play(axis);
-  // A body between that has to be pushed forwards (between > 0) leans back on the drive; what it carries
-  // then reaches the other stop of the outer play first.
-  const double ledge = (between > 0 ? 0.5 : -0.5) * (p.outer - p.inner);
+  const double ledge = p.ledge(between);
   const auto level = [&](double g) {
-    const double carried = g < ledge ? std::max(-between, 0.0) : std::min(-between, 0.0);
-    return carried + (g < gap ? p.friction : -p.friction);
+    return carried(between, g >= ledge) + (g < gap ? p.friction : -p.friction);
   };
   Row row;
   row.edge = {-p.total() / 2, std::min(ledge, gap), std::max(ledge, gap), p.total() / 2};
@@ -82,12 +74,14 @@ bool BacklashDynamics::rests(const AxisLoad& load) const {
 }
 
 double BacklashDynamics::resting_gap(int axis, const AxisLoad& load) const {
+  return resting_gap(axis, load.drive[axis] - load.between[axis], load.between[axis]);
+}
+
+double BacklashDynamics::resting_gap(int axis, double needed, double between) const {
   const SeriesPlay& p = play(axis);
   if (p.total() <= 0) return 0;
-  const double gap = gap_[axis], between = load.between[axis], needed = load.drive[axis] - between;
-  const double half = p.total() / 2;
-  const double ledge = (between > 0 ? 0.5 : -0.5) * (p.outer - p.inner);
-  const double pushed = std::max(-between, 0.0), pulled = std::min(-between, 0.0);
+  const double gap = gap_[axis], half = p.total() / 2, ledge = p.ledge(between);
+  const double pushed = carried(between, false), pulled = carried(between, true);
   // f may lie between the levels on both sides of the gap, widened by friction.
   const double above = gap >= half ? -kInfinity : (gap >= ledge ? pulled : pushed) - p.friction;
   const double below = gap <= -half ? kInfinity : (gap <= ledge ? pushed : pulled) + p.friction;
@@ -96,8 +90,10 @@ double BacklashDynamics::resting_gap(int axis, const AxisLoad& load) const {
   return gap;
 }
 
-void BacklashDynamics::substep(const Interval& interval, const AxisLoad& load, AxisVector& drive_force) {
-  const auto& [mass, h, A] = interval;
+void BacklashDynamics::substep(const AxisMatrix& mass, const AxisLoad& load, double h,
+                               AxisVector& drive_force) {
+  AxisMatrix A = mass / (h * h);
+  for (int i = 0; i < axes_; ++i) A(i, i) += play(i).damping / h;
   const AxisColumn momentum = mass * (column(gap_, axes_) + h * column(rate_, axes_)) / (h * h);
   kinematics::PerAxis<Row> rows;
   AxisVector fixed{};
@@ -106,7 +102,9 @@ void BacklashDynamics::substep(const Interval& interval, const AxisLoad& load, A
     fixed[i] = momentum[i] + drag * gap_[i] - (load.drive[i] - load.between[i]);
     rows[i] = row(i, load.between[i], gap_[i]);
   }
-  AxisVector next = gap_;
+  AxisVector next;
+  for (int i = 0; i < axes_; ++i)
+    next[i] = std::clamp(gap_[i] + h * rate_[i], rows[i].edge.front(), rows[i].edge.back());
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0;
     for (int i = 0; i < axes_; ++i) {
@@ -117,34 +115,32 @@ void BacklashDynamics::substep(const Interval& interval, const AxisLoad& load, A
       change = std::max(change, std::abs(g - next[i]));
       next[i] = g;
     }
-    if (change < kSweepTolerance) break;
+    if (change < kSweepTolerance * h / kSubstep) break;
   }
   column(drive_force, axes_) = A * column(next, axes_) - column(fixed, axes_) + column(load.between, axes_);
   column(rate_, axes_) = (column(next, axes_) - column(gap_, axes_)) / h;
   gap_ = next;
 }
 
-BacklashDynamics::Interval BacklashDynamics::implicit_step(const AxisMatrix& mass, double h) const {
-  Interval interval{mass, h, mass / (h * h)};
-  for (int i = 0; i < axes_; ++i) interval.A(i, i) += play(i).damping / h;
-  return interval;
-}
-
 AxisVector BacklashDynamics::advance(const AxisMatrix& mass, const AxisLoad& load, double duration) {
-  const int count = std::max(1, static_cast<int>(std::ceil(duration / kSubstep - 1e-9)));
-  AxisVector sum{}, force{};
-  std::optional<Interval> interval;
-  for (int k = 0; k < count; ++k) {
+  AxisVector impulse{}, force{};
+  const double least = kRounding * duration;
+  for (double left = duration; left > least;) {
     if (rests(load)) {
-      elements(sum) += elements(load.drive);
-    } else {
-      if (!interval) interval.emplace(implicit_step(mass, duration / count));
-      substep(*interval, load, force);
-      elements(sum) += elements(force);
+      elements(impulse) += left * elements(load.drive);
+      break;
     }
+    const double flown = fly(mass, load, left, impulse);
+    left -= flown;
+    if (flown >= kFlight || left <= least) continue;
+    const double h = std::min(left, kSubstep);
+    substep(mass, load, h, force);
+    elements(impulse) += h * elements(force);
+    land(mass, impulse);
+    left -= h;
   }
-  elements(sum) /= count;
-  return sum;
+  elements(impulse) /= duration;
+  return impulse;
 }
 
 }  // namespace understudy::sim

@@ -5,12 +5,16 @@
 // below it. `load` is the f that keeps all gaps at rest (inverse dynamics). Gaps for which that f is not
 // allowed move by
 //   M g'' + c g' = f(g) - load,
-// M the mass matrix in axis positions. The law is stepped implicitly, so a stop takes all speed away:
-// nothing bounces, and nothing here is stiff.
+// M the mass matrix in axis positions. Between stops, ledges and what friction holds, no force jumps: the
+// gaps fly as far as the first of them meets one. There the law is stepped implicitly, so a stop takes all
+// speed away: nothing bounces, and nothing here is stiff.
 //
 // A strut has two plays in series with a body between, the nut. What the nut weighs keeps its own play shut
 // until the rod pushes more than that: f(g) has a ledge of that height where one play is used up.
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include <Eigen/Core>
 
@@ -31,6 +35,10 @@ struct SeriesPlay {
   double friction = 0;  ///< below which the gap stays
   double damping = 0;   ///< while it moves
   double total() const { return inner + outer; }
+  /// The gap at which one of the plays is used up. A body between that has to be pushed forwards
+  /// (`between` > 0) leans back on the drive; what it carries then reaches the other stop of the outer play
+  /// first.
+  double ledge(double between) const { return (between > 0 ? 0.5 : -0.5) * (outer - inner); }
 };
 
 /// What the drives have to push to keep every gap at rest.
@@ -39,6 +47,11 @@ struct AxisLoad {
   AxisVector
       between{};  ///< its part that moves the bodies between the plays; the rest reaches the outer play
 };
+
+/// What the body between the plays pushes with, below the ledge and above it.
+inline double carried(double between, bool above) {
+  return above ? std::min(-between, 0.0) : std::max(-between, 0.0);
+}
 
 /// The state of all plays of a machine. Nothing here allocates or throws.
 class BacklashDynamics {
@@ -63,10 +76,23 @@ class BacklashDynamics {
 
  private:
   struct Row;
-  struct Interval;
-  Interval implicit_step(const AxisMatrix& mass, double h) const;
+  struct Stretch;
+  struct Flight;
   Row row(int axis, double between, double gap) const;
-  void substep(const Interval& interval, const AxisLoad& load, AxisVector& drive_force);
+  double resting_gap(int axis, double needed, double between) const;
+  Stretch stretch(int axis, double between, double direction) const;
+  /// Carries the gaps on until one meets an edge, at most over `h`; returns how long [s], 0 for not at all.
+  double fly(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& impulse);
+  bool set_out(const AxisLoad& load, Flight& flight) const;
+  bool accelerate(const AxisMatrix& mass, const AxisLoad& load, double h, Flight& flight) const;
+  bool let_rest(Flight& flight) const;
+  bool let_go(const AxisMatrix& mass, const AxisLoad& load, Flight& flight, AxisVector& drive_force) const;
+  double time_to_edge(Flight& flight, double h) const;
+  bool at_stop(int axis) const { return std::abs(gap_[axis]) >= play(axis).total() / 2; }
+  void land(const AxisMatrix& mass, AxisVector& impulse);
+  AxisVector thrown(const AxisMatrix& mass, const kinematics::PerAxis<bool>& free) const;
+  /// Over `h` implicitly, whatever is met.
+  void substep(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& drive_force);
 
   int axes_;
   kinematics::PerAxis<SeriesPlay> plays_{};

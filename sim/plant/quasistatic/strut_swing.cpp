@@ -12,9 +12,9 @@ struct JointRates {
 
 // d' = omega x d + length' z with omega = (beta', alpha' t_y, alpha' t_z).
 JointRates joint_rates(const StrutSwing& s, const Vec3& v_M) {
-  const double alpha = v_M.x() / (s.tangent_M.y() * s.length);
-  const double beta = (alpha * s.tangent_M.z() * s.deviation - v_M.y()) / s.length;
-  return {alpha, beta, v_M.z() + v_M.x() * s.deviation / s.length};
+  const double alpha = v_M.x() * s.per_turn;
+  const double beta = (alpha * s.tangent_M.z() * s.deviation - v_M.y()) * s.per_length;
+  return {alpha, beta, v_M.z() + v_M.x() * s.deviation * s.per_length};
 }
 
 Vec3 turning(const StrutSwing& s, const JointRates& rates) {
@@ -24,9 +24,8 @@ Vec3 turning(const StrutSwing& s, const JointRates& rates) {
 /// Force at the ball joint that does the work of a moment on the motor, for every swing.
 Vec3 at_ball(const StrutSwing& s, const Vec3& moment_M) {
   const double about_tangent = moment_M.dot(s.tangent_M);
-  return {(about_tangent + moment_M.x() * s.tangent_M.z() * s.deviation / s.length) /
-              (s.tangent_M.y() * s.length),
-          -moment_M.x() / s.length, 0};
+  return {(about_tangent + moment_M.x() * s.tangent_M.z() * s.deviation * s.per_length) * s.per_turn,
+          -moment_M.x() * s.per_length, 0};
 }
 
 }  // namespace
@@ -45,6 +44,8 @@ bool find_swing(const Vec3& d_B, const Vec3& tangent_B, double deviation, StrutS
   const Vec3 screw = (d_B - deviation * offset) / swing.length;
   swing.R_BM << offset, screw.cross(offset), screw;
   swing.tangent_M = swing.R_BM.transpose() * tangent_B;
+  swing.per_length = 1 / swing.length;
+  swing.per_turn = 1 / (swing.tangent_M.y() * swing.length);
   return true;
 }
 
@@ -66,8 +67,8 @@ Vec3 swing_force(const StrutSwing& s, const SwingingBody& body, const Vec3& v_B,
 
 Mat3 swing_inertia(const StrutSwing& s, const SwingingBody& body) {
   const Vec3 centre = s.deviation * Vec3::UnitX();
-  Mat3 inertia_M;
-  for (int k = 0; k < 3; ++k) {
+  Mat3 inertia_M = Mat3::Zero();
+  for (int k = 0; k < 2; ++k) {  // along the screw nothing swings
     const Vec3 omega = turning(s, joint_rates(s, Vec3::Unit(k)));
     const Vec3 momentum = body.moment * omega + body.mass * centre.cross(omega.cross(centre));
     inertia_M.col(k) = at_ball(s, momentum);

@@ -12,6 +12,8 @@ struct StrutSwing {
   Vec3 tangent_M;        ///< first axis of the universal joint; (0, t_y, t_z)
   double length = 0;     ///< [m]
   double deviation = 0;  ///< [m]
+  double per_length = 0;  ///< 1 / length
+  double per_turn = 0;    ///< 1 / (t_y length): turn about the tangent for a velocity along the offset
 
   Vec3 screw_B() const { return R_BM.col(2); }
 };

@@ -30,7 +30,7 @@ class WriteResults : public testing::Test {
 };
 
 TEST_F(WriteResults, WritesEveryFileOfARun) {
-  write_results(sample_go(), sample_pictures(), folder_.path());
+  write_results(sample_go(), sample_pictures, folder_.path());
   const auto written = files();
   for (const char* name : {"summary.json", "timing.json", "report.html", "trace.csv", "frames/approach.csv",
                            "frames/approach-01.png", "frames/approach-10.png", "pictures/picture-01.png",
@@ -48,9 +48,9 @@ TEST_F(WriteResults, WritesOnlyWhatThereIs) {
 }
 
 TEST_F(WriteResults, EqualRecordsGiveEqualBytes) {
-  write_results(sample_no_go(), sample_pictures(), folder_.path());
+  write_results(sample_no_go(), sample_pictures, folder_.path());
   const auto first = files();
-  write_results(sample_no_go(), sample_pictures(), folder_.path());
+  write_results(sample_no_go(), sample_pictures, folder_.path());
   EXPECT_EQ(files(), first);
 }
 
@@ -68,7 +68,7 @@ TEST_F(WriteResults, FrameTableHasEmptyCellsWhereNothingWasMeasured) {
 
 // The command made it before the work: it has vanished meanwhile.
 TEST_F(WriteResults, AFolderThatIsNotThereIsNoMistakeOfTheUsers) {
-  EXPECT_THROW(write_results(sample_go(), sample_pictures(), folder_ / "missing"), MachineError);
+  EXPECT_THROW(write_results(sample_go(), sample_pictures, folder_ / "missing"), MachineError);
 }
 
 }  // namespace
