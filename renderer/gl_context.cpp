@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <mutex>
 #include <stdexcept>
@@ -20,6 +21,8 @@ std::mutex& context_mutex() {
   static std::mutex mutex;
   return mutex;
 }
+
+std::atomic<int> contexts_made = 0;
 
 template <typename Function>
 void load(Function& function, const char* name) {
@@ -43,7 +46,10 @@ struct GlContext::Handle {
   std::array<unsigned char, 4 * 4 * 4> pixels{};
 };
 
+int GlContext::made() { return contexts_made; }
+
 GlContext::GlContext() : handle_(std::make_unique<Handle>()) {
+  ++contexts_made;
   check_driver();
   const std::lock_guard lock(context_mutex());
   const int attributes[] = {OSMESA_FORMAT,

@@ -51,6 +51,7 @@ class GlContext {
   void check(const char* where) const;
 
   const GlFunctions& gl() const { return gl_; }
+  static int made();  ///< contexts of this process, so far
 
  private:
   struct Handle;

@@ -263,11 +263,33 @@ SampleGrid LaserView::State::draw_view(const LaserScene& scene, const Region& sa
   return grid;
 }
 
-LaserView::LaserView() : state_(std::make_unique<State>()) {}
+struct LaserView::Kept {
+  bool keeps = false;
+  std::unique_ptr<State> state;
+
+  ~Kept() {
+    if (state) state->context.make_current();
+  }
+  static Kept& of_thread() {
+    thread_local Kept kept;
+    return kept;
+  }
+};
+
+LaserView::LaserView() : state_(std::move(Kept::of_thread().state)) {
+  if (!state_) state_ = std::make_unique<State>();
+}
 
 LaserView::~LaserView() {
-  if (state_) state_->context.make_current();  // the objects' owner must be current when they go
+  if (!state_) return;
+  state_->context.make_current();  // the objects' owner must be current when they go
+  Kept& kept = Kept::of_thread();
+  if (!kept.keeps || kept.state) return;
+  state_->meshes.clear();
+  kept.state = std::move(state_);
 }
+
+void keep_laser_views() { LaserView::Kept::of_thread().keeps = true; }
 
 Image LaserView::render(const LaserScene& scene, const Region& region) {
   check(scene);

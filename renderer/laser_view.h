@@ -46,9 +46,15 @@ class LaserView {
   Image render(const LaserScene& scene, const Region& region);
 
  private:
+  friend void keep_laser_views();
   struct State;
+  struct Kept;
   std::unique_ptr<State> state_;
 };
+
+/// From now on the last view that goes on this thread leaves its context, programs and textures to the next
+/// one, which draws the same pictures: for processes that rehearse again and again.
+void keep_laser_views();
 
 /// True centre of the dot: where the beam's axis meets part, table or tool, projected. False: out of view or
 /// hidden from the camera.

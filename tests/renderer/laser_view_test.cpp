@@ -12,6 +12,7 @@
 #include "core/digest.h"
 #include "core/error.h"
 #include "geometry/box_mesh.h"
+#include "renderer/gl_context.h"
 #include "tests/renderer/laser_scene.h"
 
 namespace understudy::renderer {
@@ -174,6 +175,27 @@ TEST(LaserView, NoiseChangesFromFrameToFrameAndSpeckleDoesNot) {
   EXPECT_EQ(view.render(scene, region).pixels, still.pixels);
   scene.seed = 1;
   EXPECT_NE(view.render(scene, region).pixels, still.pixels);
+}
+
+TEST(LaserView, AViewThatWasKeptDrawsTheSamePictures) {
+  LaserScene other = clean_scene();
+  other.camera.width = 320;
+  other.part = slab(-20e-3, 20e-3, 2e-3);
+  const LaserScene scene = reference_scene();
+  const std::string fresh = digest(LaserView().render(scene, kSensor));
+  std::string after_same, after_other;
+  std::thread([&] {  // what is kept ends with its thread
+    keep_laser_views();
+    LaserView().render(scene, kSensor);
+    const int contexts = GlContext::made();
+    after_same = digest(LaserView().render(scene, kSensor));
+    LaserView().render(other, kSensor);
+    after_other = digest(LaserView().render(scene, kSensor));
+    EXPECT_EQ(GlContext::made(), contexts);
+  })
+      .join();
+  EXPECT_EQ(after_same, fresh);
+  EXPECT_EQ(after_other, fresh);
 }
 
 TEST(LaserView, TheNozzleTakesTheBeamBeforeThePart) {

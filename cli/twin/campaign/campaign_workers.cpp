@@ -28,6 +28,7 @@
 #include "core/process/pipe.h"
 #include "core/thread_limit.h"
 #include "renderer/drawing_threads.h"
+#include "renderer/laser_view.h"
 
 namespace understudy::cli {
 namespace {
@@ -232,6 +233,7 @@ int run_campaign_worker(const CampaignFolder& folder, const std::string& part, c
   // As many workers as processors are there: more threads would wait for each other.
   limit_threads(1);
   renderer::draw_on_calling_thread();
+  renderer::keep_laser_views();
   folder.check();
   studies::ResultStore store(folder.part(part), folder.header());
   for (std::uint64_t index = 0; std::cin >> index;) {

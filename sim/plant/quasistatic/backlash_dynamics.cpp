@@ -130,13 +130,13 @@ AxisVector BacklashDynamics::advance(const AxisMatrix& mass, const AxisLoad& loa
       elements(impulse) += left * elements(load.drive);
       break;
     }
-    const double flown = fly(mass, load, left, impulse);
+    const double flown = free_flight(mass, load, left, impulse);
     left -= flown;
     if (flown >= kFlight || left <= least) continue;
     const double h = std::min(left, kSubstep);
     substep(mass, load, h, force);
     elements(impulse) += h * elements(force);
-    land(mass, impulse);
+    impact(mass, impulse);
     left -= h;
   }
   elements(impulse) /= duration;

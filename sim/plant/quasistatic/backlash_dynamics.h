@@ -76,21 +76,22 @@ class BacklashDynamics {
 
  private:
   struct Row;
-  struct Stretch;
+  struct Interval;
   struct Flight;
   Row row(int axis, double between, double gap) const;
   double resting_gap(int axis, double needed, double between) const;
-  Stretch stretch(int axis, double between, double direction) const;
+  Interval interval(int axis, double between, double direction) const;
   /// Carries the gaps on until one meets an edge, at most over `h`; returns how long [s], 0 for not at all.
-  double fly(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& impulse);
-  bool set_out(const AxisLoad& load, Flight& flight) const;
+  double free_flight(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& impulse);
+  bool find_moving(const AxisLoad& load, Flight& flight) const;
   bool accelerate(const AxisMatrix& mass, const AxisLoad& load, double h, Flight& flight) const;
-  bool let_rest(Flight& flight) const;
-  bool let_go(const AxisMatrix& mass, const AxisLoad& load, Flight& flight, AxisVector& drive_force) const;
+  bool hold_pressed(Flight& flight) const;
+  bool release_lifted(const AxisMatrix& mass, const AxisLoad& load, Flight& flight,
+                      AxisVector& drive_force) const;
   double time_to_edge(Flight& flight, double h) const;
   bool at_stop(int axis) const { return std::abs(gap_[axis]) >= play(axis).total() / 2; }
-  void land(const AxisMatrix& mass, AxisVector& impulse);
-  AxisVector thrown(const AxisMatrix& mass, const kinematics::PerAxis<bool>& free) const;
+  void impact(const AxisMatrix& mass, AxisVector& impulse);
+  AxisVector impact_change(const AxisMatrix& mass, const kinematics::PerAxis<bool>& free) const;
   /// Over `h` implicitly, whatever is met.
   void substep(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& drive_force);
 

@@ -61,7 +61,7 @@ AxisColumn solve(const AxisMatrix& A, AxisColumn& x) {
 }  // namespace
 
 /// Where a gap can go in a direction before another force acts on it.
-struct BacklashDynamics::Stretch {
+struct BacklashDynamics::Interval {
   double lower, upper;  // [m] or [rad]
   double force;         // f in it
 };
@@ -71,12 +71,12 @@ struct BacklashDynamics::Flight {
   AxisVector direction{};           // of each gap; 0: it rests
   kinematics::PerAxis<int> moving;  // the first `count`
   int count = 0;
-  kinematics::PerAxis<Stretch> stretch;
+  kinematics::PerAxis<Interval> interval;
   AxisVector acceleration{};
-  int lands = -1;  // the gap that meets a stop at its end
+  int stops = -1;  // the gap that meets a stop at its end
 };
 
-BacklashDynamics::Stretch BacklashDynamics::stretch(int axis, double between, double direction) const {
+BacklashDynamics::Interval BacklashDynamics::interval(int axis, double between, double direction) const {
   const SeriesPlay& p = play(axis);
   const double ledge = p.ledge(between), half = p.total() / 2;
   const bool forward = direction > 0, above = forward ? gap_[axis] >= ledge : gap_[axis] > ledge;
@@ -85,13 +85,13 @@ BacklashDynamics::Stretch BacklashDynamics::stretch(int axis, double between, do
 }
 
 // False where one presses on against an edge.
-bool BacklashDynamics::set_out(const AxisLoad& load, Flight& flight) const {
+bool BacklashDynamics::find_moving(const AxisLoad& load, Flight& flight) const {
   for (int i = 0; i < axes_; ++i) {
     flight.direction[i] = rate_[i] != 0 ? rate_[i] : resting_gap(i, load) - gap_[i];
     if (flight.direction[i] == 0) continue;
-    const Stretch s = stretch(i, load.between[i], flight.direction[i]);
+    const Interval s = interval(i, load.between[i], flight.direction[i]);
     if (flight.direction[i] > 0 ? gap_[i] >= s.upper : gap_[i] <= s.lower) return false;
-    flight.stretch[i] = s;
+    flight.interval[i] = s;
     flight.moving[flight.count++] = i;
   }
   return true;
@@ -106,7 +106,7 @@ bool BacklashDynamics::accelerate(const AxisMatrix& mass, const AxisLoad& load, 
     const int i = flight.moving[k];
     for (int l = 0; l < flight.count; ++l) A(k, l) = mass(i, flight.moving[l]);
     A(k, k) += play(i).damping * h / 2;
-    a[k] = flight.stretch[i].force - (load.drive[i] - load.between[i]) - play(i).damping * rate_[i];
+    a[k] = flight.interval[i].force - (load.drive[i] - load.between[i]) - play(i).damping * rate_[i];
   }
   const AxisColumn alone = solve(A, a);
   for (int k = 0; k < flight.count; ++k)
@@ -117,14 +117,14 @@ bool BacklashDynamics::accelerate(const AxisMatrix& mass, const AxisLoad& load, 
 
 // Until another force acts on one of them, at most h.
 double BacklashDynamics::time_to_edge(Flight& flight, double h) const {
-  const auto end = [&](double time, int lands) {
+  const auto end = [&](double time, int stops) {
     if (time > h) return;
     h = time;
-    flight.lands = lands;
+    flight.stops = stops;
   };
   for (int k = 0; k < flight.count; ++k) {
     const int i = flight.moving[k];
-    const Stretch& s = flight.stretch[i];
+    const Interval& s = flight.interval[i];
     const double v = rate_[i], a = flight.acceleration[i], half = play(i).total() / 2;
     const bool turns = (v + a * h) * flight.direction[i] <= 0;
     if (turns && play(i).friction > 0) end(-v / a, -1);
@@ -136,8 +136,8 @@ double BacklashDynamics::time_to_edge(Flight& flight, double h) const {
   return h;
 }
 
-// What the others' acceleration presses against the edge where it rests.
-bool BacklashDynamics::let_rest(Flight& flight) const {
+// Holds those that the others' acceleration presses against the edge where they rest; false if there is none.
+bool BacklashDynamics::hold_pressed(Flight& flight) const {
   int count = 0;
   for (int k = 0; k < flight.count; ++k) {
     const int i = flight.moving[k];
@@ -151,13 +151,14 @@ bool BacklashDynamics::let_rest(Flight& flight) const {
   return some;
 }
 
-// What the others' acceleration lifts from where it rests. The force of the drives, if nothing.
-bool BacklashDynamics::let_go(const AxisMatrix& mass, const AxisLoad& load, Flight& flight,
-                              AxisVector& drive_force) const {
+// Releases those that the others' acceleration lifts from where they rest; false if there is none, and the
+// force of the drives is known.
+bool BacklashDynamics::release_lifted(const AxisMatrix& mass, const AxisLoad& load, Flight& flight,
+                                      AxisVector& drive_force) const {
   const int count = flight.count;
   for (int i = 0; i < axes_; ++i) {
     if (flight.direction[i] != 0) {
-      drive_force[i] = flight.stretch[i].force + load.between[i];
+      drive_force[i] = flight.interval[i].force + load.between[i];
       continue;
     }
     double needed = load.drive[i] - load.between[i];
@@ -167,27 +168,27 @@ bool BacklashDynamics::let_go(const AxisMatrix& mass, const AxisLoad& load, Flig
     const double target = resting_gap(i, needed, load.between[i]);
     if (target == gap_[i]) continue;
     flight.direction[i] = target - gap_[i];
-    flight.stretch[i] = stretch(i, load.between[i], flight.direction[i]);
+    flight.interval[i] = interval(i, load.between[i], flight.direction[i]);
     flight.moving[flight.count++] = i;
   }
   return flight.count != count;
 }
 
-// Stops take the speed of gaps that meet them at once. Others are thrown by what their masses have in common,
-// or held by their own stops, which only push.
-void BacklashDynamics::land(const AxisMatrix& mass, AxisVector& impulse) {
+// Stops take the speed of gaps that meet them at once. Others get their share by the
+// mass matrix, or are held by their own stops, which only push.
+void BacklashDynamics::impact(const AxisMatrix& mass, AxisVector& impulse) {
   kinematics::PerAxis<bool> free{};
-  bool lands = false;
+  bool some = false;
   for (int i = 0; i < axes_; ++i) {
     const bool into = at_stop(i) && rate_[i] * gap_[i] > 0;
-    lands = lands || into;
+    some = some || into;
     free[i] = !into && (rate_[i] != 0 || !at_stop(i));
   }
-  if (!lands) return;
+  if (!some) return;
   AxisVector change{}, push{};
   bool settled = false;
   for (int round = 0; !settled && round < 2 * axes_; ++round) {
-    change = thrown(mass, free);
+    change = impact_change(mass, free);
     settled = true;
     for (int i = 0; i < axes_; ++i) {
       push[i] = free[i] ? 0 : mass.row(i).dot(column(change, axes_));
@@ -203,7 +204,8 @@ void BacklashDynamics::land(const AxisMatrix& mass, AxisVector& impulse) {
 }
 
 // Changes of speed: what is not free stops, and the free ones get no impulse of their own.
-AxisVector BacklashDynamics::thrown(const AxisMatrix& mass, const kinematics::PerAxis<bool>& free) const {
+AxisVector BacklashDynamics::impact_change(const AxisMatrix& mass,
+                                           const kinematics::PerAxis<bool>& free) const {
   AxisVector change{};
   kinematics::PerAxis<int> moving{};
   int count = 0;
@@ -224,28 +226,28 @@ AxisVector BacklashDynamics::thrown(const AxisMatrix& mass, const kinematics::Pe
   return change;
 }
 
-// A gap that sets out may press others against their edges or lift them from there, which lets them rest or
-// go in turn.
-double BacklashDynamics::fly(const AxisMatrix& mass, const AxisLoad& load, double h, AxisVector& impulse) {
+// Which gaps move and what they accelerate by depend on each other: an active set, changed until it holds.
+double BacklashDynamics::free_flight(const AxisMatrix& mass, const AxisLoad& load, double h,
+                                     AxisVector& impulse) {
   Flight flight;
   AxisVector force{};
-  if (!set_out(load, flight)) return 0;
+  if (!find_moving(load, flight)) return 0;
   for (int round = 0;; ++round) {
     if (round == axes_ || !accelerate(mass, load, h, flight)) return 0;
-    if (!let_rest(flight) && !let_go(mass, load, flight, force)) break;
+    if (!hold_pressed(flight) && !release_lifted(mass, load, flight, force)) break;
   }
   const double time = time_to_edge(flight, h);
   for (int k = 0; k < flight.count; ++k) {
     const int i = flight.moving[k];
-    const Stretch& s = flight.stretch[i];
+    const Interval& s = flight.interval[i];
     const double v = rate_[i], a = flight.acceleration[i];
     gap_[i] = std::clamp(gap_[i] + time * (v + a * time / 2), s.lower, s.upper);
     rate_[i] = v + a * time;
   }
   elements(impulse) += time * elements(force);
-  if (flight.lands >= 0) {
-    gap_[flight.lands] = std::copysign(play(flight.lands).total() / 2, rate_[flight.lands]);
-    land(mass, impulse);
+  if (flight.stops >= 0) {
+    gap_[flight.stops] = std::copysign(play(flight.stops).total() / 2, rate_[flight.stops]);
+    impact(mass, impulse);
   }
   return time;
 }
