@@ -8,10 +8,10 @@ namespace understudy::sim {
 /// A strut in the motor frame M of the MuJoCo plant (x along the offset, z along the screw, origin in the
 /// universal joint), with everything expressed in M: d = (dev, 0, length).
 struct StrutSwing {
-  Mat3 R_BM;             ///< columns: offset, screw x offset, screw
-  Vec3 tangent_M;        ///< first axis of the universal joint; (0, t_y, t_z)
-  double length = 0;     ///< [m]
-  double deviation = 0;  ///< [m]
+  Mat3 R_BM;              ///< columns: offset, screw x offset, screw
+  Vec3 tangent_M;         ///< first axis of the universal joint; (0, t_y, t_z)
+  double length = 0;      ///< [m]
+  double deviation = 0;   ///< [m]
   double per_length = 0;  ///< 1 / length
   double per_turn = 0;    ///< 1 / (t_y length): turn about the tangent for a velocity along the offset
 
