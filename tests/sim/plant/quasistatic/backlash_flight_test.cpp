@@ -75,12 +75,12 @@ TEST(BacklashFlight, GoesOverALedgeWithAnotherForce) {
 /// Stops of 1e9 N/m, damped so that nothing bounces.
 struct StiffStops {
   AxisMatrix inverse_mass;
-  double gap[2], rate[2] = {0, 0};
+  double gap[2] = {0, 0}, rate[2] = {0, 0};
 
   void advance(const AxisLoad& load, double duration) {
     constexpr double kStep = 0.1e-6, kStiffness = 1e9, kDamping = 2e5;
     for (double t = 0; t < duration - kStep / 2; t += kStep) {
-      double force[2];
+      double force[2] = {0, 0};
       for (int i : {0, 1}) {
         const double in = std::abs(gap[i]) - kPlay / 2, side = gap[i] > 0 ? 1 : -1;
         const double push = in > 0 ? std::max(0.0, kStiffness * in + kDamping * side * rate[i]) : 0;
