@@ -12,7 +12,6 @@
 #include "report/json_text.h"
 #include "report/markup.h"
 #include "report/page/page_parts.h"
-#include "report/page/report_data.h"
 
 namespace understudy::report {
 namespace {
@@ -67,13 +66,7 @@ std::string page_of(const Words& words, const std::string& json) {
 
 }  // namespace
 
-std::string report_html(const rehearsal::Record& record, const std::vector<Illustration>& pictures) {
-  nlohmann::ordered_json data = report_data(record);
-  data["pictures"] = pictures_value(pictures);
-  return report_page(record, data);
-}
-
-std::string report_page(const rehearsal::Record& record, const nlohmann::ordered_json& data) {
+std::string report_html(const rehearsal::Record& record, const nlohmann::ordered_json& data) {
   const std::string verdict = rehearsal::headline(rehearsal::grade_of(record));
   return page_of({verdict + ": " + record.title, verdict, rehearsal::verdict_sentence(record), ""},
                  to_text(data, -1));

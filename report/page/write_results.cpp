@@ -90,7 +90,7 @@ void write_results(const rehearsal::Record& record, const DrawPictures& draw, co
     data = report_data(record);
   });
   data["pictures"] = pictures_value(pictures);
-  write_file(folder / "report.html", report_page(record, data));
+  write_file(folder / "report.html", report_html(record, data));
   if (pictures.empty()) return;
   fs::create_directory(folder / "pictures");
   int number = 0;

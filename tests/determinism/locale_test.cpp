@@ -10,12 +10,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "calibration/machine/calibrate_machine.h"
 #include "machine/description.h"
 #include "machine/file/calibration_section.h"
 #include "rehearsal/rehearse.h"
 #include "report/calibration/calibration_summary.h"
+#include "report/page/report_data.h"
 #include "report/page/report_html.h"
 #include "report/summary_json.h"
 #include "report/trace/trace_csv.h"
@@ -52,7 +54,7 @@ void add_rehearsal(std::vector<std::string>& texts) {
   const rehearsal::Record record = rehearsal::rehearse(request);
   texts.push_back(without_times(report::summary_json(record)));
   texts.push_back(report::trace_csv(record));
-  texts.push_back(without_times(report::report_html(record, {})));
+  texts.push_back(without_times(report::report_html(record, report::report_data(record))));
   texts.push_back(record.as_built);
 }
 

@@ -5,9 +5,9 @@
 // below it. `load` is the f that keeps all gaps at rest (inverse dynamics). Gaps for which that f is not
 // allowed move by
 //   M g'' + c g' = f(g) - load,
-// M the mass matrix in axis positions. Between stops, ledges and what friction holds, no force jumps: the
-// gaps fly as far as the first of them meets one. There the law is stepped implicitly, so a stop takes all
-// speed away: nothing bounces, and nothing here is stiff.
+// M the mass matrix in axis positions. Between stops, ledges and what friction holds, no force jumps: one
+// step takes the gaps as far as the first of them meets one. A stop takes all speed away: nothing bounces.
+// What stays in touch is stepped implicitly, so nothing here is stiff.
 //
 // A strut has two plays in series with a body between, the nut. What the nut weighs keeps its own play shut
 // until the rod pushes more than that: f(g) has a ledge of that height where one play is used up.

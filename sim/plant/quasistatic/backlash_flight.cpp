@@ -174,8 +174,8 @@ bool BacklashDynamics::release_lifted(const AxisMatrix& mass, const AxisLoad& lo
   return flight.count != count;
 }
 
-// Stops take the speed of gaps that meet them at once. Others get their share by the
-// mass matrix, or are held by their own stops, which only push.
+// Stops take the speed of gaps that meet them at once. The others change speed by the mass matrix, or are
+// held by their own stops, which only push.
 void BacklashDynamics::impact(const AxisMatrix& mass, AxisVector& impulse) {
   kinematics::PerAxis<bool> free{};
   bool some = false;
@@ -246,7 +246,8 @@ double BacklashDynamics::free_flight(const AxisMatrix& mass, const AxisLoad& loa
   }
   elements(impulse) += time * elements(force);
   if (flight.stops >= 0) {
-    gap_[flight.stops] = std::copysign(play(flight.stops).total() / 2, rate_[flight.stops]);
+    double& gap = gap_[flight.stops];
+    gap = std::copysign(play(flight.stops).total() / 2, gap);  // what only touches it has no speed to tell
     impact(mass, impulse);
   }
   return time;

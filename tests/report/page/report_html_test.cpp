@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/page/page_parts.h"
+#include "report/page/report_data.h"
 #include "report/page/report_html.h"
 #include "report/summary_json.h"
 #include "tests/report/sample_record.h"
@@ -24,12 +25,18 @@ std::string data_block(const std::string& page) {
   return page.substr(begin, page.find("</script>", begin) - begin);
 }
 
+std::string page_of(const Record& record, const std::vector<Illustration>& pictures) {
+  nlohmann::ordered_json data = report_data(record);
+  data["pictures"] = pictures_value(pictures);
+  return report_html(record, data);
+}
+
 Json data_of(const Record& record, const std::vector<Illustration>& pictures = sample_pictures()) {
-  return Json::parse(data_block(report_html(record, pictures)));
+  return Json::parse(data_block(page_of(record, pictures)));
 }
 
 TEST(ReportHtml, NeedsNothingFromOutside) {
-  const std::string page = report_html(sample_go(), sample_pictures());
+  const std::string page = page_of(sample_go(), sample_pictures());
   // Its script can ask the server of a run that goes on; here the policy forbids that.
   for (const char* outside : {"src=\"http", "<link", "@import", "url(http", "{{title}}", "{{script}}"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
@@ -38,7 +45,7 @@ TEST(ReportHtml, NeedsNothingFromOutside) {
 }
 
 TEST(ReportHtml, CarriesTheNoticesOfWhatIsBundled) {
-  const std::string page = report_html(sample_go(), sample_pictures());
+  const std::string page = page_of(sample_go(), sample_pictures());
   const std::string notices = page.substr(page.find("<!-- "), page.find(" -->") - page.find("<!-- "));
   for (const auto& [name, version] : page_packages()) EXPECT_THAT(notices, HasSubstr(name + " " + version));
   if (page_packages().empty()) return;  // the plain page
@@ -48,7 +55,7 @@ TEST(ReportHtml, CarriesTheNoticesOfWhatIsBundled) {
 }
 
 TEST(ReportHtml, SaysTheVerdictWithoutAScriptToo) {
-  const std::string page = report_html(sample_stopped_by_constraints(), {});
+  const std::string page = page_of(sample_stopped_by_constraints(), {});
   const std::string noscript = page.substr(page.find("<noscript>"), 400);
   EXPECT_THAT(noscript, HasSubstr("NO-GO: curved-line.gcode on hexapod"));
   EXPECT_THAT(noscript, HasSubstr("Strut 3 is 241.7 mm, longer than 240.0 mm"));
@@ -61,7 +68,7 @@ TEST(ReportHtml, DataCannotBecomeMarkup) {
   record.title = record.findings[0].message = record.frames[3].look.why = evil;
   auto pictures = sample_pictures();
   pictures[0].caption = evil;
-  const std::string page = report_html(record, pictures);
+  const std::string page = page_of(record, pictures);
   for (const char* markup : {"<script>alert", "<img src=x"})
     EXPECT_EQ(page.find(markup), std::string::npos) << markup;
   const Json data = data_of(record, pictures);
