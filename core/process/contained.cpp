@@ -58,10 +58,10 @@ void contain(const ContainedLimits& limits, int answer) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.seconds)));
   limit(RLIMIT_FSIZE, 0);
-#ifndef UNDERSTUDY_SANITIZED
+#ifndef UNDERSTUDY_SANITIZED  // which maps terabytes, and opens pipes to look whether memory can be read
   limit(RLIMIT_AS, mapped_memory() + limits.memory);
-#endif
   limit(RLIMIT_NOFILE, 0);  // what is open stays so
+#endif
 }
 
 std::string answer_of(const std::string& what, const std::function<std::string()>& work,

@@ -17,7 +17,7 @@ struct ContainedLimits {
 /// What `work` returns. It runs in a copy of this process that opens no file and starts no program, and whose
 /// standard error goes nowhere. Throws InputError without a place: what `work` throws, or, beginning with
 /// `what` ("reading it"), that it crashed or went beyond a limit; Interrupted; MachineError where no process
-/// can be started. Under a sanitizer memory is not limited.
+/// can be started. Under a sanitizer neither memory nor open files are limited.
 std::string run_contained(const std::string& what, const std::function<std::string()>& work,
                           const ContainedLimits& limits);
 

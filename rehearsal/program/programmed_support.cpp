@@ -26,6 +26,7 @@ constexpr double kRounding = 1e-6;  // [m], of a gap: printed surfaces are known
 struct Place {
   Vec3 tip_W;
   int first_line = 0, last_line = 0;
+  double length = 0;                                          // [m]
   double distance = std::numeric_limits<double>::infinity();  // [m], of the nearest so far
   bool lies = false;                                          // there, as programmed
 };
@@ -35,16 +36,19 @@ struct Asked {
   std::size_t stretch = 0, place = 0;
 };
 
-/// Evenly, at most `spacing` [m] apart.
+/// Evenly, at most `spacing` [m] apart; of the bare path before it as well.
 std::vector<Place> places_of(const sim::UnsupportedStretch& stretch, double spacing) {
   std::vector<Place> places;
-  for (std::size_t i = 1; i < stretch.path_W.size(); ++i) {
-    const Vec3 way = stretch.path_W[i] - stretch.path_W[i - 1];
+  const auto add = [&](const Vec3& from_W, const Vec3& to_W, int first_line, int last_line) {
+    const Vec3 way = to_W - from_W;
     const double count = std::max(1.0, std::ceil(way.norm() / spacing));
     for (double k = 0; k < count; ++k)
-      places.push_back(
-          {stretch.path_W[i - 1] + (k + 0.5) / count * way, stretch.lines[i - 1], stretch.lines[i]});
-  }
+      places.push_back({from_W + (k + 0.5) / count * way, first_line, last_line, way.norm() / count});
+  };
+  if (stretch.bare_before.length > 0)
+    add(stretch.bare_before.from_W, stretch.place_W, stretch.bare_before.line, stretch.line);
+  for (std::size_t i = 1; i < stretch.path_W.size(); ++i)
+    add(stretch.path_W[i - 1], stretch.path_W[i], stretch.lines[i - 1], stretch.lines[i]);
   return places;
 }
 
@@ -74,19 +78,20 @@ Finding hanging_finding(const sim::UnsupportedStretch& stretch, double support) 
   f.limit = to_mm(stretch.highest_gap);
   f.unit = "mm";
   f.about = kLifted;
+  const double bare = stretch.bare_before.length;
   f.message = fmt::format(
-      "bead of {:.2f} mm hangs where the program lays it on something: gap up to {:.3f} mm, above {:.3f} mm, "
+      "{} of {:.2f} mm{} hangs where the program lays it on something: gap up to {:.3f} mm, above {:.3f} mm, "
       "from {}",
-      to_mm(support), f.value, f.limit, place_text(stretch.place_W));
+      bare > 0 ? "line" : "bead", to_mm(support),
+      bare > 0 ? fmt::format(", without a bead for the first {:.2f} mm,", to_mm(bare)) : "", f.value, f.limit,
+      place_text(stretch.place_W));
   return f;
 }
 
-double longest_support(const std::vector<Place>& places, const sim::UnsupportedStretch& stretch) {
-  if (places.empty()) return 0;
-  const double each = stretch.length / static_cast<double>(places.size());
+double longest_support(const std::vector<Place>& places) {
   double now = 0, longest = 0;
   for (const Place& place : places) {
-    now = place.lies ? now + each : 0;
+    now = place.lies ? now + place.length : 0;
     longest = std::max(longest, now);
   }
   return longest;
@@ -116,7 +121,7 @@ std::vector<double> programmed_support(const ProgrammedPrint& print,
                          places[stretch][place]);
                 return kAsStrand;
               });
-  for (std::size_t i = 0; i < stretches.size(); ++i) support[i] = longest_support(places[i], stretches[i]);
+  for (std::size_t i = 0; i < stretches.size(); ++i) support[i] = longest_support(places[i]);
   return support;
 }
 
@@ -126,7 +131,8 @@ std::vector<Finding> support_findings(const ProgrammedPrint& print,
       2 * print.machine.tool.nozzle_diameter;  // by a bore from what is there before and after
   std::vector<sim::UnsupportedStretch> held;
   for (const sim::UnsupportedStretch& stretch : loose)
-    if ((sim::hangs_in_air(stretch) || sim::spans_a_groove(stretch)) && stretch.length > reach)
+    if ((sim::hangs_in_air(stretch) || sim::spans_a_groove(stretch)) &&
+        stretch.bare_before.length + stretch.length > reach)
       held.push_back(stretch);
   const std::vector<double> support = programmed_support(print, held);
   std::vector<Finding> findings;

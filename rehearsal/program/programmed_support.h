@@ -21,8 +21,9 @@ struct ProgrammedPrint {
   std::shared_ptr<const geometry::Mesh> part;  ///< as drawn; may be null
 };
 
-/// [m], for each stretch: the longest piece of its path that the program lays on part, table or what it
-/// printed before: from half of its line's layer to the stretch's `highest_gap` above it. Each place of the
+/// [m], for each stretch: the longest piece of its path, with the bare path before it,
+/// that the program lays on part, table or what it printed before: from half of its line's layer to the
+/// stretch's `highest_gap` above it. Each place of the
 /// stretch stands for the nearest one on the lines on which it was laid.
 std::vector<double> programmed_support(const ProgrammedPrint& print,
                                        const std::vector<sim::UnsupportedStretch>& stretches);

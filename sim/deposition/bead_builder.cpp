@@ -60,6 +60,7 @@ void BeadBuilder::begin(const PathPoint& at, Adhesion adhesion, int line) {
   e.bead.follows = continuous_;
   e.bead.volume = std::exchange(carried_, 0.0);
   e.worst_gap = at.gap;
+  e.bare_before = primed_;
   element_ = e;
   moment_ = 0;
   heading_.setZero();
@@ -75,6 +76,7 @@ void BeadBuilder::extrude(const PathPoint& a, const PathPoint& b, Adhesion adhes
   grow(a, b, volume, line);
   continuous_ = true;
   idle_path_ = 0;
+  primed_ = {};
 }
 
 void BeadBuilder::grow(const PathPoint& a, const PathPoint& b, double volume, int line) {
@@ -153,9 +155,17 @@ void BeadBuilder::settle_blob(double height) {
 }
 
 void BeadBuilder::pause(double path) {
+  primed_ = {};
   idle_path_ += path;
   if (idle_path_ > kPause) may_grow_ = continuous_ = false;
   if (idle_path_ > kSettled) close();
+}
+
+void BeadBuilder::prime(const BarePath& path) {
+  BarePath all = primed_.length > 0 ? primed_ : path;
+  if (primed_.length > 0) all.length += path.length;
+  pause(path.length);
+  primed_ = all;
 }
 
 void BeadBuilder::ooze(double volume) { (element_ ? element_->bead.volume : carried_) += volume; }

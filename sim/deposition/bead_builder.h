@@ -25,6 +25,7 @@ struct Element {
   Vec3 tip_from_W{0, 0, 0}, tip_to_W{0, 0, 0};
   double worst_gap = 0;                                      ///< [m], farthest from the band
   double carrier = std::numeric_limits<double>::infinity();  ///< [m], as in Below
+  BarePath bare_before;                                      ///< as in UnsupportedStretch
 };
 
 /// What an element is pressed on.
@@ -44,6 +45,8 @@ class BeadBuilder {
                const Below& below);
   /// The tip went on without extrusion: by so much path since the last element's end [m] it is another.
   void pause(double path);
+  /// As pause(); the path belongs to the element that follows at once.
+  void prime(const BarePath& path);
   /// Volume that came out while the drive did not feed: it stays at the last element.
   void ooze(double volume);
   /// Hands out what still grows.
@@ -68,6 +71,7 @@ class BeadBuilder {
   bool may_grow_ = false;    // false: extrusion paused
   bool continuous_ = false;  // nothing but extrusion since the last element's end
   double idle_path_ = 0;     // [m] since then
+  BarePath primed_;          // up to here
   double carried_ = 0;       // [m^3], oozed where no element was open
   double last_width_ = 0;
   double last_area_ = 0;  // [m^2], of the last element

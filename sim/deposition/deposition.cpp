@@ -139,7 +139,10 @@ struct DepositionObserver::State {
     const LaidBead& bead = element.bead;
     totals.laid_volume += bead.volume;
     const bool drops = is_drop(bead);
-    if (!drops) unsupported.add(element, conditions);
+    if (drops)
+      unsupported.drop(element);
+    else
+      unsupported.add(element, conditions);
     const bool falls = drops || goes_down(bead);
     fell = falls;
     if (bead.length == 0 || falls) totals.standstill_volume += bead.volume;
@@ -284,6 +287,16 @@ struct DepositionObserver::State {
     extrude(at, at, below, std::exchange(hanging, 0.0), last->line);
   }
 
+  /// In the first `share` of the interval nothing comes out.
+  void lay_nothing(const Snapshot& now, double share, const Ground& before) {
+    const Vec3 from = last->X_WT.translation();
+    const double way = share * (now.X_WT.translation() - from).norm();
+    if (now.filament > last->filament && 0.5 * (before.gap + ground.gap) > band.high + kRounding)
+      builder.prime({way, from, now.line});
+    else
+      builder.pause(way);
+  }
+
   void observe(const Snapshot& now) {
     const Vec3 heading = now.X_WT.translation() - last->X_WT.translation();
     const double step = heading.norm(), fed = now.filament - last->filament;
@@ -310,10 +323,10 @@ struct DepositionObserver::State {
     }
     if (!flows) {
       if (volume > 0) builder.ooze(volume);
-      builder.pause(step);
+      lay_nothing(now, 1, before);
       return;
     }
-    if (flow.from > 0) builder.pause(flow.from * step);  // after a retraction the nozzle fills first
+    if (flow.from > 0) lay_nothing(now, flow.from, before);
     const PathPoint a{last->time, last->X_WT.translation(), tool_axis(last->X_WT), before.gap};
     const PathPoint b{now.time, now.X_WT.translation(), tool_axis(now.X_WT), ground.gap};
     extrude_interval(a, b, before, flow.from, volume, now.line);

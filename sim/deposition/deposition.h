@@ -41,6 +41,14 @@ struct LaidBead {
   bool follows = false;             ///< goes on where the element before it ends
 };
 
+/// Path above the band on which the drive feeds and no bead comes to lie: it primes the nozzle after a
+/// retraction, or a drop falls.
+struct BarePath {
+  double length = 0;     ///< [m]
+  Vec3 from_W{0, 0, 0};  ///< of the tip
+  int line = 0;          ///< of the program
+};
+
 /// Consecutive elements that do not stick, for the same reason.
 struct UnsupportedStretch {
   Adhesion adhesion = Adhesion::unsupported;
@@ -58,6 +66,7 @@ struct UnsupportedStretch {
   bool held_at_end = false;
   bool on_printed = false;      ///< what held it last is printed material: it bridges a hollow of the print
   double width = 0;             ///< [m], of its line, or of what was laid before it
+  BarePath bare_before;         ///< right before it
   std::vector<Vec3> path_W;     ///< [m], of an unsupported one: middle of the strand as laid
   std::vector<double> laid_at;  ///< [s], one a point of path_W
   std::vector<int> lines;       ///< of the program, likewise

@@ -21,6 +21,17 @@ bool UnsupportedStretchRecorder::touches_something(const Vec3& p_W, double diame
   return workpiece_.nearest(p_W, diameter / 2 + reach_, before).has_value();
 }
 
+BarePath UnsupportedStretchRecorder::bare_path(const Element& element) const {
+  return element.bead.follows ? fallen_ : element.bare_before;
+}
+
+void UnsupportedStretchRecorder::drop(const Element& element) {
+  BarePath path = bare_path(element);
+  if (path.length == 0) path = {0, element.tip_from_W, element.bead.start_line};
+  path.length += element.bead.path;
+  fallen_ = path;
+}
+
 void UnsupportedStretchRecorder::begin(const Element& element, const Conditions& conditions) {
   const LaidBead& bead = element.bead;
   UnsupportedStretch stretch;
@@ -33,6 +44,7 @@ void UnsupportedStretchRecorder::begin(const Element& element, const Conditions&
   stretch.interface_temperature = conditions.interface_temperature;
   stretch.nozzle_temperature = conditions.nozzle_temperature;
   stretch.fan = conditions.fan;
+  stretch.bare_before = bare_path(element);
   stretch.width = row_width_ = std::max(least_width_, last_held_width_);
   covered_ = 0;
   stretch.on_printed = bead.follows && last_on_printed_;
@@ -87,6 +99,7 @@ void UnsupportedStretchRecorder::add(const Element& element, const Conditions& c
     if (!same) begin(element, conditions);
     extend(element, conditions);
   }
+  fallen_ = {};
   last_held_ = holds(bead.adhesion);
   if (last_held_) last_held_width_ = bead.width;
   last_on_printed_ = last_held_ && conditions.on_printed;

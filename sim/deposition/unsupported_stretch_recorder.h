@@ -25,10 +25,13 @@ class UnsupportedStretchRecorder {
   };
   /// Elements in order, each before it joins the workpiece.
   void add(const Element& element, const Conditions& conditions);
+  /// A drop that falls: its path is bare before the element that goes on from it.
+  void drop(const Element& element);
   void finish();
   const std::vector<UnsupportedStretch>& stretches() const { return stretches_; }
 
  private:
+  BarePath bare_path(const Element& element) const;
   void begin(const Element& element, const Conditions& conditions);
   void extend(const Element& element, const Conditions& conditions);
   void end(bool held);
@@ -40,6 +43,7 @@ class UnsupportedStretchRecorder {
   std::function<void(const UnsupportedStretch&)> done_;
   std::vector<UnsupportedStretch> stretches_;
   bool open_ = false;
+  BarePath fallen_;               // up to the next element
   bool last_held_ = false;        // the element before this one sticks
   double last_held_width_ = 0;    // [m]
   bool last_on_printed_ = false;  // to printed material

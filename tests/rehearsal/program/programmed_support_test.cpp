@@ -68,6 +68,21 @@ TEST(ProgrammedSupport, WhatHangsThereIsAnErrorBeyondTwoBores) {
   EXPECT_THAT(found[0].message, testing::HasSubstr("1.40 mm hangs where the program lays it on something"));
 }
 
+// Where a drop falls over the first 0.13 mm of a line, 0.92 mm of it are not where they should be.
+TEST(ProgrammedSupport, WhereADropFallsNothingLiesEither) {
+  const auto after = [](double bare) {
+    sim::UnsupportedStretch stretch = hanging(0.79);
+    stretch.place_W = Vec3(5e-3, 0, 0.3e-3);
+    stretch.bare_before = {from_mm(bare), stretch.place_W - Vec3(from_mm(bare), 0, 0), kAbove};
+    return stretch;
+  };
+  EXPECT_TRUE(findings(two_lines(), after(0.005)).empty());
+  const auto found = findings(two_lines(), after(0.13));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].message, testing::HasSubstr("line of 0.92 mm, without a bead for the first 0.13 mm,"));
+  EXPECT_TRUE(findings(two_lines(5.3), after(1)).empty()) << "below the bare path there was to be nothing";
+}
+
 TEST(ProgrammedSupport, ABridgeOfTheProgramMayHang) {
   EXPECT_TRUE(findings(two_lines(8), hanging(2)).empty());
   EXPECT_TRUE(findings(two_lines(0, 1.0), hanging(2)).empty());
