@@ -170,13 +170,13 @@ TEST_F(ExtendedCampaign, AWorkerComputesOnOneThread) {
 }
 
 TEST_F(ExtendedCampaign, AWorkerThatIsKilledLosesNothing) {
-  write("long", "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\n", "1-40");
+  write("long", "parameters:\n  - {key: machine.accuracy.tip_mm, values: [0.1, 0.5]}\n", "1-100");
   ASSERT_EQ(run(at("long.yaml") + " --workers 2 --out " + at("whole")).status, 0);
   const pid_t campaign = start(at("long.yaml"), "2", at("killed"));
   Random random(1, "kills");
   int kills = 0, status = 0;
   while (::waitpid(campaign, &status, WNOHANG) == 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(static_cast<int>(random.uniform(100, 400))));
+    std::this_thread::sleep_for(std::chrono::milliseconds(static_cast<int>(random.uniform(50, 150))));
     if (kills == 20) continue;
     const std::vector<pid_t> workers = children_of(campaign);
     if (workers.empty()) continue;

@@ -19,8 +19,6 @@
 namespace understudy {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Work = std::function<std::string()>;
 
