@@ -1,10 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "core/units.h"
 #include "sim/deposition/bead_section.h"
 #include "tests/sim/deposition/laying.h"
 
@@ -204,53 +202,6 @@ TEST(Deposition, AnUnretractionOnTheMoveStartsWhereTheNozzleIsFull) {
   EXPECT_NEAR(observer.beads()[0].volume, kFilamentArea * 1e-3, 1e-18);
 }
 
-// 1 mm was drawn back, 2 mm are fed over 10 mm of path: nothing comes out over the first 5 mm.
-TEST(Deposition, AStretchKnowsThePathOnWhichTheNozzleIsPrimed) {
-  const auto stretch = [](double z, int parts) {
-    Laying observer(printer());
-    observer.observe(at(0, Vec3(1e-3, 0, z), 0));
-    observer.observe(at(1, Vec3(0, 0, z), -1e-3));
-    observer.run(parts, [&](double t) { return at(1 + t, Vec3(t * 10e-3, 0, z), (2 * t - 1) * 1e-3, 7); });
-    const auto& all = observer.unsupported_stretches();
-    return all.empty() ? UnsupportedStretch{} : all[0];
-  };
-  for (const int parts : {1, 3, 40}) {
-    const UnsupportedStretch high = stretch(0.3e-3, parts);
-    EXPECT_NEAR(high.bare_before.length, 5e-3, 1e-12) << parts;
-    EXPECT_LE((high.bare_before.from_W - Vec3(0, 0, 0.3e-3)).norm(), 1e-12) << parts;
-    EXPECT_EQ(high.bare_before.line, 7);
-    EXPECT_NEAR(high.length, 5e-3, 1e-12) << parts;
-  }
-  EXPECT_EQ(stretch(0.15e-3, 3).length, 0) << "in the band";
-}
-
-TEST(Deposition, WhatIsFedInTheBandPrimesForNoStretch) {
-  Laying observer(printer());
-  observer.observe(at(0, Vec3(0, 0, 0.15e-3), 0));
-  observer.observe(at(1, Vec3(0, 0, 0.15e-3), -0.1e-3));
-  observer.observe(at(2, Vec3(2e-3, 0, 0.15e-3), -0.02e-3));  // fed in the band
-  observer.observe(at(3, Vec3(3e-3, 0, 0.15e-3), -0.02e-3));  // and not on
-  observer.observe(at(3, Vec3(3e-3, 0, 0.3e-3), -0.02e-3));
-  observer.observe(at(4, Vec3(4e-3, 0, 0.3e-3), 0.02e-3));
-  const auto& stretches = observer.unsupported_stretches();
-  ASSERT_EQ(stretches.size(), 1u);
-  EXPECT_NEAR(stretches[0].bare_before.length, 0.5e-3, 1e-12);
-}
-
-// The drive starts: what comes out over the first 0.1 mm falls as a drop, and the strand goes on from there.
-TEST(Deposition, AStretchKnowsThePathOfTheDropThatItBeginsWith) {
-  Laying observer(printer());
-  observer.observe(at(0, Vec3(0, 0, 0.3e-3), 0));
-  observer.observe(at(1, Vec3(0.1e-3, 0, 0.3e-3), 0.01e-3, 7));
-  observer.run(
-      50, [](double t) { return at(1 + t, Vec3(0.1e-3 + t * 2e-3, 0, 0.3e-3), 0.01e-3 + t * 0.05e-3, 8); });
-  const auto& stretches = observer.unsupported_stretches();
-  ASSERT_EQ(stretches.size(), 1u);
-  EXPECT_NEAR(stretches[0].bare_before.length + stretches[0].length, 2.1e-3, 1e-12);
-  EXPECT_NEAR(stretches[0].bare_before.length, 0.1e-3, 1e-12);
-  EXPECT_EQ(stretches[0].bare_before.line, 7);
-}
-
 TEST(Deposition, FilamentFedAtAStandstillGoesIntoTheElementThatFollows) {
   Laying observer(printer());
   observer.observe(at(0, Vec3(0, 0, 0.15e-3), 0));
@@ -323,99 +274,6 @@ TEST(Deposition, AStrutThatIsDrawnDownwardsIsLaidOnTheWay) {
   // The band begins 0.05 mm above the end; the drop takes the first element, a tenth of a millimetre.
   EXPECT_NEAR(length, kWay - kHang - 0.05e-3, 0.15e-3);
   EXPECT_NEAR(observer.total_volume(), kFilamentArea * kFed, 1e-9 * kFilamentArea * kFed);
-}
-
-// Round a tight curve the elements are shorter than they are wide; the line has the section's width all
-// along.
-TEST(Deposition, AShortPieceOfALineIsAsWideAsTheLine) {
-  Laying observer(printer());
-  constexpr double kRadius = 0.4e-3, kGap = 0.15e-3, kFed = 0.03;  // filament over path
-  observer.run(400, [&](double t) {
-    const double angle = t * 2e-3 / kRadius;
-    return at(t, Vec3(kRadius * std::cos(angle), kRadius * std::sin(angle), kGap), kFed * t * 2e-3);
-  });
-  const double width = kFilamentArea * kFed / kGap + (1 - std::numbers::pi / 4) * kGap;
-  const auto& beads = observer.beads();
-  ASSERT_GE(beads.size(), 6u);
-  for (std::size_t i = 0; i + 1 < beads.size(); ++i) {
-    EXPECT_LT(beads[i].length, width);
-    EXPECT_NEAR(beads[i].width, width, 0.01 * width) << i;  // chords are shorter than the arc by less
-  }
-}
-
-// A slow drive goes in steps: the tip trembles along its way, three times as far as it gets, and the line is
-// no thinner for it.
-TEST(Deposition, ATremblingTipDrawsNothingOut) {
-  Laying observer(printer());
-  constexpr double kWay = 4e-3, kGap = 0.15e-3, kFed = 0.03;
-  observer.run(4000, [&](double t) {
-    const double tremble = 3e-6 * std::sin(2 * std::numbers::pi * 1000 * t);
-    return at(t, Vec3(t * kWay + tremble, 0, kGap), kFed * t * kWay);
-  });
-  const double width = kFilamentArea * kFed / kGap + (1 - std::numbers::pi / 4) * kGap;
-  double length = 0;
-  for (const LaidBead& bead : observer.beads()) {
-    length += bead.path;
-    // An element is a tenth of a millimetre or longer, its ends 3 um to and fro; the last is what is left.
-    if (&bead != &observer.beads().back()) {
-      EXPECT_NEAR(bead.width, width, 0.06 * width);
-    }
-  }
-  EXPECT_NEAR(length, kWay, 0.01 * kWay);
-}
-
-TEST(Deposition, ABlobStaysWhereTheTipLeavesIt) {
-  Laying observer(printer());
-  observer.observe(at(0, Vec3(0, 0, 0.15e-3), 0));
-  observer.observe(at(1, Vec3(0, 0, 0.15e-3), 1e-4));
-  observer.observe(at(2, Vec3(10e-3, 0, 0.15e-3), 1e-4));
-  observer.run(10, [](double t) { return at(2 + t, Vec3(10e-3 + t * 1e-3, 0, 0.15e-3), 1e-4 + t * 1e-4); });
-  const LaidBead& blob = observer.beads().front();
-  EXPECT_EQ(blob.length, 0);
-  EXPECT_NEAR(observer.summary().standstill_volume, kFilamentArea * 1e-4, 1e-15);
-  EXPECT_NEAR(blob.to_W.x(), 0, 1e-15);
-  EXPECT_NEAR(std::numbers::pi / 4 * blob.width * blob.width * 0.15e-3, kFilamentArea * 1e-4, 1e-15);
-  EXPECT_NEAR(observer.summary().length, 1e-3, 1e-12);
-}
-
-// A strut begins on what carries it: the first of it comes out slowly (the extruder's lag) while the tip, not
-// quite straight, leaves. 2e-4 mm^3 in a gap of 0.175 mm are a disc of 38 um; a line of a micrometre with
-// that volume would be 1.1 mm wide.
-TEST(Deposition, ATipThatRisesLeavesADiscOfItsVolumeAndNoWideLine) {
-  Laying observer(printer());
-  constexpr double kFirst = 2e-4 * 1e-9, kGap = 0.175e-3;
-  observer.observe(at(0, Vec3(0, 0, 0.15e-3), 0));
-  observer.observe(at(0.01, Vec3(1e-6, 0, 0.2e-3), kFirst / kFilamentArea));
-  for (int i = 1; i <= 100; ++i)
-    observer.observe(at(0.01 + 0.01 * i, Vec3(1e-6, 0, 0.2e-3 + i * 0.02e-3),
-                        (kFirst + i * 0.02e-3 * 0.18e-6) / kFilamentArea));
-  const LaidBead& first = observer.beads().front();
-  EXPECT_EQ(first.adhesion, Adhesion::sticks);
-  EXPECT_NEAR(first.width, std::sqrt(4 * kFirst / (std::numbers::pi * kGap)), 1e-6);
-}
-
-// It may begin pressed into the strand that carries it, and rise through the band after that: a strut of
-// 0.48 mm from 0.03 mm over another one, leaning by 5 degrees. A disc of what comes out up to the band's end,
-// 0.2 mm of it in the gap of a bead, is less than 0.6 mm wide.
-TEST(Deposition, AStrutThatRisesFromAStrandStaysThin) {
-  Laying observer(printer());
-  const double area = std::numbers::pi / 4 * 0.48e-3 * 0.48e-3, fed = area / kFilamentArea;
-  constexpr double kTop = 5e-3, kUp = 2e-3, kFirst = 10e-3;
-  observer.run(1000, [&](double t) { return at(t, Vec3((t - 0.5) * kFirst, 0, kTop), t * kFirst * fed); });
-  observer.observe(at(1.1, Vec3(5e-3, 0, 10e-3), kFirst * fed));
-  observer.observe(at(1.2, Vec3(0, 0, kTop + 0.03e-3), kFirst * fed));
-  observer.run(1000, [&](double t) {
-    return at(1.2 + t, Vec3(0, t * kUp * std::tan(5 * kDegree), kTop + 0.03e-3 + t * kUp),
-              (kFirst + t * kUp) * fed);
-  });
-  int pressed = 0;
-  for (const LaidBead& bead : observer.beads()) {
-    if (bead.start_time < 1.2 || bead.adhesion == Adhesion::unsupported) continue;
-    ++pressed;
-    EXPECT_LT(bead.height, 0.6e-3);
-    EXPECT_LT(bead.width, 0.6e-3);
-  }
-  EXPECT_GE(pressed, 2);
 }
 
 // Over the edge of a plate, 10 mm above the table, the gap jumps: the strand hangs, and no bead runs down.
