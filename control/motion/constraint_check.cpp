@@ -4,12 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
-#include <tuple>
 #include <utility>
 
-#include "control/motion/motion_planner.h"
 #include "control/motion/path_kinematics.h"
+#include "control/motion/timed_plan.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 
@@ -26,18 +24,9 @@ namespace {
 constexpr double kFeedLeft =
     0.5;  // of the programmed feed; with less, the print is not the one that was asked for
 
-// Where on the path something was found: orders findings and finds their planned time.
-struct Location {
-  std::size_t step = 0;
-  double fraction = 0;
-  bool operator<=(const Location& o) const {
-    return std::tie(step, fraction) <= std::tie(o.step, o.fraction);
-  }
-};
-
 struct Found {
   ConstraintFinding finding;
-  Location at;
+  PathLocation at;
 };
 
 // Moves one after the other in which one part breaks one limit.
@@ -58,7 +47,7 @@ class Checker {
         X_BW_(machine.X_WB.inverse()),
         limits_(motion_limits(machine)),
         path_(*mechanism_, machine.X_WB),
-        planner_(*mechanism_, machine.X_WB, limits_, {machine.X_WB * machine.X_BT_home}, PoseCheck::solvable),
+        plan_(machine, limits_),
         X_WT_(machine.X_WB * machine.X_BT_home) {
     report_.axis_min.fill(std::numeric_limits<double>::infinity());
     report_.axis_max.fill(-std::numeric_limits<double>::infinity());
@@ -69,12 +58,12 @@ class Checker {
     ++moves_;  // home is no line of the program
     for (const Step& step : program_.steps) {
       if (step.kind == StepKind::end) break;
+      stop_if_interrupted();
       walk(step);
-      plan(step);
-      ++pushed_;
+      if (plannable_) plan_.add(step);
+      ++walked_;
     }
-    planner_.finish();
-    drain();
+    plan_.finish();
     return finish();
   }
 
@@ -92,7 +81,7 @@ class Checker {
     for (int k = 1; k <= parts; ++k) {
       const kinematics::AxisVector before = axes_;
       const double fraction = static_cast<double>(k) / parts, s = fraction * segment.length;
-      const Location at{pushed_, fraction};
+      const PathLocation at{walked_, fraction};
       at_possible_ = note_pose(path_.pose_at(segment, s), path_.axes_at(segment, s, axes_), step.line, at);
       if (!at_possible_) continue;
       if (!segment.rotary) note_leap(before, step.line, at);
@@ -101,7 +90,7 @@ class Checker {
     X_WT_ = segment.X_WT_end;
   }
 
-  bool note_pose(const Pose& X_WT, SolveStatus status, int line, const Location& at) {
+  bool note_pose(const Pose& X_WT, SolveStatus status, int line, const PathLocation& at) {
     const Pose X_BT = X_BW_ * X_WT;
     violations_.clear();
     mechanism_->check(X_BT,
@@ -122,7 +111,7 @@ class Checker {
   }
 
   /// No path through here: the planner would refuse it.
-  void note_leap(const kinematics::AxisVector& before, int line, const Location& at) {
+  void note_leap(const kinematics::AxisVector& before, int line, const PathLocation& at) {
     const auto [axis, turn] = path_.largest_turn(before, axes_);
     if (turn <= kMaxAxisJump) return;
     note({{LimitKind::singularity, "axis " + mechanism_->axis_name(axis), turn, kMaxAxisJump, "rad"}, line},
@@ -130,7 +119,7 @@ class Checker {
     refuse_step();
   }
 
-  void note_speed(const PathSegment& segment, double s, const Location& at) {
+  void note_speed(const PathSegment& segment, double s, const PathLocation& at) {
     if (!std::isfinite(segment.speed)) return;  // a spin under a tip at rest: no feed asks for any speed
     ChannelArray slope{};
     if (path_.evaluate(segment, s, axes_, slope) != SolveStatus::ok) return;
@@ -148,14 +137,14 @@ class Checker {
   }
 
   // The worst of a kind and part stays, over lines that follow each other.
-  void note(ConstraintFinding finding, const Location& at) {
+  void note(ConstraintFinding finding, const PathLocation& at) {
     finding.last_line = finding.line;
     Run& run = runs_[{finding.violation.kind, finding.violation.part}];
     const bool goes_on = run.begun && moves_ <= run.move + 1;
     if (!goes_on) {
       run.found = found_.size();
       found_.push_back({finding, at});
-      untimed_.insert(run.found);
+      plan_.find_time(run.found, at);
     }
     run.begun = true;
     run.move = moves_;
@@ -164,59 +153,36 @@ class Checker {
     if (!(excess(finding.violation) > excess(known.finding.violation))) return;
     finding.line = known.finding.line;
     known = {std::move(finding), at};
-    untimed_.insert(run.found);
+    plan_.find_time(run.found, at);
   }
 
   /// Nothing is planned from here on.
   void refuse_step() {
     plannable_ = false;
     auto& steps = report_.impossible;
-    if (pushed_ < program_.steps.size() && (steps.empty() || steps.back() != pushed_))
-      steps.push_back(pushed_);
+    if (walked_ < program_.steps.size() && (steps.empty() || steps.back() != walked_))
+      steps.push_back(walked_);
   }
 
-  void plan(const Step& step) {
-    stop_if_interrupted();
-    if (!plannable_) return;
-    try {
-      planner_.push(step);
-    } catch (const InputError&) {
-      // Only a way past a singular pose gets here: everything else was noted and is not planned.
-      note({{LimitKind::singularity, "the way past a singular pose", 0, 0, ""}, step.line}, {pushed_, 0});
-      refuse_step();
-      return;
-    }
-    // The machine waits here until the outputs are set.
-    if (step.kind == StepKind::temperature || step.kind == StepKind::fan) planner_.finish();
-    drain();
-  }
-
-  void drain() {
-    PlannedPoint point;
-    while (planner_.next(point)) {
-      const double dt = limits_.cycle_time;
-      for (std::size_t i = 0; i < axis_count(); ++i) {
-        const double velocity = point.setpoint.velocity[i];
-        report_.velocity_max[i] = std::max(report_.velocity_max[i], std::abs(velocity));
-        report_.acceleration_max[i] =
-            std::max(report_.acceleration_max[i], std::abs(velocity - velocity_[i]) / dt);
-        velocity_[i] = velocity;
-      }
-      passed({point.step, point.fraction}, point.setpoint.time);
-    }
-  }
-
-  void passed(const Location& here, double time) {
-    report_.duration = time;
-    std::erase_if(untimed_, [&](std::size_t k) {
-      if (found_[k].at <= here) found_[k].finding.time = time;
-      return found_[k].at <= here;
-    });
+  // Everything else that the planner refuses was noted and is not planned.
+  void note_refused_by_plan() {
+    const std::size_t step = *plan_.refused();
+    note({{LimitKind::singularity, "the way past a singular pose", 0, 0, ""}, program_.steps[step].line},
+         {step, 0});
+    auto& steps = report_.impossible;
+    const auto at = std::lower_bound(steps.begin(), steps.end(), step);
+    if (at == steps.end() || *at != step) steps.insert(at, step);
   }
 
   ConstraintReport finish() {
-    for (const std::size_t k : untimed_) found_[k].finding.time = report_.duration;
-    for (Found& found : found_) report_.findings.push_back(std::move(found.finding));
+    if (plan_.refused()) note_refused_by_plan();
+    report_.duration = plan_.duration();
+    report_.velocity_max = plan_.velocity_max();
+    report_.acceleration_max = plan_.acceleration_max();
+    for (std::size_t k = 0; k < found_.size(); ++k) {
+      found_[k].finding.time = plan_.time_of(k);
+      report_.findings.push_back(std::move(found_[k].finding));
+    }
     std::stable_sort(report_.findings.begin(), report_.findings.end(),
                      [](const auto& a, const auto& b) { return a.line < b.line; });
     for (std::size_t i = axis_count(); i < report_.axis_min.size(); ++i)
@@ -232,15 +198,14 @@ class Checker {
   Pose X_BW_;
   MotionLimits limits_;
   PathKinematics path_;
-  MotionPlanner planner_;
+  TimedPlan plan_;
   Pose X_WT_;
   bool plannable_ = true;
   bool at_possible_ = true;  // where the step before ended
-  std::size_t pushed_ = 0;
-  kinematics::AxisVector axes_{}, velocity_{};
+  std::size_t walked_ = 0;
+  kinematics::AxisVector axes_{};
   std::vector<LimitViolation> violations_;
   std::vector<Found> found_;
-  std::set<std::size_t> untimed_;  // of found_, not passed by the plan yet
   std::map<std::pair<LimitKind, std::string>, Run> runs_;
   std::size_t moves_ = 0;
   ConstraintReport report_;

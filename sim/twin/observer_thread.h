@@ -2,13 +2,9 @@
 // In a process that may have one thread alone (core/thread_limit.h) they are called on that.
 #pragma once
 
-#include <condition_variable>
-#include <deque>
-#include <mutex>
-#include <string>
-#include <thread>
 #include <vector>
 
+#include "core/batch_thread.h"
 #include "sim/observer.h"
 
 namespace understudy::sim {
@@ -19,29 +15,14 @@ class ObserverThread : public Observer {
  public:
   /// The observers must outlive this and be called by nobody else before drain() has returned.
   explicit ObserverThread(std::vector<Observer*> observers);
-  ~ObserverThread() override;
 
-  void observe(const Snapshot& snapshot) override;
+  void observe(const Snapshot& snapshot) override { thread_.push(snapshot); }
   /// Waits until all snapshots so far have been seen. After an observer has thrown, this and observe() throw
   /// MachineError with its message; nothing is observed any more.
-  void drain();
+  void drain() { thread_.drain(); }
 
  private:
-  using Batch = std::vector<Snapshot>;
-  std::string show(const Batch& batch) const;
-  void hand_over();
-  void work();
-  void throw_failure() const;
-
-  std::vector<Observer*> observers_;
-  Batch filling_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Batch> waiting_;
-  std::vector<Batch> spare_;
-  bool busy_ = false, done_ = false;
-  std::string failure_;
-  std::thread thread_;
+  BatchThread<Snapshot> thread_;
 };
 
 }  // namespace understudy::sim
