@@ -74,6 +74,24 @@ bool is_hidden(const Extent& extent, const FarthestSeen& seen) {
 
 }  // namespace
 
+std::vector<std::uint32_t> without_backs(const PictureTriangles& triangles, const CornerRange& closed,
+                                         const Eigen::Vector4f& from) {
+  const auto place = [&](std::size_t corner) {
+    return Eigen::Vector3f::Map(&triangles.vertices[kVertexFloats * triangles.corners[corner]]);
+  };
+  const auto turns_away = [&](std::size_t i) {
+    const Eigen::Vector3f a = place(i), normal = (place(i + 1) - a).cross(place(i + 2) - a);
+    return normal.dot(from.head<3>() - from.w() * a) < 0;
+  };
+  std::vector<std::uint32_t> kept;
+  kept.reserve(triangles.corners.size());
+  for (std::size_t i = 0; i + 3 <= triangles.corners.size(); i += 3) {
+    if (i >= closed.begin && i < closed.end && turns_away(i)) continue;
+    kept.insert(kept.end(), &triangles.corners[i], &triangles.corners[i] + 3);
+  }
+  return kept;
+}
+
 std::vector<std::uint32_t> without_hidden(const PictureTriangles& triangles, const Eigen::Matrix4f& clip,
                                           const FarthestSeen& seen) {
   const Extent picture{0, static_cast<float>(seen.width), 0, static_cast<float>(seen.height), 0};

@@ -10,6 +10,12 @@
 
 namespace understudy::renderer {
 
+/// Corners of the triangles, in order, without those of the closed surfaces that turn their inside to the
+/// eye or the light: others of the same surface lie before them. `from` is homogeneous, in the vertices'
+/// frame: a place with 1 or a direction towards it with 0.
+std::vector<std::uint32_t> without_backs(const PictureTriangles& triangles, const CornerRange& closed,
+                                         const Eigen::Vector4f& from);
+
 /// What a pixel shows at its farthest sample, as depth buffers count: 0 near, 1 far. Bottom row first.
 struct FarthestSeen {
   int width = 0, height = 0;  ///< [px]

@@ -139,7 +139,7 @@ void put_ground(PictureGeometry& g, double z) {
 
 // The sky is four dozen lights: a fine-grained scene, like a print of many beads, shades itself softly
 // whether all of its grains are counted or one in some.
-constexpr std::size_t kCastersMost = 40'000;  // triangles
+constexpr std::size_t kCastersMost = 20'000;  // triangles
 
 /// `ends`: of each shape in the solids' corners.
 std::vector<std::uint32_t> thinned_casters(const std::vector<std::uint32_t>& corners,
@@ -175,10 +175,12 @@ PictureGeometry picture_geometry(const PictureScene& scene) {
     for (const auto& [a, b] : surface.creases)
       put_crease(g.creases, a, b, scene.eye_W, metres_per_pixel_at_1m, dark);
   }
+  g.closed.begin = g.solids.corners.size();
   for (const SmoothSurface& surface : scene.surfaces) {
     put_surface(g.solids, surface);
     shape_ends.push_back(g.solids.corners.size());
   }
+  g.closed.end = g.solids.corners.size();
   for (const Polyline& line : scene.polylines) put_tube(g.solids, line);
   shape_ends.push_back(g.solids.corners.size());
   if (g.solids.corners.empty()) {

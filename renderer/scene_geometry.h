@@ -18,11 +18,17 @@ struct PictureTriangles {
   std::vector<std::uint32_t> corners;  ///< three vertices a triangle
 };
 
+/// Of PictureTriangles::corners, one after the other.
+struct CornerRange {
+  std::size_t begin = 0, end = 0;
+};
+
 struct PictureGeometry {
   Vec3 centre{0, 0, 0};                ///< in W [m]
   double radius = 0;                   ///< [m], of a sphere that holds everything but the ground
   double ground_fade = 0;              ///< [m]
   PictureTriangles solids;             ///< cast shadows
+  CornerRange closed;                  ///< of the solids, what nobody sees the inside of
   std::vector<std::uint32_t> casters;  ///< of those, what hides the sky
   PictureTriangles ground;             ///< receives them
   PictureTriangles creases;            ///< thin, towards the eye

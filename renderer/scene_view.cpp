@@ -95,11 +95,17 @@ Picture render_picture(PictureScene scene) {
   GlContext context;
   const GlFunctions& gl = context.gl();
   GlSurface solids(gl, geometry.solids);
+  const auto draw_next_without_backs = [&](const Vec3& from, float is_place) {
+    Eigen::Vector4f homogeneous;
+    homogeneous << from.cast<float>(), is_place;
+    solids.triangles.fill(without_backs(geometry.solids, geometry.closed, homogeneous));
+  };
   const GlSurface ground(gl, geometry.ground), creases(gl, geometry.creases);
   std::optional<ShadowMaps> shadow_maps(std::in_place, gl);
   {
     GlTriangles casters(gl);
     casters.fill(std::exchange(geometry.casters, {}));
+    draw_next_without_backs(lights.lamp, 0);
     shadow_maps->draw(gl, lights, solids, casters);
   }
 
@@ -110,6 +116,7 @@ Picture render_picture(PictureScene scene) {
   const float behind[] = {encoded(b[0]), encoded(b[1]), encoded(b[2]), 1};
   gl.ClearBufferfv(GL_COLOR, 0, behind);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
+  draw_next_without_backs(scene.eye_W - geometry.centre, 1);
   solids.triangles.fill(
       without_hidden(geometry.solids, eye_clip(scene, geometry), draw_farthest(gl, drawing, target)));
   geometry.solids = {};

@@ -18,8 +18,8 @@ struct ColouredShape {
   bool outlined = true;           ///< its sharp edges are drawn
 };
 
-/// A surface that says its normals itself, such as that of many thousands of beads: nothing is looked for in
-/// it and nothing smoothed.
+/// A closed surface that says its normals itself, such as that of many thousands of beads: nothing is looked
+/// for in it and nothing smoothed.
 struct SmoothSurface {
   std::vector<Vec3> vertices;                 ///< in F [m]
   std::vector<Vec3> normals;                  ///< in F, unit, one a vertex

@@ -67,5 +67,25 @@ TEST(HiddenTriangles, TrianglesMayShareCorners) {
   EXPECT_EQ(without_hidden(both, Eigen::Matrix4f::Identity(), wall()), both.corners);
 }
 
+// Counter-clockwise as +z sees them: 0 1 2 turns its outside there, 2 1 0 its inside.
+TEST(HiddenTriangles, InsidesOfClosedSurfacesAreLeftOut) {
+  PictureTriangles both = triangle(0.3f, -0.5f, 0.2f, 0.4f);
+  both.corners = {0, 1, 2, 2, 1, 0};
+  const CornerRange all{0, 6};
+  const std::vector<std::uint32_t> outside{0, 1, 2}, inside{2, 1, 0};
+  EXPECT_EQ(without_backs(both, all, {0, 0, 1, 0}), outside);     // light from above
+  EXPECT_EQ(without_backs(both, all, {0, 0, -1, 0}), inside);     // and from below
+  EXPECT_EQ(without_backs(both, all, {5, 0, 0.5f, 1}), outside);  // an eye above the plane of z = 0.4
+  EXPECT_EQ(without_backs(both, all, {5, 0, 0.3f, 1}), inside);
+}
+
+TEST(HiddenTriangles, OfSurfacesThatMayBeOpenBothSidesStay) {
+  PictureTriangles both = triangle(0.3f, -0.5f, 0.2f, 0.4f);
+  both.corners = {0, 1, 2, 2, 1, 0};
+  EXPECT_EQ(without_backs(both, {0, 3}, {0, 0, 1, 0}), both.corners);
+  EXPECT_EQ(without_backs(both, {3, 6}, {0, 0, 1, 0}), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(without_backs(both, {}, {0, 0, 1, 0}), both.corners);
+}
+
 }  // namespace
 }  // namespace understudy::renderer
