@@ -175,9 +175,9 @@ struct DepositionObserver::State {
     }
   }
 
-  Ground look(const Pose& X_WT, double time, double fan, double temperature) const {
+  Ground look(const Pose& X_WT, double time, double fan, double temperature, double reach = kGapReach) const {
     Ground seen;
-    const auto hit = workpiece->below(X_WT, fresh_from, ground.bead);
+    const auto hit = workpiece->below(X_WT, fresh_from, ground.bead, reach);
     if (!hit) return seen;
     seen.gap = hit->distance;
     seen.printed = hit->body == Workpiece::Body::bead;
@@ -196,13 +196,14 @@ struct DepositionObserver::State {
   // Nothing in reach below the middle, but perhaps below half of the width.
   Ground look_beside(const Snapshot& s, const Vec3& heading) const {
     const Vec3 axis = tool_axis(s.X_WT), across = axis.cross(heading);
+    const double deepest = band.high + 10 * kRounding;  // with what ties
     Ground best;
     if (across.norm() < 1e-6 * heading.norm() || heading.norm() == 0) return best;
     const double reach = kSide * std::max(builder.last_width(), nozzle_flat / 2);
     for (const double side : {reach, -reach}) {
       Pose X_WT = s.X_WT;
       X_WT.translation() += side * across.normalized();
-      const Ground seen = look(X_WT, s.time, s.fan, s.nozzle_temperature);
+      const Ground seen = look(X_WT, s.time, s.fan, s.nozzle_temperature, deepest);
       if (seen.printed && seen.gap <= band.high + kRounding && seen.gap > -band.soft_depth &&
           seen.gap < best.gap)
         best = seen;

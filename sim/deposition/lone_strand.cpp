@@ -1,5 +1,6 @@
 #include "sim/deposition/lone_strand.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace understudy::sim {
@@ -24,8 +25,9 @@ double carrier_width(const Workpiece& workpiece, const Pose& X_WT, const Workpie
   for (const double side : {1.0, -1.0}) {
     Pose beside = X_WT;
     beside.translation() += side * step;
-    const auto found = workpiece.below(beside, before);
-    if (!found || found->distance > below.distance + kLevel * width) return width;
+    const double lowest = below.distance + kLevel * width;
+    const auto found = workpiece.below(beside, before, BeadIndex::kAll, std::max(0.0, lowest));
+    if (!found || found->distance > lowest) return width;
   }
   return kNoLimit;
 }

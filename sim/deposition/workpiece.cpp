@@ -93,7 +93,8 @@ std::optional<Hit> Workpiece::top_of_heap(const Vec3& tip_W, const Vec3& axis_W,
   }
 }
 
-std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before, std::size_t likely) const {
+std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before, std::size_t likely,
+                                    double reach) const {
   require_finite(X_WT.matrix().allFinite());
   const Vec3 tip = X_WT.translation(), axis = tool_axis(X_WT);
   std::optional<Hit> best;
@@ -107,8 +108,8 @@ std::optional<Hit> Workpiece::below(const Pose& X_WT, std::size_t before, std::s
   bool inside = best && best->distance < 0;
   if (!inside) {
     // Beads last: they are many, and what lies below the others is of no interest.
-    const double reach = best ? std::min(kGapReach, best->distance + kBeyondTies) : kGapReach;
-    const auto hit = beads_.ray_hit(tip, -axis, reach, before, likely);
+    const double deepest = best ? std::min(reach, best->distance + kBeyondTies) : reach;
+    const auto hit = beads_.ray_hit(tip, -axis, deepest, before, likely);
     if (hit && (!best || hit->distance <= best->distance)) best = of_bead(*hit);
     inside = hit && hit->distance == 0;
   }

@@ -42,9 +42,10 @@ class Workpiece {
   /// What lies below the tip along the tool axis: `distance` is the true gap, negative where the tip is
   /// inside: then it is the distance up through everything that lies on one another there, to the top of the
   /// heap. Nothing within kGapReach: none. A roof above the tip is no surface to print on. An open insert is
-  /// met from its outside only. `likely`: a bead that may lie there, see BeadIndex.
+  /// met from its outside only. `likely`: a bead that may lie there, see BeadIndex. Beads deeper than `reach`
+  /// are not looked for.
   std::optional<Hit> below(const Pose& X_WT, std::size_t before = BeadIndex::kAll,
-                           std::size_t likely = BeadIndex::kAll) const;
+                           std::size_t likely = BeadIndex::kAll, double reach = kGapReach) const;
 
  private:
   std::optional<Hit> top_of_heap(const Vec3& tip_W, const Vec3& axis_W, std::size_t before) const;

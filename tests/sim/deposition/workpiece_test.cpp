@@ -72,6 +72,18 @@ TEST(Workpiece, GapOverAPrintedLayerIsToItsTop) {
   EXPECT_NEAR(gap(work, over(0, 0.15e-3, 1e-3)), 0.9e-3 - 0.1e-3 * std::sqrt(0.75), kFloat);
 }
 
+TEST(Workpiece, BeadsDeeperThanTheReachAreNotLookedFor) {
+  Workpiece work(nullptr);
+  work.add(along_x(0.1e-3));  // top at 0.2 mm, on the table
+  const auto gap_within = [&](double reach, std::size_t likely) {
+    return work.below(over(0, 0, 0.5e-3), BeadIndex::kAll, likely, reach).value().distance;
+  };
+  for (const std::size_t likely : {BeadIndex::kAll, std::size_t{0}}) {
+    EXPECT_NEAR(gap_within(0.31e-3, likely), 0.3e-3, kFloat);
+    EXPECT_NEAR(gap_within(0.29e-3, likely), 0.5e-3, kFloat);
+  }
+}
+
 TEST(Workpiece, GapOverATiltedLayerIsAlongTheToolAxis) {
   // Layers on a slope of 40 degrees about y, as a tilting table prints them.
   const double slope = from_deg(40);
