@@ -15,14 +15,19 @@ constexpr int kStruts = 6;
 constexpr const char* kHexapod = "hexapod";  ///< word of `mechanism:` in a machine file
 template <typename T>
 using PerStrut = std::array<T, kStruts>;
+/// The same for every strut.
+template <typename T>
+PerStrut<T> on_every_strut(const T& value) {
+  return {value, value, value, value, value, value};
+}
 using StrutLengths = PerStrut<double>;  ///< [m]
 
 /// The 42 parameters b_i, a_i, l_i0 and the deviation `dev`. Immutable in use; [m].
 struct HexapodGeometry {
-  PerStrut<Vec3> base_joint;      ///< b_i, p_BBi
-  PerStrut<Vec3> platform_joint;  ///< a_i, p_TPi: from the nozzle tip
-  StrutLengths length_offset{};   ///< l_i0: strut length at drive displacement 0
-  double deviation = 0;           ///< dev: distance of the screw's axis from the base joint
+  PerStrut<Vec3> base_joint = on_every_strut<Vec3>(Vec3::Zero());      ///< b_i, p_BBi
+  PerStrut<Vec3> platform_joint = on_every_strut<Vec3>(Vec3::Zero());  ///< a_i, p_TPi: from the nozzle tip
+  StrutLengths length_offset{};  ///< l_i0: strut length at drive displacement 0
+  double deviation = 0;          ///< dev: distance of the screw's axis from the base joint
 };
 
 /// What the joints and struts allow. Angles by the definitions of docs/reference.md#joint-angles.
