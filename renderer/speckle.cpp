@@ -1,6 +1,7 @@
 #include "renderer/speckle.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -76,11 +77,13 @@ std::uint64_t cell_key(const SpeckleOptics& o, Owner owner, const Vec3& p, doubl
   return key;
 }
 
+bool is_lit(const Sample& sample) { return sample.laser > kDark; }
+
 std::optional<Region> lit_samples(const SampleGrid& grid) {
   int left = grid.x + grid.width, right = grid.x - 1, top = grid.y + grid.height, bottom = grid.y - 1;
   for (int j = grid.y; j < grid.y + grid.height; ++j) {
     for (int i = grid.x; i < grid.x + grid.width; ++i) {
-      if (!(grid.at(i, j).laser > kDark)) continue;
+      if (!is_lit(grid.at(i, j))) continue;
       left = std::min(left, i), right = std::max(right, i);
       top = std::min(top, j), bottom = std::max(bottom, j);
     }
@@ -143,7 +146,22 @@ std::vector<Scatterer> scatterers(const SampleGrid& grid, const Lens& lens, cons
 struct Field {
   Region points;
   std::vector<std::complex<double>> values;
+  std::vector<std::array<int, 2>> wanted;  // of each row: the first and the last
 };
+
+Field field_of(const SampleGrid& grid, const Region& lit, int fine) {
+  Field field{{lit.x * fine, lit.y * fine, lit.width * fine, lit.height * fine}, {}, {}};
+  field.values.resize(static_cast<std::size_t>(field.points.width) *
+                      static_cast<std::size_t>(field.points.height));
+  for (int j = lit.y; j < lit.y + lit.height; ++j) {
+    int first = lit.x + lit.width, last = lit.x - 1;
+    for (int i = lit.x; i < lit.x + lit.width; ++i)
+      if (is_lit(grid.at(i, j))) first = std::min(first, i), last = i;
+    field.wanted.insert(field.wanted.end(), static_cast<std::size_t>(fine),
+                        {first * fine, (last + 1) * fine - 1});
+  }
+  return field;
+}
 
 void add(Field& field, const Scatterer& s, const AmplitudeSpread& spread, const SpeckleOptics& o, int fine,
          int reach_limit) {
@@ -158,7 +176,8 @@ void add(Field& field, const Scatterer& s, const AmplitudeSpread& spread, const 
   for (int b = std::max(cy - reach, r.y); b <= std::min(cy + reach, r.y + r.height - 1); ++b) {
     const double half_row = std::sqrt(std::max(0.0, radius * radius - (b - y) * (b - y)));  // of a round spot
     const int half = std::min(static_cast<int>(half_row) + 2, reach);
-    const int left = std::max(cx - half, r.x), right = std::min(cx + half, r.x + r.width - 1);
+    const auto [first, last] = field.wanted[static_cast<std::size_t>(b - r.y)];
+    const int left = std::max(cx - half, first), right = std::min(cx + half, last);
     std::complex<double>* row =
         &field.values[static_cast<std::size_t>(b - r.y) * static_cast<std::size_t>(r.width)];
     for (int a = left; a <= right; ++a) {
@@ -182,10 +201,7 @@ void apply_speckle(SampleGrid& grid, const Lens& lens, const SpeckleOptics& opti
   const int fine = field_points_per_sample(optics);
   const int margin = speckle_margin(optics);
   const Region area = grown(*lit, kSamplesPerPixel * margin, grid);
-  Field field{{lit->x * fine, lit->y * fine, lit->width * fine, lit->height * fine}, {}};
-  field.values.resize(static_cast<std::size_t>(field.points.width) *
-                      static_cast<std::size_t>(field.points.height));
-
+  Field field = field_of(grid, *lit, fine);
   const AmplitudeSpread spread(optics);
   const int reach_limit = kSamplesPerPixel * fine * (margin - 2);
   for (const Scatterer& s : scatterers(grid, lens, optics, area, fine)) {
@@ -195,7 +211,7 @@ void apply_speckle(SampleGrid& grid, const Lens& lens, const SpeckleOptics& opti
   for (int j = lit->y; j < lit->y + lit->height; ++j) {
     for (int i = lit->x; i < lit->x + lit->width; ++i) {
       Sample& sample = grid.at(i, j);
-      if (!(sample.laser > kDark)) continue;
+      if (!is_lit(sample)) continue;
       double intensity = 0;
       for (int b = 0; b < fine; ++b) {
         for (int a = 0; a < fine; ++a) {

@@ -12,6 +12,8 @@
 namespace understudy {
 namespace {
 
+// [bytes]: less than a run of a campaign leaves would be taken again by the next, page by page.
+constexpr std::size_t kWorthReturning = 48'000'000;
 constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
 
 /// "MemAvailable:   12345 kB"
@@ -55,6 +57,8 @@ std::uint64_t mapped_memory() {
   return pages == kUnknown ? 0 : pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-void return_free_memory() { ::malloc_trim(0); }
+void return_free_memory() {
+  if (::mallinfo2().fordblks >= kWorthReturning) ::malloc_trim(0);
+}
 
 }  // namespace understudy
