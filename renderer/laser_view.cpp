@@ -97,6 +97,7 @@ struct LaserView::State {
   // Meshes are large and stay the same from frame to frame; holding them keeps their addresses theirs.
   std::map<std::shared_ptr<const geometry::Mesh>, Surface> meshes;
   std::vector<float> view_data, shadow_data;
+  SampleGrid seen;  // of the newest frame; megabytes, which every frame would ask the system for
 
   const Surface& surface_of(const std::shared_ptr<const geometry::Mesh>& mesh) {
     if (meshes.size() > 8) meshes.clear();
@@ -110,7 +111,7 @@ struct LaserView::State {
   void add(const Surface& surface, const Pose& X_CF, Owner owner, const LaserScene& scene,
            const Region& region);
   void draw_blockers(const LaserScene& scene);
-  SampleGrid draw_view(const LaserScene& scene, const Region& samples);
+  void draw_view(const LaserScene& scene, const Region& samples);
 };
 
 void LaserView::State::prepare(const LaserScene& scene, int margin) {
@@ -217,7 +218,8 @@ void LaserView::State::draw_blockers(const LaserScene& scene) {
   shadow_vertices.draw(GL_TRIANGLES);
 }
 
-SampleGrid LaserView::State::draw_view(const LaserScene& scene, const Region& samples) {
+/// Into `seen`.
+void LaserView::State::draw_view(const LaserScene& scene, const Region& samples) {
   const GlFunctions& gl = context.gl();
   const int border_x = (target->width() - kSamplesPerPixel * scene.camera.width) / 2;
   const int border_y = (target->height() - kSamplesPerPixel * scene.camera.height) / 2;
@@ -254,13 +256,14 @@ SampleGrid LaserView::State::draw_view(const LaserScene& scene, const Region& sa
   view_vertices.fill(view_data);
   view_vertices.draw(GL_TRIANGLES);
 
-  SampleGrid grid{samples.x, samples.y, samples.width, samples.height, {}};
-  grid.samples.resize(static_cast<std::size_t>(samples.width) * static_cast<std::size_t>(samples.height));
+  seen.x = samples.x, seen.y = samples.y, seen.width = samples.width, seen.height = samples.height;
+  const std::size_t count =
+      static_cast<std::size_t>(samples.width) * static_cast<std::size_t>(samples.height);
+  if (seen.samples.size() < count) seen.samples.resize(count);
   gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
   gl.ReadPixels(samples.x + border_x, samples.y + border_y, samples.width, samples.height, GL_RGBA, GL_FLOAT,
-                grid.samples.data());
+                seen.samples.data());
   context.check("the laser view");
-  return grid;
 }
 
 struct LaserView::Kept {
@@ -319,12 +322,14 @@ Image LaserView::render(const LaserScene& scene, const Region& region) {
                            ideal.width / kSamplesPerPixel + 3, ideal.height / kSamplesPerPixel + 3};
   s.gather(scene, seen_pixels);
   s.draw_blockers(scene);
-  SampleGrid grid = s.draw_view(scene, ideal);
+  s.draw_view(scene, ideal);
+  SampleGrid distorted;
   if (s.lens->distorts()) {
-    grid = through_lens(grid, *s.lens,
-                        {kSamplesPerPixel * around.x, kSamplesPerPixel * around.y,
-                         kSamplesPerPixel * around.width, kSamplesPerPixel * around.height});
+    distorted = through_lens(s.seen, *s.lens,
+                             {kSamplesPerPixel * around.x, kSamplesPerPixel * around.y,
+                              kSamplesPerPixel * around.width, kSamplesPerPixel * around.height});
   }
+  SampleGrid& grid = s.lens->distorts() ? distorted : s.seen;
   if (scene.speckle) apply_speckle(grid, *s.lens, optics);
   const SensorNoise noise{scene.full_well, scene.read_noise,
                           hash_bits(hash_bits(scene.seed, kShot), scene.frame)};

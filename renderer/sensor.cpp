@@ -1,6 +1,7 @@
 #include "renderer/sensor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -62,15 +63,21 @@ std::vector<float> integrate(const SampleGrid& grid, const Region& region, doubl
   const int rows = kSamplesPerPixel * region.height + 2 * reach;
 
   std::vector<float> across(static_cast<std::size_t>(rows) * width, 0.0f);
-  std::vector<float> light(static_cast<std::size_t>(grid.width));
+  // Of a row, the samples that lie at the same place in their pixels, side by side.
+  std::array<std::vector<float>, kSamplesPerPixel> light;
+  for (auto& lane : light) lane.resize(static_cast<std::size_t>(grid.width / kSamplesPerPixel + 1));
   for (int row = 0; row < rows; ++row) {
     const Sample* samples = &grid.at(grid.x, first_row + row);
-    for (std::size_t i = 0; i < light.size(); ++i) light[i] = samples[i].laser + samples[i].ambient;
+    for (int i = 0; i < grid.width; ++i)
+      light[static_cast<std::size_t>(i % kSamplesPerPixel)][static_cast<std::size_t>(i / kSamplesPerPixel)] =
+          samples[i].laser + samples[i].ambient;
     float* out = &across[static_cast<std::size_t>(row) * width];
-    const float* from = light.data() + (kSamplesPerPixel * region.x - reach - grid.x);
     for (int t = 0; t < taps; ++t) {
       const float w = kernel[static_cast<std::size_t>(t)];
-      for (std::size_t x = 0; x < width; ++x) out[x] += w * from[kSamplesPerPixel * static_cast<int>(x) + t];
+      const int first = kSamplesPerPixel * region.x - reach - grid.x + t;
+      const float* from =
+          light[static_cast<std::size_t>(first % kSamplesPerPixel)].data() + first / kSamplesPerPixel;
+      for (std::size_t x = 0; x < width; ++x) out[x] += w * from[x];
     }
   }
   std::vector<float> levels(static_cast<std::size_t>(region.height) * width, 0.0f);

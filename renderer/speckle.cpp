@@ -33,16 +33,26 @@ int field_points_per_sample(const SpeckleOptics& o) {
   return std::clamp(static_cast<int>(std::ceil(sample / resolved(o))), 1, kFinestField);
 }
 
-/// 2 J1(v) / v against the square of the distance, ending at its second zero; energy 1 over the surface.
-class AmplitudeSpread {
- public:
-  explicit AmplitudeSpread(const SpeckleOptics& o) : scale_(kTable / (kernel_reach(o) * kernel_reach(o))) {
-    double energy = 0;
+/// 2 J1(v) / v against the square of v, which ends at its second zero.
+const std::array<double, kTable>& airy_amplitudes() {
+  static const std::array<double, kTable> values = [] {
+    std::array<double, kTable> made{};
     for (int k = 0; k < kTable; ++k) {
       const double v = kSecondZero * std::sqrt((k + 0.5) / kTable);
-      values_[static_cast<std::size_t>(k)] = 2 * std::cyl_bessel_j(1.0, v) / v;
-      energy += values_[static_cast<std::size_t>(k)] * values_[static_cast<std::size_t>(k)];
+      made[static_cast<std::size_t>(k)] = 2 * std::cyl_bessel_j(1.0, v) / v;
     }
+    return made;
+  }();
+  return values;
+}
+
+/// Against the square of the distance; energy 1 over the surface.
+class AmplitudeSpread {
+ public:
+  explicit AmplitudeSpread(const SpeckleOptics& o)
+      : scale_(kTable / (kernel_reach(o) * kernel_reach(o))), values_(airy_amplitudes()) {
+    double energy = 0;
+    for (const double value : values_) energy += value * value;
     energy *= std::numbers::pi / scale_;  // rings of equal area
     for (double& value : values_) value /= std::sqrt(energy);
   }
@@ -53,7 +63,7 @@ class AmplitudeSpread {
 
  private:
   double scale_;
-  std::array<double, kTable> values_{};
+  std::array<double, kTable> values_;
 };
 
 struct Scatterer {
@@ -114,34 +124,6 @@ double depth_at(const SampleGrid& grid, double i, double j) {
   return (1 - b) * ((1 - a) * s00.depth + a * s10.depth) + b * ((1 - a) * s01.depth + a * s11.depth);
 }
 
-/// In the order in which the rows of `area` meet them, so that the sums below have one order too.
-std::vector<Scatterer> scatterers(const SampleGrid& grid, const Lens& lens, const SpeckleOptics& o,
-                                  const Region& area, int fine) {
-  const double cell = std::max(resolved(o), o.distance / (o.focal_px * kSamplesPerPixel * fine));
-  std::vector<Scatterer> found;
-  std::unordered_map<std::uint64_t, std::size_t> place;
-  for (int b = area.y * fine; b < (area.y + area.height) * fine; ++b) {
-    for (int a = area.x * fine; a < (area.x + area.width) * fine; ++a) {
-      const double i = (a + 0.5) / fine - 0.5, j = (b + 0.5) / fine - 0.5;
-      const Owner owner =
-          owner_of(grid.at(static_cast<int>(std::floor(i + 0.5)), static_cast<int>(std::floor(j + 0.5))));
-      if (owner == Owner::nothing) continue;
-      const double depth = fine == 1 ? static_cast<double>(grid.at(a, b).depth) : depth_at(grid, i, j);
-      const Vec2 ray = lens.ray(i, j);
-      const Vec3 p_C = depth * Vec3(ray.x(), ray.y(), 1);
-      const std::uint64_t key = cell_key(o, owner, owner == Owner::tool ? o.X_TC * p_C : o.X_WC * p_C, cell);
-      const auto [entry, is_new] = place.try_emplace(key, found.size());
-      if (is_new) found.push_back({circular_gaussian(key)});
-      Scatterer& s = found[entry->second];
-      s.x += a;
-      s.y += b;
-      s.depth += depth;
-      ++s.points;
-    }
-  }
-  return found;
-}
-
 /// Field points of a region of samples.
 struct Field {
   Region points;
@@ -163,6 +145,67 @@ Field field_of(const SampleGrid& grid, const Region& lit, int fine) {
   return field;
 }
 
+/// First and last field points of a row with a wanted one within `reach` rows and columns.
+std::array<int, 2> near_wanted(const Field& field, int row, int reach) {
+  const Region& r = field.points;
+  int first = r.x + r.width + reach, last = r.x - 1 - reach;
+  for (int b = std::max(row - reach, r.y); b <= std::min(row + reach, r.y + r.height - 1); ++b) {
+    const auto [from, to] = field.wanted[static_cast<std::size_t>(b - r.y)];
+    if (from > to) continue;
+    first = std::min(first, from - reach);
+    last = std::max(last, to + reach);
+  }
+  return {first, last};
+}
+
+/// [m], of the cells that scatter: no finer than the field's points.
+double cell_size(const SpeckleOptics& o, int fine) {
+  return std::max(resolved(o), o.distance / (o.focal_px * kSamplesPerPixel * fine));
+}
+
+/// [points], from where a cell has its first point to where its light ends, on the surface that is nearest.
+int reach_of_cell(const SampleGrid& grid, const SpeckleOptics& o, const Region& area, int fine) {
+  float nearest = HUGE_VALF;
+  for (int j = area.y; j < area.y + area.height; ++j)
+    for (int i = area.x; i < area.x + area.width; ++i)
+      if (owner_of(grid.at(i, j)) != Owner::nothing) nearest = std::min(nearest, grid.at(i, j).depth);
+  const double pitch = static_cast<double>(nearest) / (o.focal_px * kSamplesPerPixel * fine);
+  const double diagonal = std::sqrt(3.0) * cell_size(o, fine);
+  return static_cast<int>(std::ceil((kernel_reach(o) + diagonal) / pitch)) + 2;
+}
+
+/// Those of `area` whose light reaches a wanted point of the field, and some more, in the order in which rows
+/// meet them, so that the sums below have one order too.
+std::vector<Scatterer> scatterers(const SampleGrid& grid, const Lens& lens, const SpeckleOptics& o,
+                                  const Region& area, const Field& field, int fine) {
+  const double cell = cell_size(o, fine);
+  const int reach = reach_of_cell(grid, o, area, fine);
+  std::vector<Scatterer> found;
+  std::unordered_map<std::uint64_t, std::size_t> place;
+  place.reserve(static_cast<std::size_t>(area.width * fine) * static_cast<std::size_t>(area.height * fine));
+  for (int b = area.y * fine; b < (area.y + area.height) * fine; ++b) {
+    const auto [first, last] = near_wanted(field, b, reach);
+    for (int a = std::max(area.x * fine, first); a <= std::min((area.x + area.width) * fine - 1, last); ++a) {
+      const double i = (a + 0.5) / fine - 0.5, j = (b + 0.5) / fine - 0.5;
+      const Owner owner =
+          owner_of(grid.at(static_cast<int>(std::floor(i + 0.5)), static_cast<int>(std::floor(j + 0.5))));
+      if (owner == Owner::nothing) continue;
+      const double depth = fine == 1 ? static_cast<double>(grid.at(a, b).depth) : depth_at(grid, i, j);
+      const Vec2 ray = lens.ray(i, j);
+      const Vec3 p_C = depth * Vec3(ray.x(), ray.y(), 1);
+      const std::uint64_t key = cell_key(o, owner, owner == Owner::tool ? o.X_TC * p_C : o.X_WC * p_C, cell);
+      const auto [entry, is_new] = place.try_emplace(key, found.size());
+      if (is_new) found.push_back({circular_gaussian(key)});
+      Scatterer& s = found[entry->second];
+      s.x += a;
+      s.y += b;
+      s.depth += depth;
+      ++s.points;
+    }
+  }
+  return found;
+}
+
 void add(Field& field, const Scatterer& s, const AmplitudeSpread& spread, const SpeckleOptics& o, int fine,
          int reach_limit) {
   const double x = s.x / s.points, y = s.y / s.points;
@@ -175,7 +218,7 @@ void add(Field& field, const Scatterer& s, const AmplitudeSpread& spread, const 
   const std::complex<double> amplitude = s.amplitude * (std::sqrt(static_cast<double>(s.points)) * pitch);
   for (int b = std::max(cy - reach, r.y); b <= std::min(cy + reach, r.y + r.height - 1); ++b) {
     const double half_row = std::sqrt(std::max(0.0, radius * radius - (b - y) * (b - y)));  // of a round spot
-    const int half = std::min(static_cast<int>(half_row) + 2, reach);
+    const int half = std::min(static_cast<int>(half_row + 0.5), reach);  // cx is no farther than that from x
     const auto [first, last] = field.wanted[static_cast<std::size_t>(b - r.y)];
     const int left = std::max(cx - half, first), right = std::min(cx + half, last);
     std::complex<double>* row =
@@ -204,7 +247,7 @@ void apply_speckle(SampleGrid& grid, const Lens& lens, const SpeckleOptics& opti
   Field field = field_of(grid, *lit, fine);
   const AmplitudeSpread spread(optics);
   const int reach_limit = kSamplesPerPixel * fine * (margin - 2);
-  for (const Scatterer& s : scatterers(grid, lens, optics, area, fine)) {
+  for (const Scatterer& s : scatterers(grid, lens, optics, area, field, fine)) {
     add(field, s, spread, optics, fine, reach_limit);
   }
   const double share = 1.0 / (fine * fine);

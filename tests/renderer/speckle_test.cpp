@@ -111,5 +111,36 @@ TEST(Speckle, IsFrozenToTheSurface) {
   EXPECT_LT(std::abs(correlation(before, speckled_wall(other, 160), 0, 0)), 0.2);
 }
 
+/// A wall that leans by 45 degrees towards the camera, lit in a disc of `radius` samples.
+SampleGrid leaning_wall(double radius) {
+  constexpr int kSize = 160, kMiddle = kSize / 2;
+  SampleGrid grid{100, 60, kSize, kSize, {}};
+  for (int j = 0; j < kSize; ++j) {
+    for (int i = 0; i < kSize; ++i) {
+      const bool is_lit = std::hypot(i - kMiddle, j - kMiddle) <= radius;
+      const double depth = kDistance + kSampleSize * (i - kMiddle);
+      grid.samples.push_back({is_lit ? 1.0f : 0.0f, 0.0f, static_cast<float>(depth), 1.0f});
+    }
+  }
+  return grid;
+}
+
+TEST(Speckle, OfASpotIsThatOfTheSameWallLitAllOver) {
+  const Lens lens({.width = 640, .height = 480, .focal_px = kFocal, .centre_px = {319.5, 239.5}}, 200);
+  for (const double sine : {0.012, 0.05}) {
+    SampleGrid all = leaning_wall(1000), spot = leaning_wall(12);
+    apply_speckle(all, lens, optics(sine));
+    apply_speckle(spot, lens, optics(sine));
+    int lit = 0, differ = 0;
+    for (std::size_t k = 0; k < spot.samples.size(); ++k) {
+      if (spot.samples[k].laser == 0) continue;
+      ++lit;
+      differ += spot.samples[k].laser != all.samples[k].laser;
+    }
+    EXPECT_GT(lit, 400) << "sin u " << sine;
+    EXPECT_EQ(differ, 0) << "sin u " << sine;
+  }
+}
+
 }  // namespace
 }  // namespace understudy::renderer
