@@ -218,7 +218,8 @@ void add(Field& field, const Scatterer& s, const AmplitudeSpread& spread, const 
   const std::complex<double> amplitude = s.amplitude * (std::sqrt(static_cast<double>(s.points)) * pitch);
   for (int b = std::max(cy - reach, r.y); b <= std::min(cy + reach, r.y + r.height - 1); ++b) {
     const double half_row = std::sqrt(std::max(0.0, radius * radius - (b - y) * (b - y)));  // of a round spot
-    const int half = std::min(static_cast<int>(half_row + 0.5), reach);  // cx is no farther than that from x
+    const int half =
+        std::min(static_cast<int>(std::lround(half_row)), reach);  // cx is no farther than that from x
     const auto [first, last] = field.wanted[static_cast<std::size_t>(b - r.y)];
     const int left = std::max(cx - half, first), right = std::min(cx + half, last);
     std::complex<double>* row =

@@ -80,7 +80,7 @@ void TimedPlan::pass_points() {
 
 void TimedPlan::pass(const PathLocation& here, double time) {
   duration_ = time;
-  while (!open_.empty() && open_.begin()->first <= here) {
+  while (!open_.empty() && !(here < open_.begin()->first)) {
     const std::size_t finding = open_.begin()->second;
     times_[finding] = time;
     places_[finding].reset();

@@ -2,11 +2,11 @@
 // long it takes, and when it comes past the places where something was found.
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,7 +20,9 @@ namespace understudy::control {
 struct PathLocation {
   std::size_t step = 0;
   double fraction = 0;  ///< of the step's path
-  auto operator<=>(const PathLocation&) const = default;
+  bool operator<(const PathLocation& o) const {
+    return std::tie(step, fraction) < std::tie(o.step, o.fraction);
+  }
 };
 
 /// Plans on a thread of its own. Calls are those of the program's order: first what was found on a step, then

@@ -12,7 +12,7 @@
 namespace understudy {
 namespace {
 
-using std::chrono_literals::operator""ms;
+constexpr std::chrono::milliseconds kWhile{1};
 
 std::vector<int> first(int count) {
   std::vector<int> numbers(static_cast<std::size_t>(count));
@@ -50,7 +50,7 @@ TEST(BatchThread, PushWaitsWhileAsManyBatchesWaitAsMay) {
   std::atomic<int> pushed = 0;
   BatchThread<int> stage(
       [&](std::vector<int>&) {
-        while (!may_go) std::this_thread::sleep_for(1ms);
+        while (!may_go) std::this_thread::sleep_for(kWhile);
       },
       1, 2);
   std::thread pusher([&] {
@@ -59,7 +59,7 @@ TEST(BatchThread, PushWaitsWhileAsManyBatchesWaitAsMay) {
       ++pushed;
     }
   });
-  std::this_thread::sleep_for(50ms);
+  std::this_thread::sleep_for(50 * kWhile);
   EXPECT_LE(pushed, 3);
   may_go = true;
   pusher.join();
