@@ -18,20 +18,21 @@ MeshClearance::MeshClearance(std::shared_ptr<const geometry::Mesh> mesh)
     : mesh_(std::move(mesh)), order_(mesh_->triangles().size()) {
   std::iota(order_.begin(), order_.end(), 0);
   nodes_.emplace_back();
-  build(0, 0, static_cast<int>(order_.size()));
+  std::vector<Extent> extents;
+  extents.reserve(order_.size());
+  for (const auto& triangle : mesh_->triangles()) {
+    const Vec3 &a = mesh_->vertices()[triangle[0]], &b = mesh_->vertices()[triangle[1]],
+               &c = mesh_->vertices()[triangle[2]];
+    extents.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), a + b + c});
+  }
+  build(0, 0, static_cast<int>(order_.size()), extents);
 }
 
-void MeshClearance::build(int node, int first, int count) {
-  const auto corner = [&](int triangle, std::size_t k) -> const Vec3& {
-    return mesh_->vertices()[mesh_->triangles()[triangle][k]];
-  };
+void MeshClearance::build(int node, int first, int count, const std::vector<Extent>& extents) {
   Vec3 lower = Vec3::Constant(kInfinity), upper = -lower;
   for (int i = first; i < first + count; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& p = corner(order_[i], k);
-      lower = lower.cwiseMin(p);
-      upper = upper.cwiseMax(p);
-    }
+    lower = lower.cwiseMin(extents[order_[i]].lower);
+    upper = upper.cwiseMax(extents[order_[i]].upper);
   }
   Node result;
   result.centre = 0.5 * (lower + upper);
@@ -44,9 +45,7 @@ void MeshClearance::build(int node, int first, int count) {
   }
   Eigen::Index axis = 0;
   result.half.maxCoeff(&axis);
-  const auto middle = [&](int triangle) {
-    return corner(triangle, 0)[axis] + corner(triangle, 1)[axis] + corner(triangle, 2)[axis];
-  };
+  const auto middle = [&](int triangle) { return extents[triangle].corner_sum[axis]; };
   const int half = count / 2;
   const auto begin = order_.begin() + first;
   std::nth_element(begin, begin + half, begin + count, [&](int a, int b) {
@@ -56,8 +55,8 @@ void MeshClearance::build(int node, int first, int count) {
   result.first = static_cast<int>(nodes_.size());
   nodes_[node] = result;
   nodes_.resize(nodes_.size() + 2);
-  build(result.first, first, half);
-  build(result.first + 1, first + half, count - half);
+  build(result.first, first, half, extents);
+  build(result.first + 1, first + half, count - half, extents);
 }
 
 template <typename Core>

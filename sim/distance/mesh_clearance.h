@@ -26,7 +26,10 @@ class MeshClearance {
     Vec3 centre{0, 0, 0}, half{0, 0, 0};  // box around all triangles below
     int first = 0, count = 0;  // triangles of a leaf; count 0: the children are `first` and `first + 1`
   };
-  void build(int node, int first, int count);
+  struct Extent {  // of a triangle
+    Vec3 lower, upper, corner_sum;
+  };
+  void build(int node, int first, int count, const std::vector<Extent>& extents);
   template <typename Core>
   Separation search(const Core& core, const Pose& X_WS) const;
 
