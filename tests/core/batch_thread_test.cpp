@@ -20,7 +20,8 @@ std::vector<int> first(int count) {
   return numbers;
 }
 
-TEST(BatchThread, WorksItemsOffInTheirOrderOnOneOtherThread) {
+/// Works the first numbers off, in batches of seven, and returns on which threads that was.
+std::set<std::thread::id> threads_of_work(int count) {
   std::vector<int> seen;
   std::set<std::thread::id> threads;
   BatchThread<int> stage(
@@ -29,9 +30,14 @@ TEST(BatchThread, WorksItemsOffInTheirOrderOnOneOtherThread) {
         threads.insert(std::this_thread::get_id());
       },
       7);
-  for (int i = 0; i < 1000; ++i) stage.push(i);
+  for (int i = 0; i < count; ++i) stage.push(i);
   stage.drain();
-  EXPECT_EQ(seen, first(1000));
+  EXPECT_EQ(seen, first(count));
+  return threads;
+}
+
+TEST(BatchThread, WorksItemsOffInTheirOrderOnOneOtherThread) {
+  const auto threads = threads_of_work(1000);
   EXPECT_EQ(threads.size(), 1u);
   EXPECT_FALSE(threads.contains(std::this_thread::get_id()));
 }
@@ -98,18 +104,7 @@ class BatchThreadOfOne : public testing::Test {
 };
 
 TEST_F(BatchThreadOfOne, WorksOnTheCallersThread) {
-  std::vector<int> seen;
-  std::set<std::thread::id> threads;
-  BatchThread<int> stage(
-      [&](std::vector<int>& batch) {
-        seen.insert(seen.end(), batch.begin(), batch.end());
-        threads.insert(std::this_thread::get_id());
-      },
-      7);
-  for (int i = 0; i < 100; ++i) stage.push(i);
-  stage.drain();
-  EXPECT_EQ(seen, first(100));
-  EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
+  EXPECT_EQ(threads_of_work(100), std::set{std::this_thread::get_id()});
 }
 
 TEST_F(BatchThreadOfOne, ThrowsAlike) { throws_what_the_work_threw_each_time(); }
