@@ -35,6 +35,7 @@ class TimedPlan {
   void find_time(std::size_t finding, const PathLocation& at) { found_.emplace_back(finding, at); }
   /// Next step of the program, which must outlive the plan.
   void add(const toolpath::Step& step);
+  void add(toolpath::Step&& step) = delete;
   /// What is planned ends here: no step is added any more.
   void finish();
 

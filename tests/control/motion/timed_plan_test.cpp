@@ -60,8 +60,9 @@ TEST(TimedPlan, EndsWhereTheMotionPlannerRefusesAStep) {
   const auto& geometry = machine.hexapod().geometry;
   const Vec3 strut_B = geometry.base_joint[0] - machine.X_BT_home * geometry.platform_joint[0];
   const Pose nowhere = way.hexapod.at(machine.X_WB.linear() * strut_B);
+  const toolpath::Step to_nowhere = way.hexapod.print_to(nowhere, kFeed, 2);
   plan.find_time(0, {1, 0.5});
-  plan.add(way.hexapod.print_to(nowhere, kFeed, 2));
+  plan.add(to_nowhere);
   plan.add(way.up);
   plan.finish();
   EXPECT_EQ(plan.refused(), std::optional<std::size_t>(1));
