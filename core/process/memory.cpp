@@ -12,7 +12,7 @@
 namespace understudy {
 namespace {
 
-// [bytes]: less than a run of a campaign leaves would be taken again by the next, page by page.
+// [bytes]: a campaign's next run soon asks for as much as its last one left.
 constexpr std::size_t kWorthReturning = 48'000'000;
 constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
 

@@ -9,18 +9,12 @@
 
 namespace understudy::report {
 
-namespace {
-
-constexpr int kLevel = 6;  // 9 takes half as long again, and saves a hundredth
-
-}  // namespace
-
 std::string pack_text(std::string_view text) {
   uLongf size = compressBound(static_cast<uLong>(text.size()));
   std::string packed(size, '\0');
   const int status =
       compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
-                static_cast<uLong>(text.size()), kLevel);
+                static_cast<uLong>(text.size()), Z_DEFAULT_COMPRESSION);
   if (status != Z_OK)
     throw MachineError("zlib cannot pack the page's data: status " + std::to_string(status));
   packed.resize(size);
